@@ -1,0 +1,3 @@
+//! The `amberfield` command.
+
+fn main() {}

@@ -1,0 +1,287 @@
+//! The box that bounds the electric field and, where periodic, the motion.
+
+use nalgebra::Vector3;
+use serde::{Deserialize, Serialize};
+use std::fmt;
+
+/// What a face of the domain does to the electric field.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
+#[non_exhaustive]
+pub enum Boundary {
+    /// Conductor at V = 0.
+    Grounded,
+    /// Conductor at the given potential [V].
+    Potential(f64),
+    /// Surface with a given outward normal field component E·n [V/m], n pointing out of the domain; 0 is an
+    /// ideal insulator.
+    Insulating {
+        /// E·n with n the outward normal [V/m].
+        normal_field_v_m: f64,
+    },
+    /// Joined to the opposite face.
+    Periodic,
+    /// Free space beyond.
+    Open,
+}
+
+impl Boundary {
+    /// Whether the potential is prescribed on the face.
+    #[must_use]
+    pub fn is_conductor(self) -> bool {
+        matches!(self, Self::Grounded | Self::Potential(_))
+    }
+
+    /// Whether the normal field is prescribed on the face.
+    #[must_use]
+    pub fn is_insulating(self) -> bool {
+        matches!(self, Self::Insulating { .. })
+    }
+
+    /// The prescribed potential [V] of a conductor.
+    #[must_use]
+    pub fn potential(self) -> Option<f64> {
+        match self {
+            Self::Grounded => Some(0.0),
+            Self::Potential(volts) => Some(volts),
+            _ => None,
+        }
+    }
+}
+
+/// A coordinate axis, also usable as an index into a vector.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, Serialize, Deserialize)]
+pub enum Axis {
+    /// First axis.
+    X = 0,
+    /// Second axis.
+    Y = 1,
+    /// Third axis.
+    Z = 2,
+}
+
+impl Axis {
+    /// All axes in order.
+    pub const ALL: [Self; 3] = [Self::X, Self::Y, Self::Z];
+
+    /// 0, 1 or 2.
+    #[must_use]
+    pub fn index(self) -> usize {
+        self as usize
+    }
+}
+
+impl fmt::Display for Axis {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.write_str(["x", "y", "z"][self.index()])
+    }
+}
+
+/// Lower or upper end of an axis.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, Serialize, Deserialize)]
+pub enum Side {
+    /// The face at the smaller coordinate.
+    Min = 0,
+    /// The face at the larger coordinate.
+    Max = 1,
+}
+
+/// Why a box is not a domain.
+#[derive(Clone, Debug, PartialEq)]
+#[non_exhaustive]
+pub enum DomainError {
+    /// An extent is not positive and finite.
+    Extent {
+        /// Axis of the bad extent.
+        axis: Axis,
+        /// Lower coordinate [m].
+        min_m: f64,
+        /// Upper coordinate [m].
+        max_m: f64,
+    },
+    /// Only one of two opposite faces is periodic.
+    HalfPeriodic(Axis),
+    /// A face value (potential or normal field) is not finite.
+    Value(Axis, Side),
+}
+
+impl fmt::Display for DomainError {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        match self {
+            Self::Extent { axis, min_m, max_m } => write!(
+                f,
+                "domain extent along {axis} must be positive and finite, got {min_m} to {max_m} m; give max_m above min_m"
+            ),
+            Self::HalfPeriodic(axis) => {
+                write!(f, "only one face of axis {axis} is periodic; make both faces periodic or neither")
+            }
+            Self::Value(axis, side) => {
+                let side = if *side == Side::Min { "min" } else { "max" };
+                write!(f, "the boundary value on face {axis}_{side} is not finite; give a finite number")
+            }
+        }
+    }
+}
+
+impl std::error::Error for DomainError {}
+
+/// Axis-aligned box with a boundary condition per face.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+pub struct Domain {
+    min: Vector3<f64>,
+    max: Vector3<f64>,
+    faces: [[Boundary; 2]; 3],
+}
+
+impl Domain {
+    /// Box from corner `min` to corner `max` [m], `faces[axis][side]` with sides (min, max).
+    ///
+    /// # Errors
+    /// Extents that are not positive and finite, half-periodic axes, boundary values that are not finite.
+    pub fn new(min: Vector3<f64>, max: Vector3<f64>, faces: [[Boundary; 2]; 3]) -> Result<Self, DomainError> {
+        for axis in Axis::ALL {
+            let (lo, hi) = (min[axis.index()], max[axis.index()]);
+            if !(lo.is_finite() && hi.is_finite() && hi > lo && (hi - lo).is_finite()) {
+                return Err(DomainError::Extent { axis, min_m: lo, max_m: hi });
+            }
+            let pair = faces[axis.index()];
+            if (pair[0] == Boundary::Periodic) != (pair[1] == Boundary::Periodic) {
+                return Err(DomainError::HalfPeriodic(axis));
+            }
+            for (side, face) in [Side::Min, Side::Max].into_iter().zip(pair) {
+                let value = match face {
+                    Boundary::Potential(volts) => volts,
+                    Boundary::Insulating { normal_field_v_m } => normal_field_v_m,
+                    _ => 0.0,
+                };
+                if !value.is_finite() {
+                    return Err(DomainError::Value(axis, side));
+                }
+            }
+        }
+        Ok(Self { min, max, faces })
+    }
+
+    /// Lower corner [m].
+    #[must_use]
+    pub fn min(&self) -> Vector3<f64> {
+        self.min
+    }
+
+    /// Upper corner [m].
+    #[must_use]
+    pub fn max(&self) -> Vector3<f64> {
+        self.max
+    }
+
+    /// Edge lengths [m].
+    #[must_use]
+    pub fn extent(&self) -> Vector3<f64> {
+        self.max - self.min
+    }
+
+    /// Centre [m].
+    #[must_use]
+    pub fn centre(&self) -> Vector3<f64> {
+        (self.min + self.max) * 0.5
+    }
+
+    /// Volume [m³].
+    #[must_use]
+    pub fn volume(&self) -> f64 {
+        self.extent().product()
+    }
+
+    /// Boundary condition of a face.
+    #[must_use]
+    pub fn face(&self, axis: Axis, side: Side) -> Boundary {
+        self.faces[axis.index()][side as usize]
+    }
+
+    /// Boundary conditions `[axis][side]`.
+    #[must_use]
+    pub fn faces(&self) -> &[[Boundary; 2]; 3] {
+        &self.faces
+    }
+
+    /// Whether the axis is periodic.
+    #[must_use]
+    pub fn is_periodic(&self, axis: Axis) -> bool {
+        self.faces[axis.index()][0] == Boundary::Periodic
+    }
+
+    /// Whether the potential is fixed only up to a constant and the net charge must therefore vanish: every
+    /// face is insulating or periodic.
+    #[must_use]
+    pub fn needs_neutrality(&self) -> bool {
+        self.faces.iter().flatten().all(|face| face.is_insulating() || *face == Boundary::Periodic)
+    }
+
+    /// Whether a point lies in the closed box. NaN is outside.
+    #[must_use]
+    pub fn contains(&self, point: &Vector3<f64>) -> bool {
+        (0..3).all(|axis| point[axis] >= self.min[axis] && point[axis] <= self.max[axis])
+    }
+
+    /// The point moved by whole periods into the half-open box along the periodic axes.
+    #[must_use]
+    pub fn wrap(&self, mut point: Vector3<f64>) -> Vector3<f64> {
+        for axis in Axis::ALL {
+            if self.is_periodic(axis) {
+                let axis = axis.index();
+                let length = self.max[axis] - self.min[axis];
+                let mut offset = (point[axis] - self.min[axis]).rem_euclid(length);
+                if offset >= length {
+                    offset = 0.0;
+                }
+                point[axis] = self.min[axis] + offset;
+                if point[axis] >= self.max[axis] {
+                    point[axis] = self.min[axis];
+                }
+            }
+        }
+        point
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn unit(faces: [[Boundary; 2]; 3]) -> Result<Domain, DomainError> {
+        Domain::new(Vector3::zeros(), Vector3::repeat(1.0), faces)
+    }
+
+    #[test]
+    fn half_periodic_axis_is_refused() {
+        let mut faces = [[Boundary::Grounded; 2]; 3];
+        faces[1][0] = Boundary::Periodic;
+        assert_eq!(unit(faces), Err(DomainError::HalfPeriodic(Axis::Y)));
+    }
+
+    #[test]
+    fn inverted_extent_is_refused() {
+        let result = Domain::new(Vector3::repeat(1.0), Vector3::zeros(), [[Boundary::Open; 2]; 3]);
+        assert!(matches!(result, Err(DomainError::Extent { axis: Axis::X, .. })));
+    }
+
+    #[test]
+    fn wrap_stays_inside_for_tiny_negative_offsets() {
+        let domain = unit([[Boundary::Periodic; 2]; 3]).unwrap();
+        let wrapped = domain.wrap(Vector3::new(-1e-20, 2.5, 1.0));
+        assert!(wrapped.iter().all(|&c| (0.0..1.0).contains(&c)), "{wrapped:?}");
+    }
+
+    #[test]
+    fn only_closed_boxes_without_conductor_need_neutrality() {
+        let insulating = Boundary::Insulating { normal_field_v_m: 0.0 };
+        assert!(
+            unit([[insulating; 2], [Boundary::Periodic; 2], [insulating; 2]]).unwrap().needs_neutrality()
+        );
+        assert!(!unit([[insulating; 2], [Boundary::Open; 2], [insulating; 2]]).unwrap().needs_neutrality());
+        assert!(
+            !unit([[insulating; 2], [insulating, Boundary::Grounded], [insulating; 2]])
+                .unwrap()
+                .needs_neutrality()
+        );
+    }
+}

@@ -1,0 +1,126 @@
+//! What a scene asks of the electric field.
+
+use nalgebra::Vector3;
+use serde::{Deserialize, Serialize};
+use std::fmt;
+use std::str::FromStr;
+
+/// How the electric field at the particles is computed.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash, Serialize, Deserialize)]
+#[serde(rename_all = "snake_case")]
+#[non_exhaustive]
+pub enum Method {
+    /// Plain sum over neighbours within the cut-off radius.
+    Cutoff,
+    /// Every pair and every image; periodic sums by Ewald. The truth for tests.
+    Direct,
+    /// The published hybrid: nearest-cell charge, cell-constant far field, pairwise correction.
+    Kolehmainen,
+    /// Particle–particle particle–mesh with smooth Gaussian splitting.
+    #[default]
+    P3m,
+}
+
+impl Method {
+    /// All methods.
+    pub const ALL: [Self; 4] = [Self::Cutoff, Self::Direct, Self::Kolehmainen, Self::P3m];
+
+    /// The name used in scene files, on the command line and in results.
+    #[must_use]
+    pub fn name(self) -> &'static str {
+        match self {
+            Self::Cutoff => "cutoff",
+            Self::Direct => "direct",
+            Self::Kolehmainen => "kolehmainen",
+            Self::P3m => "p3m",
+        }
+    }
+}
+
+impl fmt::Display for Method {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.write_str(self.name())
+    }
+}
+
+impl FromStr for Method {
+    type Err = String;
+
+    fn from_str(text: &str) -> Result<Self, Self::Err> {
+        Self::ALL
+            .into_iter()
+            .find(|method| method.name() == text)
+            .ok_or_else(|| format!("unknown method '{text}'; give one of cutoff, direct, kolehmainen, p3m"))
+    }
+}
+
+/// How parameters that meet the tolerance are chosen among candidates.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(rename_all = "snake_case")]
+pub enum Tuning {
+    /// By timing them once; the choice is recorded and reused on resume.
+    #[default]
+    Timed,
+    /// By the cost model alone: the same choice on every machine.
+    Model,
+}
+
+/// How often the field is evaluated anew.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(rename_all = "snake_case")]
+pub enum CouplingInterval {
+    /// As often as displacement, charge change and plasma limit ask.
+    #[default]
+    Auto,
+    /// Every given number of steps.
+    Steps(u32),
+}
+
+/// Upper bound on the electric force on one grain.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
+pub struct ForceLimit {
+    /// Dimensionless factor in [0, 1] on m·skin/Δt².
+    pub factor: f64,
+}
+
+/// What a scene asks of the electric field.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+pub struct FieldSettings {
+    /// Method.
+    pub method: Method,
+    /// Relative RMS error of E that is asked for (p3m).
+    pub tolerance: f64,
+    /// Near cut-off radius r_c [m], when the scene fixes it.
+    pub cutoff_radius_m: Option<f64>,
+    /// Relative permittivity εr of the medium.
+    pub relative_permittivity: f64,
+    /// Uniform external field [V/m].
+    pub external_field_v_m: Vector3<f64>,
+    /// Whether a net charge in an insulating or periodic box is balanced by a uniform background.
+    pub neutralising_background: bool,
+    /// Cells of the internal grid per axis, when the scene fixes them.
+    pub grid_cells: Option<[usize; 3]>,
+    /// How parameters are chosen.
+    pub tuning: Tuning,
+    /// How often the field is evaluated.
+    pub coupling_interval: CouplingInterval,
+    /// Bound on the electric force, when asked for.
+    pub force_limit: Option<ForceLimit>,
+}
+
+impl Default for FieldSettings {
+    fn default() -> Self {
+        Self {
+            method: Method::P3m,
+            tolerance: 1e-2,
+            cutoff_radius_m: None,
+            relative_permittivity: 1.0,
+            external_field_v_m: Vector3::zeros(),
+            neutralising_background: false,
+            grid_cells: None,
+            tuning: Tuning::Timed,
+            coupling_interval: CouplingInterval::Auto,
+            force_limit: None,
+        }
+    }
+}

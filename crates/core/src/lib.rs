@@ -1,0 +1,23 @@
+//! The words of amberfield: what every other crate means by a particle, a domain face, a material or a
+//! method. No algorithm, no input or output.
+//!
+//! SI units everywhere, angles in radians. Electric field `E` in V/m points away from positive charge;
+//! potential `V` in volts with `E = −∇V`.
+
+pub mod constants;
+mod domain;
+mod field_settings;
+mod material;
+mod particles;
+mod plan;
+mod time_settings;
+mod wall;
+
+pub use domain::{Axis, Boundary, Domain, DomainError, Side};
+pub use field_settings::{CouplingInterval, FieldSettings, ForceLimit, Method, Tuning};
+pub use material::{Material, MaterialId};
+pub use nalgebra::Vector3;
+pub use particles::{Grain, GroupId, Particles};
+pub use plan::{Plan, PlanEntry};
+pub use time_settings::{OnExit, Skin, Step, TimeSettings};
+pub use wall::{TriangleMesh, Wall, WallCharging, WallShape};

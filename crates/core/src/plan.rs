@@ -1,0 +1,61 @@
+//! What will run, what is left out, and why.
+
+use serde::{Deserialize, Serialize};
+
+/// A stage and the reason for which it is there, or not.
+#[derive(Clone, Debug, PartialEq, Eq, Serialize, Deserialize)]
+pub struct PlanEntry {
+    /// Name of the stage, as in `history.csv`'s `wall_s_<stage>`.
+    pub stage: String,
+    /// Why it is there, or why it is left out.
+    pub reason: String,
+}
+
+/// A scene compiled into stages: only these are built, allocate memory and cost time.
+#[derive(Clone, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
+pub struct Plan {
+    stages: Vec<PlanEntry>,
+    left_out: Vec<PlanEntry>,
+}
+
+impl Plan {
+    /// A plan without stages.
+    #[must_use]
+    pub fn new() -> Self {
+        Self::default()
+    }
+
+    /// Adds a stage that will be built.
+    pub fn build(&mut self, stage: impl Into<String>, reason: impl Into<String>) {
+        self.stages.push(PlanEntry { stage: stage.into(), reason: reason.into() });
+    }
+
+    /// Adds a stage that is left out.
+    pub fn leave_out(&mut self, stage: impl Into<String>, reason: impl Into<String>) {
+        self.left_out.push(PlanEntry { stage: stage.into(), reason: reason.into() });
+    }
+
+    /// The stages that run, in order.
+    #[must_use]
+    pub fn stages(&self) -> &[PlanEntry] {
+        &self.stages
+    }
+
+    /// What is left out.
+    #[must_use]
+    pub fn left_out(&self) -> &[PlanEntry] {
+        &self.left_out
+    }
+
+    /// Whether a stage is built.
+    #[must_use]
+    pub fn has(&self, stage: &str) -> bool {
+        self.stages.iter().any(|entry| entry.stage == stage)
+    }
+
+    /// Appends another plan's entries.
+    pub fn extend(&mut self, other: Self) {
+        self.stages.extend(other.stages);
+        self.left_out.extend(other.left_out);
+    }
+}

@@ -1,0 +1,55 @@
+//! Walls that grains touch.
+
+use crate::material::MaterialId;
+use nalgebra::Vector3;
+use serde::{Deserialize, Serialize};
+
+/// A surface of triangles.
+#[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
+pub struct TriangleMesh {
+    /// Distinct vertices [m].
+    pub vertices: Vec<Vector3<f64>>,
+    /// Vertex indices of each triangle.
+    pub triangles: Vec<[u32; 3]>,
+}
+
+/// Geometry of a wall.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[serde(rename_all = "snake_case")]
+pub enum WallShape {
+    /// Infinite plane; grains live on the side that the normal points to.
+    Plane {
+        /// A point of the plane [m].
+        point: Vector3<f64>,
+        /// Unit normal, into the grains' side.
+        normal: Vector3<f64>,
+    },
+    /// Triangles; both sides are solid to grains.
+    Mesh(TriangleMesh),
+}
+
+/// What a wall does with charge.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(rename_all = "snake_case")]
+pub enum WallCharging {
+    /// Conductor at V = 0: takes any charge, keeps none.
+    Grounded,
+    /// Keeps what it gets.
+    Insulating,
+    /// Takes no charge.
+    #[default]
+    None,
+}
+
+/// A wall of the scene.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+pub struct Wall {
+    /// Name for messages: the STL file's name, or `walls[k]`.
+    pub name: String,
+    /// Geometry.
+    pub shape: WallShape,
+    /// Material.
+    pub material: MaterialId,
+    /// What it does with charge.
+    pub charging: WallCharging,
+}

@@ -1,0 +1,1 @@
+//! Moves grains: neighbours, contacts with history, walls, integrator, step, checkpoint state.

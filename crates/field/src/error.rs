@@ -1,0 +1,34 @@
+//! Errors of the field crate.
+
+/// Why a field cannot be computed.
+#[derive(Debug, Clone, PartialEq, thiserror::Error)]
+#[non_exhaustive]
+pub enum FieldError {
+    /// The combination of method and settings is not possible.
+    #[error("{0}")]
+    Settings(String),
+    /// Net charge in a box whose faces are all insulating or periodic.
+    #[error(
+        "net charge {net_charge_c:e} C in a box whose faces are all insulating or periodic has no field; make the charge zero, ground a face, or set electric_field.neutralising_background = true"
+    )]
+    NetCharge {
+        /// Net charge [C], less what the faces' normal fields take.
+        net_charge_c: f64,
+    },
+    /// A position or charge is not finite.
+    #[error("grain at index {index} has a position or charge that is not finite")]
+    NotFinite {
+        /// Index of the grain.
+        index: usize,
+    },
+    /// The tolerance cannot be met.
+    #[error("tolerance {asked:e} cannot be met: best measured error {reached:e}; {advice}")]
+    Tolerance {
+        /// Tolerance that was asked for.
+        asked: f64,
+        /// Best error measured.
+        reached: f64,
+        /// What to do.
+        advice: String,
+    },
+}

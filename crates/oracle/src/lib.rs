@@ -1,0 +1,1 @@
+//! Exact and manufactured solutions, norms, observed order; shares no code with what it judges.

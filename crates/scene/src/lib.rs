@@ -1,0 +1,1 @@
+//! Scene file to validated description; reads particles and STL, writes VTK, CSV and checkpoints.

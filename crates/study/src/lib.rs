@@ -1,0 +1,1 @@
+//! Runs methods, checks the answer, then records the time; reports, plots and pictures.
