@@ -1,1 +1,26 @@
-//! Exact and manufactured solutions, norms, observed order; shares no code with what it judges.
+//! Exact and manufactured solutions, reference fields, norms and observed orders of convergence.
+//!
+//! Nothing here shares code with what it judges: this crate never uses the laws or the field.
+
+mod charged_ball;
+mod collision;
+mod grounded_plane;
+mod grounded_sphere;
+mod madelung;
+mod manufactured;
+mod norms;
+mod parallel_plates;
+mod point_charge;
+pub mod reference;
+
+pub use charged_ball::{ChargedBall, ball_points};
+pub use collision::{
+    COLLISION_CHARGES, CollisionCharge, DampedHertzImpact, EQUILIBRIUM_CHARGE_PER_EV, HertzImpact,
+};
+pub use grounded_plane::GroundedPlane;
+pub use grounded_sphere::GroundedSphere;
+pub use madelung::{MADELUNG_NACL, rock_salt};
+pub use manufactured::Manufactured;
+pub use norms::{ErrorNorms, field_scale, observed_order, rms, rms_scalar};
+pub use parallel_plates::ParallelPlates;
+pub use point_charge::{coulomb_field, coulomb_potential, open_sum};
