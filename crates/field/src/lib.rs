@@ -4,6 +4,7 @@
 
 mod electric_field;
 mod error;
+mod grid;
 mod values;
 
 pub use electric_field::{Choice, ElectricField, Measured, Statistics};
