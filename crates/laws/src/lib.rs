@@ -1,1 +1,13 @@
 //! One closed-form physical law per file: pure functions, few scalars in, few out.
+//!
+//! SI units. Electric field points away from positive charge. Unit vectors n point from i to j.
+
+pub mod coulomb_friction;
+pub mod force_limit;
+pub mod gaussian_cloud;
+pub mod hertz_mindlin;
+pub mod image_in_plane;
+pub mod point_charge;
+pub mod restitution;
+pub mod rolling_friction;
+pub mod time_step_limits;

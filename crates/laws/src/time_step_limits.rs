@@ -1,0 +1,92 @@
+//! Limits on the time step: Rayleigh, Hertz, electric pair, wall image, plasma.
+//!
+//! * Rayleigh Δt = π r √(ρ/G)/(0.1631 ν + 0.8766): a surface wave crosses a grain. r \[m\], ρ \[kg/m³\], G \[Pa\].
+//! * Hertz: duration of the elastic contact at the largest relative speed (`hertz_mindlin::contact_time`).
+//! * Stiffness: Δt = 2√(m*/k), stability limit of velocity Verlet; electric pair k = |q_i q_j|/(2πεr³),
+//!   wall image k = q²/(8πεd³) \[N/m\].
+//! * Plasma: ω_p = √(n q²/(m ε)) of the cloud; the interval between field evaluations Δt_c < 0.2/ω_p is
+//!   accurate, < 2/ω_p stable. n number density \[1/m³\].
+//!
+//! All limits in \[s\], positive; `f64::INFINITY` where there is no charge. Sources: Ning & Ghadiri, Chem. Eng.
+//! Sci. 61, 5991 (2006); Hairer, Lubich & Wanner, *Geometric Numerical Integration*, §I.1.4; Birdsall &
+//! Langdon, *Plasma Physics via Computer Simulation*, ch. 4.
+//!
+//! ```
+//! use amberfield_laws::time_step_limits::{rayleigh, stiffness_limit};
+//! assert!((stiffness_limit(4.0, 1.0) - 4.0).abs() < 1e-15);
+//! assert!(rayleigh(1e-3, 2500.0, 1e7, 0.25) > 1e-5);
+//! ```
+
+use std::f64::consts::PI;
+
+/// Δt_c ω_p below which the held field is accurate.
+pub const PLASMA_ACCURATE: f64 = 0.2;
+/// Δt_c ω_p below which the held field is stable.
+pub const PLASMA_STABLE: f64 = 2.0;
+
+/// Rayleigh time \[s\] of radius \[m\], density \[kg/m³\], shear modulus \[Pa\] and Poisson ratio.
+#[must_use]
+pub fn rayleigh(radius: f64, density: f64, shear_modulus: f64, poisson: f64) -> f64 {
+    PI * radius * (density / shear_modulus).sqrt() / (0.1631 * poisson + 0.8766)
+}
+
+/// 2√(m/k) \[s\] for mass \[kg\] and stiffness \[N/m\].
+#[must_use]
+pub fn stiffness_limit(mass: f64, stiffness: f64) -> f64 {
+    2.0 * (mass / stiffness).sqrt()
+}
+
+/// k = |q_i q_j|/(2πεr³) \[N/m\]: derivative of Coulomb's force at distance r \[m\].
+#[must_use]
+pub fn pair_stiffness(charge_i: f64, charge_j: f64, permittivity: f64, distance: f64) -> f64 {
+    (charge_i * charge_j).abs() / (2.0 * PI * permittivity * distance.powi(3))
+}
+
+/// k = q²/(8πεd³) \[N/m\]: derivative of the image force at distance d \[m\] from a plane conductor.
+#[must_use]
+pub fn wall_image_stiffness(charge: f64, permittivity: f64, distance: f64) -> f64 {
+    charge * charge / (8.0 * PI * permittivity * distance.powi(3))
+}
+
+/// ω_p = √(Σ(q²/m)/(V ε)) \[rad/s\]: `charge_squared_over_mass` = Σ q²/m \[C²/kg\] over the grains in the volume
+/// \[m³\]; for equal grains this is √(n q²/(mε)).
+#[must_use]
+pub fn plasma_frequency(charge_squared_over_mass: f64, volume: f64, permittivity: f64) -> f64 {
+    (charge_squared_over_mass / (volume * permittivity)).sqrt()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// Round-off of a handful of operations.
+    const ROUND_OFF: f64 = 1e-13;
+    /// Central difference.
+    const DIFFERENCE: f64 = 1e-8;
+
+    #[test]
+    fn exact_points() {
+        let t = rayleigh(1.0, 4.0, 1.0, 0.0);
+        assert!((t - 2.0 * PI / 0.8766).abs() < ROUND_OFF);
+        assert!((plasma_frequency(8.0, 2.0, 1.0) - 2.0).abs() < ROUND_OFF);
+        assert_eq!(stiffness_limit(1.0, 0.0), f64::INFINITY);
+    }
+
+    #[test]
+    fn stiffnesses_are_derivatives_of_the_forces() {
+        let (r, h) = (0.5_f64, 1e-6);
+        let k = 1.0 / (4.0 * PI);
+        let slope = (k / (r + h).powi(2) - k / (r - h).powi(2)) / (2.0 * h);
+        assert!((pair_stiffness(1.0, -1.0, 1.0, r) / slope.abs() - 1.0).abs() < DIFFERENCE);
+        let image = |d: f64| 1.0 / (16.0 * PI * d * d);
+        let slope = (image(r + h) - image(r - h)) / (2.0 * h);
+        assert!((wall_image_stiffness(1.0, 1.0, r) / slope.abs() - 1.0).abs() < DIFFERENCE);
+    }
+
+    #[test]
+    fn symmetric_and_vanishing() {
+        assert_eq!(pair_stiffness(1.0, 2.0, 1.0, 1.0), pair_stiffness(-2.0, 1.0, 1.0, 1.0));
+        assert!(pair_stiffness(1.0, 1.0, 1.0, 1e9) < 1e-26);
+        assert_eq!(wall_image_stiffness(0.0, 1.0, 1.0), 0.0);
+    }
+}
