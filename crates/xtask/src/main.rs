@@ -1,3 +1,49 @@
-//! Developer commands.
+//! Developer commands: `cargo xtask check`, `tidy`, `test`, `deny`.
+#![expect(clippy::print_stdout, reason = "a program for developers that reports to the terminal")]
 
-fn main() {}
+mod check;
+mod deny;
+mod shell;
+mod test;
+mod tidy;
+
+use anyhow::{Result, bail};
+use std::path::Path;
+use std::process::ExitCode;
+
+const USAGE: &str = "\
+cargo xtask check [--without tests]   what CI asks: fmt, clippy, tidy, docs, deny, tests
+cargo xtask test                      every test: documentation examples, units, commands, cases at smoke size
+cargo xtask tidy                      the repository's own rules
+cargo xtask deny                      licences and sources of everything that is linked";
+
+fn main() -> ExitCode {
+    match run() {
+        Ok(()) => ExitCode::SUCCESS,
+        Err(error) => {
+            println!("error: {error:#}");
+            ExitCode::FAILURE
+        }
+    }
+}
+
+fn run() -> Result<()> {
+    let arguments: Vec<String> = std::env::args().skip(1).collect();
+    let words: Vec<&str> = arguments.iter().map(String::as_str).collect();
+    let root = Path::new(env!("CARGO_MANIFEST_DIR"))
+        .ancestors()
+        .nth(2)
+        .expect("this crate lies two folders below the repository's root");
+    match words.as_slice() {
+        ["check"] => check::run(root, true),
+        ["check", "--without", "tests"] => check::run(root, false),
+        ["test"] => test::run(root),
+        ["tidy"] => tidy::run(root),
+        ["deny"] => deny::run(root),
+        [] | ["help" | "--help" | "-h"] => {
+            println!("{USAGE}");
+            Ok(())
+        }
+        other => bail!("unknown command '{}'; give one of these:\n{USAGE}", other.join(" ")),
+    }
+}

@@ -1,0 +1,44 @@
+//! Everything that must hold before a change is merged.
+
+use crate::shell::{cargo, run as execute};
+use crate::{deny, test, tidy};
+use anyhow::{Result, bail};
+use std::path::Path;
+use std::time::Instant;
+
+/// Runs every check, also after one failed, and fails if any did.
+pub(crate) fn run(root: &Path, with_tests: bool) -> Result<()> {
+    let mut failed = Vec::new();
+    let mut step = |name: &'static str, result: &dyn Fn() -> Result<()>| {
+        println!("== {name}");
+        let start = Instant::now();
+        match result() {
+            Ok(()) => println!("== {name}: good, {:.0} s", start.elapsed().as_secs_f64()),
+            Err(error) => {
+                println!("== {name}: failed: {error:#}");
+                failed.push(name);
+            }
+        }
+    };
+    step("format", &|| execute(&mut cargo(root, &["fmt", "--all", "--check"])));
+    step("tidy", &|| tidy::run(root));
+    step("clippy", &|| {
+        execute(&mut cargo(root, &["clippy", "--workspace", "--all-targets", "--", "-D", "warnings"]))
+    });
+    step("docs", &|| documentation(root));
+    step("deny", &|| deny::run(root));
+    if with_tests {
+        step("tests", &|| test::run(root));
+    }
+    if failed.is_empty() {
+        println!("== all checks good");
+        return Ok(());
+    }
+    bail!("failed: {}", failed.join(", "))
+}
+
+fn documentation(root: &Path) -> Result<()> {
+    // A unit in brackets, as in "radius [m]", is not a broken link.
+    let flags = "-D warnings -A rustdoc::broken_intra_doc_links";
+    execute(cargo(root, &["doc", "--workspace", "--no-deps"]).env("RUSTDOCFLAGS", flags))
+}

@@ -1,0 +1,18 @@
+//! Every test of the repository, with nothing to install by hand.
+
+use crate::shell::{cargo, run as execute, works};
+use anyhow::Result;
+use std::path::Path;
+
+/// Documentation examples, then unit tests, command tests and cases at smoke size.
+///
+/// The documentation examples come first so that the last line counts the tests proper.
+pub(crate) fn run(root: &Path) -> Result<()> {
+    execute(&mut cargo(root, &["test", "--workspace", "--doc"]))?;
+    if works(&mut cargo(root, &["nextest", "--version"])) {
+        execute(&mut cargo(root, &["nextest", "run", "--workspace", "--no-fail-fast"]))
+    } else {
+        println!("cargo-nextest is not installed: cargo test does the same, a little slower");
+        execute(&mut cargo(root, &["test", "--workspace", "--lib", "--bins", "--tests", "--no-fail-fast"]))
+    }
+}
