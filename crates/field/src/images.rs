@@ -168,7 +168,10 @@ impl AxisImages {
             let base = image.apply(x);
             let (first, last) = match self.period {
                 None => (0, 0),
-                #[expect(clippy::cast_possible_truncation, reason = "number of periods within a cut-off radius")]
+                #[expect(
+                    clippy::cast_possible_truncation,
+                    reason = "number of periods within a cut-off radius"
+                )]
                 Some(period) => {
                     (((low - base) / period).ceil() as i32, ((high - base) / period).floor() as i32)
                 }
@@ -249,8 +252,8 @@ impl ImageLattice {
 
     fn build(domain: &Domain, images: impl Fn(AxisKind, f64, f64) -> AxisImages) -> Self {
         let (min, max) = (domain.min(), domain.max());
-        let axes = Axis::ALL
-            .map(|axis| images(AxisKind::of(domain, axis), min[axis.index()], max[axis.index()]));
+        let axes =
+            Axis::ALL.map(|axis| images(AxisKind::of(domain, axis), min[axis.index()], max[axis.index()]));
         Self { axes }
     }
 
@@ -308,8 +311,9 @@ mod tests {
     /// Sum of the smooth 1-D test function over all signed images, seen from `at`.
     fn smooth_sum(kind: AxisKind, x: f64, at: f64) -> f64 {
         let mut sum = 0.0;
-        AxisImages::new(kind, 0.5, 2.0)
-            .for_each_between(x, -40.0, 40.0, |copy| sum += copy.sign * (-(copy.coordinate - at).powi(2)).exp());
+        AxisImages::new(kind, 0.5, 2.0).for_each_between(x, -40.0, 40.0, |copy| {
+            sum += copy.sign * (-(copy.coordinate - at).powi(2)).exp()
+        });
         sum
     }
 
@@ -346,7 +350,8 @@ mod tests {
         });
         assert_eq!(real, 1);
         // Box swept by a ball of radius 4, over the volume of one image (that of the domain).
-        let expected = (1.05 + 2.0 * 4.0 * (1.5 + 0.7 + 1.05)
+        let expected = (1.05
+            + 2.0 * 4.0 * (1.5 + 0.7 + 1.05)
             + std::f64::consts::PI * 16.0 * 3.2
             + 4.0 / 3.0 * std::f64::consts::PI * 64.0)
             / 1.05;

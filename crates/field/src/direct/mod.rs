@@ -1,0 +1,192 @@
+//! The truth: every pair and every image, periodic sums by Ewald.
+
+mod modes;
+mod pairs;
+mod splitting;
+
+use crate::image_cells::ImageCells;
+use crate::images::{BoundingBox, Geometry, ImageLattice};
+use crate::inputs::{check_finite, check_inside, check_net_charge, check_result};
+use crate::{FieldError, FieldValues, Wanted};
+use amberfield_core::Domain;
+use amberfield_core::constants::coulomb_constant;
+use modes::Modes;
+use nalgebra::Vector3;
+use splitting::Splitting;
+use std::f64::consts::{FRAC_2_SQRT_PI, PI};
+use std::time::Instant;
+
+/// The direct sum of a box: E and potential at every particle with all images, exact to about 1e-12.
+///
+/// All axes open: the plain sum over charges and mirror images. Closed axes: Ewald's sum, the smooth part in the
+/// real functions that obey each face, tinfoil for periodic boxes. Two closed axes and an open one: the same with
+/// the open axis' Green function cut beyond what the particles see. Where the faces leave the potential free its
+/// mean is 0, and a net charge, when allowed, is balanced by a uniform background. Fields of electrodes and of
+/// normal fields on faces are not in it, see [`crate::BoundaryField`].
+///
+/// In a slab whose closed axes have no conductor the potential of a charged layer far from everything grows with
+/// distance; it is taken as −2π σ|z| (σ charge per area), symmetric about the layer.
+#[derive(Debug)]
+pub struct Direct {
+    domain: Domain,
+    geometry: Geometry,
+    lattice: ImageLattice,
+    relative_permittivity: f64,
+    neutralising_background: bool,
+    cells: ImageCells<()>,
+    wrapped: Vec<Vector3<f64>>,
+    pairs_per_particle: f64,
+    seconds: Vec<(&'static str, f64)>,
+}
+
+/// Two parts of the sum over k_e at one particle, and the number of partners.
+struct Parts {
+    potential: f64,
+    near: Vector3<f64>,
+    far: Vector3<f64>,
+    partners: usize,
+}
+
+impl Direct {
+    /// The direct sum of a box filled with a medium of the given relative permittivity.
+    ///
+    /// # Errors
+    /// One closed axis between two open ones.
+    pub fn new(
+        domain: &Domain,
+        relative_permittivity: f64,
+        neutralising_background: bool,
+    ) -> Result<Self, FieldError> {
+        Ok(Self {
+            domain: domain.clone(),
+            geometry: Geometry::of(domain)?,
+            lattice: ImageLattice::new(domain),
+            relative_permittivity,
+            neutralising_background,
+            cells: ImageCells::default(),
+            wrapped: Vec::new(),
+            pairs_per_particle: 0.0,
+            seconds: Vec::new(),
+        })
+    }
+
+    /// E [V/m] (and what else is wanted) at every particle, positions in m, charges in C. Components: pairs are
+    /// near, modes far.
+    ///
+    /// # Errors
+    /// Values that are not finite, grains on or beyond a wall, two charges in one place, a net charge that no
+    /// face takes.
+    pub fn evaluate(
+        &mut self,
+        positions: &[Vector3<f64>],
+        charges: &[f64],
+        wanted: Wanted,
+        out: &mut FieldValues,
+    ) -> Result<(), FieldError> {
+        let parts = self.sum(positions, charges)?;
+        let k = coulomb_constant(self.relative_permittivity);
+        out.e.clear();
+        out.e.extend(parts.iter().map(|part| (part.near + part.far) * k));
+        if wanted.potential {
+            out.potential.clear();
+            out.potential.extend(parts.iter().map(|part| part.potential * k));
+        }
+        if wanted.components {
+            let components = &mut out.components;
+            for part in [
+                &mut components.near,
+                &mut components.middle,
+                &mut components.far,
+                &mut components.correction,
+            ] {
+                part.clear();
+                part.resize(positions.len(), Vector3::zeros());
+            }
+            for (index, part) in parts.iter().enumerate() {
+                components.near[index] = part.near * k;
+                components.far[index] = part.far * k;
+            }
+        }
+        let partners: usize = parts.iter().map(|part| part.partners).sum();
+        self.pairs_per_particle = partners as f64 / parts.len().max(1) as f64;
+        check_result(&out.e)
+    }
+
+    fn sum(&mut self, positions: &[Vector3<f64>], charges: &[f64]) -> Result<Vec<Parts>, FieldError> {
+        check_finite(positions, charges)?;
+        check_inside(&self.domain, positions)?;
+        let permittivity = 1.0 / (4.0 * PI * coulomb_constant(self.relative_permittivity));
+        check_net_charge(&self.domain, permittivity, self.neutralising_background, charges)?;
+        self.seconds.clear();
+        self.wrapped.clear();
+        self.wrapped.extend(positions.iter().map(|position| self.domain.wrap(*position)));
+        let Some(particles) = BoundingBox::around(&self.wrapped) else {
+            return Ok(Vec::new());
+        };
+        if self.geometry == Geometry::Open {
+            let start = Instant::now();
+            let sums = pairs::open(&self.lattice, &self.wrapped, charges);
+            self.seconds.push(("pairs", start.elapsed().as_secs_f64()));
+            return Ok(sums
+                .into_iter()
+                .map(|(potential, near, partners)| Parts { potential, near, far: Vector3::zeros(), partners })
+                .collect());
+        }
+        let splitting = Splitting::cheapest(&self.domain, self.geometry, &particles, positions.len());
+        Ok(self.ewald(charges, &splitting))
+    }
+
+    fn ewald(&mut self, charges: &[f64], splitting: &Splitting) -> Vec<Parts> {
+        let start = Instant::now();
+        self.cells.build(&self.lattice, &self.wrapped, charges, splitting.radius, |_, _| ());
+        let near = pairs::short_ranged(&self.cells, &self.wrapped, splitting.alpha, splitting.radius);
+        self.seconds.push(("pairs", start.elapsed().as_secs_f64()));
+        let start = Instant::now();
+        let modes = Modes::new(splitting);
+        let amplitudes = modes.amplitudes(&self.wrapped, charges);
+        let far = modes.gather(&amplitudes, &self.wrapped);
+        self.seconds.push(("modes", start.elapsed().as_secs_f64()));
+        tracing::debug!(
+            alpha_per_m = splitting.alpha,
+            radius_m = splitting.radius,
+            images = self.cells.len(),
+            modes = modes.len(),
+            "direct sum"
+        );
+        // The modes hold each charge's own cloud; and the pairs of a net charge have a mean that is not zero.
+        let own = splitting.alpha * FRAC_2_SQRT_PI;
+        let mean = if self.domain.needs_neutrality() {
+            charges.iter().sum::<f64>() * PI / (splitting.alpha.powi(2) * self.domain.volume())
+        } else {
+            0.0
+        };
+        near.into_iter()
+            .zip(far)
+            .zip(charges)
+            .map(|(((potential, near, partners), (far_potential, far)), charge)| Parts {
+                potential: potential + far_potential - own * charge - mean,
+                near,
+                far,
+                partners,
+            })
+            .collect()
+    }
+
+    /// Mean number of partners within the pairs' radius in the last evaluation, images included.
+    #[must_use]
+    pub fn pairs_per_particle(&self) -> f64 {
+        self.pairs_per_particle
+    }
+
+    /// Stages of the last evaluation and their time [s].
+    #[must_use]
+    pub fn seconds(&self) -> &[(&'static str, f64)] {
+        &self.seconds
+    }
+
+    /// Memory kept between evaluations [bytes].
+    #[must_use]
+    pub fn memory_bytes(&self) -> usize {
+        self.cells.memory_bytes() + self.wrapped.capacity() * size_of::<Vector3<f64>>()
+    }
+}
