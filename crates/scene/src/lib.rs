@@ -1,1 +1,22 @@
 //! Scene file to validated description; reads particles and STL, writes VTK, CSV and checkpoints.
+//!
+//! Every bad value is refused with its place, its key, itself and what to do: see [`SceneError`].
+
+mod error;
+mod generate;
+mod particles;
+mod scene;
+mod stl;
+mod tree;
+mod write;
+
+pub use error::SceneError;
+pub use scene::{
+    ChargeTransferSettings, ElectricFieldSettings, OutputSettings, Purpose, Scene, SolverLoss,
+    SolverSettings, parse_scene, read_scene,
+};
+pub use write::{
+    Cell, FieldArrays, FieldColumns, FieldReport, FieldReportSeconds, History, PvdSeries, read_checkpoint,
+    write_atomically, write_checkpoint, write_field_csv, write_json, write_particles_csv, write_text,
+    write_vtu,
+};

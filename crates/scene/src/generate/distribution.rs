@@ -1,0 +1,247 @@
+//! Distributions of radii and charges.
+
+use super::spec::GenerateContext;
+use crate::SceneError;
+use crate::particles::read_charges;
+use crate::scene::limits::{CHARGE, RADIUS, RADIUS_OR_POINT};
+use crate::tree::{Node, Range, Table, Value};
+use rand::RngExt;
+use rand::seq::SliceRandom;
+use rand_chacha::ChaCha8Rng;
+use rand_distr::{Distribution, LogNormal, Normal};
+
+/// Normal and log-normal radii are drawn again beyond so many standard deviations.
+const CLIP_DEVIATIONS: f64 = 3.0;
+/// Draws after which a clipped distribution counts as empty.
+const MOST_DRAWS: usize = 10_000;
+
+/// Distribution of radii [m].
+#[derive(Clone, Debug, PartialEq)]
+pub(super) enum Radii {
+    Constant(f64),
+    Uniform { min: f64, max: f64 },
+    Normal { mean: f64, std: f64, min: f64, max: f64 },
+    LogNormal { median: f64, sigma: f64, min: f64, max: f64 },
+    Sizes { radii: Vec<f64>, fractions: Vec<f64> },
+}
+
+/// Distribution of charges [C].
+#[derive(Clone, Debug, PartialEq)]
+pub(super) enum Charges {
+    Constant(f64),
+    Uniform { min: f64, max: f64 },
+    Normal { mean: f64, std: f64 },
+    Bipolar(f64),
+    List(Vec<f64>),
+}
+
+/// The one key of a distribution's table.
+fn single<'a>(table: &Table<'_>, node: &'a Node, forms: &str) -> Result<&'a str, SceneError> {
+    match &node.value {
+        Value::Table(entries) if entries.len() == 1 => Ok(&entries[0].0),
+        _ => Err(table.missing("constant", format!("give exactly one of {forms}"))),
+    }
+}
+
+/// Numbers `min` and `max` in order.
+fn min_max(table: &Table<'_>, range: Range) -> Result<(f64, f64), SceneError> {
+    let (min, max) = (table.need_number("min", range)?, table.need_number("max", range)?);
+    if max < min {
+        Err(table.bad("max", format!("below min = {min}; exchange them")))
+    } else {
+        Ok((min, max))
+    }
+}
+
+/// Reads `radius_m`.
+pub(super) fn read_radii(parent: &Table<'_>, allow_points: bool) -> Result<Radii, SceneError> {
+    let key = "radius_m";
+    let range = if allow_points { RADIUS_OR_POINT } else { RADIUS };
+    let Some(node) = parent.get(key) else {
+        return Err(parent.missing(key, "give a radius in metres or a distribution"));
+    };
+    if !matches!(node.value, Value::Table(_)) {
+        return parent.need_number(key, range).map(Radii::Constant);
+    }
+    let forms = ["constant", "uniform", "normal", "log_normal", "sizes"];
+    let table = Table::new(node, parent.key(key), &forms)?;
+    match single(&table, node, &forms.join(", "))? {
+        "constant" => table.need_number("constant", range).map(Radii::Constant),
+        "uniform" => {
+            let inner = table.table("uniform", &["min", "max"])?.expect("the key is there");
+            let (min, max) = min_max(&inner, range)?;
+            Ok(Radii::Uniform { min, max })
+        }
+        "normal" => {
+            let inner = table.table("normal", &["mean", "std", "min", "max"])?.expect("the key is there");
+            let mean = inner.need_number("mean", RADIUS)?;
+            let std = inner.need_number("std", RADIUS_OR_POINT)?;
+            let low = inner.number("min", RADIUS)?.unwrap_or((mean - CLIP_DEVIATIONS * std).max(mean / 10.0));
+            let high = inner.number("max", RADIUS)?.unwrap_or(mean + CLIP_DEVIATIONS * std);
+            clipped(&inner, mean, low, high)?;
+            Ok(Radii::Normal { mean, std, min: low, max: high })
+        }
+        "log_normal" => {
+            let inner =
+                table.table("log_normal", &["median", "sigma", "min", "max"])?.expect("the key is there");
+            let median = inner.need_number("median", RADIUS)?;
+            let sigma = inner.need_number("sigma", Range::closed(0.0, 5.0))?;
+            let spread = (CLIP_DEVIATIONS * sigma).exp();
+            let low = inner.number("min", RADIUS)?.unwrap_or(median / spread);
+            let high = inner.number("max", RADIUS)?.unwrap_or(median * spread);
+            clipped(&inner, median, low, high)?;
+            Ok(Radii::LogNormal { median, sigma, min: low, max: high })
+        }
+        _ => read_sizes(&table, range),
+    }
+}
+
+fn clipped(table: &Table<'_>, middle: f64, low: f64, high: f64) -> Result<(), SceneError> {
+    if low <= middle && middle <= high {
+        Ok(())
+    } else {
+        Err(table.bad("max", format!("the middle {middle} m must lie between min = {low} and max = {high}")))
+    }
+}
+
+fn read_sizes(table: &Table<'_>, range: Range) -> Result<Radii, SceneError> {
+    let inner = table.table("sizes", &["radius_m", "fraction"])?.expect("the key is there");
+    let radii = inner.numbers("radius_m", range)?;
+    let radii = inner.need(radii, "radius_m", "give the radii, as [1e-4, 2e-4]")?;
+    let fractions = inner.numbers("fraction", Range::positive(1e12))?;
+    let fractions =
+        inner.need(fractions, "fraction", "give the share of each radius by number, as [0.7, 0.3]")?;
+    if radii.is_empty() || radii.len() != fractions.len() {
+        let problem = format!("{} fractions for {} radii; give one for each", fractions.len(), radii.len());
+        return Err(inner.bad("fraction", problem));
+    }
+    Ok(Radii::Sizes { radii, fractions })
+}
+
+/// Reads `charge_C`.
+pub(super) fn read_charges_spec(
+    parent: &Table<'_>,
+    count: usize,
+    context: &mut GenerateContext<'_>,
+) -> Result<Option<Charges>, SceneError> {
+    let key = "charge_C";
+    let Some(node) = parent.get(key) else { return Ok(None) };
+    if !matches!(node.value, Value::Table(_)) {
+        return parent.need_number(key, CHARGE).map(|charge| Some(Charges::Constant(charge)));
+    }
+    let forms = ["constant", "uniform", "normal", "bipolar", "from_file"];
+    let table = Table::new(node, parent.key(key), &forms)?;
+    let charges = match single(&table, node, &forms.join(", "))? {
+        "constant" => Charges::Constant(table.need_number("constant", CHARGE)?),
+        "uniform" => {
+            let inner = table.table("uniform", &["min", "max"])?.expect("the key is there");
+            let (min, max) = min_max(&inner, CHARGE)?;
+            Charges::Uniform { min, max }
+        }
+        "normal" => {
+            let inner = table.table("normal", &["mean", "std"])?.expect("the key is there");
+            Charges::Normal {
+                mean: inner.need_number("mean", CHARGE)?,
+                std: inner.need_number("std", Range::closed(0.0, 1.0))?,
+            }
+        }
+        "bipolar" => match table.get("bipolar").map(|node| &node.value) {
+            Some(Value::Table(_)) => {
+                let inner = table.table("bipolar", &["magnitude"])?.expect("the key is there");
+                Charges::Bipolar(inner.need_number("magnitude", CHARGE)?)
+            }
+            _ => Charges::Bipolar(table.need_number("bipolar", CHARGE)?),
+        },
+        _ => {
+            let file = table.text("from_file")?;
+            let file = table.need(file, "from_file", "name a CSV with the column charge_C")?;
+            let bytes = context.source.read_file(&table, "from_file", file)?;
+            Charges::List(read_charges(file, &bytes, count)?)
+        }
+    };
+    Ok(Some(charges))
+}
+
+impl Radii {
+    /// Draws radii [m].
+    pub(super) fn draw(&self, count: usize, random: &mut ChaCha8Rng) -> Result<Vec<f64>, String> {
+        match self {
+            Self::Constant(radius) => Ok(vec![*radius; count]),
+            Self::Uniform { min, max } => Ok((0..count).map(|_| random.random_range(*min..=*max)).collect()),
+            Self::Normal { mean, std, min, max } => {
+                let normal = Normal::new(*mean, *std).map_err(|error| error.to_string())?;
+                draw_clipped(&normal, *min, *max, count, random)
+            }
+            Self::LogNormal { median, sigma, min, max } => {
+                let log_normal = LogNormal::new(median.ln(), *sigma).map_err(|error| error.to_string())?;
+                draw_clipped(&log_normal, *min, *max, count, random)
+            }
+            Self::Sizes { radii, fractions } => Ok(shares(radii, fractions, count, random)),
+        }
+    }
+}
+
+fn draw_clipped(
+    distribution: &impl Distribution<f64>,
+    min: f64,
+    max: f64,
+    count: usize,
+    random: &mut ChaCha8Rng,
+) -> Result<Vec<f64>, String> {
+    (0..count)
+        .map(|_| {
+            (0..MOST_DRAWS)
+                .map(|_| distribution.sample(random))
+                .find(|radius| *radius >= min && *radius <= max)
+                // A spread of zero gives the middle up to rounding; anything else has a share inside.
+                .or_else(|| (max - min <= 1e-9 * max).then_some(min))
+                .ok_or_else(|| {
+                    format!(
+                        "no radius of the distribution lies between min = {min} and max = {max}; widen them"
+                    )
+                })
+        })
+        .collect()
+}
+
+/// The exact shares by number (largest remainders), in random order.
+fn shares(radii: &[f64], fractions: &[f64], count: usize, random: &mut ChaCha8Rng) -> Vec<f64> {
+    let total: f64 = fractions.iter().sum();
+    let mut drawn = Vec::with_capacity(count);
+    let mut cumulated = 0.0;
+    for (radius, fraction) in radii.iter().zip(fractions) {
+        cumulated += fraction / total;
+        #[expect(
+            clippy::cast_possible_truncation,
+            clippy::cast_sign_loss,
+            clippy::cast_precision_loss,
+            reason = "counts are at most 1e8"
+        )]
+        let until = ((cumulated * count as f64).round() as usize).min(count);
+        drawn.resize(until.max(drawn.len()), *radius);
+    }
+    drawn.resize(count, radii[radii.len() - 1]);
+    drawn.shuffle(random);
+    drawn
+}
+
+impl Charges {
+    /// Draws charges [C].
+    pub(super) fn draw(&self, count: usize, random: &mut ChaCha8Rng) -> Result<Vec<f64>, String> {
+        Ok(match self {
+            Self::Constant(charge) => vec![*charge; count],
+            Self::Uniform { min, max } => (0..count).map(|_| random.random_range(*min..=*max)).collect(),
+            Self::Normal { mean, std } => {
+                let normal = Normal::new(*mean, *std).map_err(|error| error.to_string())?;
+                (0..count).map(|_| normal.sample(random)).collect()
+            }
+            Self::Bipolar(charge) => {
+                let mut drawn: Vec<f64> =
+                    (0..count).map(|k| if k % 2 == 0 { *charge } else { -charge }).collect();
+                drawn.shuffle(random);
+                drawn
+            }
+            Self::List(charges) => charges.clone(),
+        })
+    }
+}

@@ -1,0 +1,269 @@
+//! Where grains may be placed.
+
+use super::spec::GenerateContext;
+use crate::SceneError;
+use crate::scene::limits::{COORDINATE, LENGTH};
+use crate::tree::{Range, Table, Value};
+use amberfield_core::{Axis, Domain, Wall, WallShape};
+use nalgebra::Vector3;
+use rand::RngExt;
+use rand_chacha::ChaCha8Rng;
+use std::f64::consts::PI;
+
+/// Grains stay this share of their radius away from walls and faces, so that rounding makes no contact.
+const CLEARANCE: f64 = 1e-6;
+/// How far a region may stick out of the domain, over the domain's size: rounding.
+const SLACK: f64 = 1e-9;
+
+/// Shape of a region.
+#[derive(Clone, Debug)]
+enum Shape {
+    Box { min: Vector3<f64>, max: Vector3<f64> },
+    Cylinder { base: Vector3<f64>, axis: Vector3<f64>, radius: f64, length: f64 },
+}
+
+/// A region, the axes along which it wraps, and the planes that bound it.
+#[derive(Clone, Debug)]
+pub(super) struct Region {
+    shape: Shape,
+    /// Lower corner of what bounds the region [m].
+    pub(super) min: Vector3<f64>,
+    /// Upper corner [m].
+    pub(super) max: Vector3<f64>,
+    /// Axes along which the region is one period.
+    pub(super) periodic: [bool; 3],
+    planes: Vec<(Vector3<f64>, Vector3<f64>)>,
+}
+
+/// Reads `region`: `"box"` (the domain), `{ box = { min_m, max_m } }` or
+/// `{ cylinder = { base_m, axis, radius_m, length_m } }` (or `top_m` instead of axis and length).
+pub(super) fn read_region(parent: &Table<'_>, context: &GenerateContext<'_>) -> Result<Region, SceneError> {
+    let domain = context.domain;
+    let whole = || Shape::Box { min: domain.min(), max: domain.max() };
+    let forms = "\"box\" (the domain), { box = { min_m, max_m } } or { cylinder = { base_m, axis, radius_m, length_m } }";
+    let shape = match parent.get("region").map(|node| (&node.value, node)) {
+        None => whole(),
+        Some((Value::Text(word), _)) if word == "box" => whole(),
+        Some((Value::Table(_), node)) => {
+            let table = Table::new(node, parent.key("region"), &["box", "cylinder"])?;
+            let block = table.table("box", &["min_m", "max_m"])?;
+            let cylinder = table.table("cylinder", &["base_m", "axis", "radius_m", "length_m", "top_m"])?;
+            match (block, cylinder) {
+                (Some(block), None) => read_box(&block)?,
+                (None, Some(cylinder)) => read_cylinder(&cylinder)?,
+                _ => return Err(parent.bad("region", format!("give {forms}"))),
+            }
+        }
+        Some(_) => return Err(parent.bad("region", format!("give {forms}"))),
+    };
+    Region::new(shape, domain, context.walls).map_err(|problem| parent.bad("region", problem))
+}
+
+fn read_box(table: &Table<'_>) -> Result<Shape, SceneError> {
+    let (min, max) = (table.need_vector("min_m", COORDINATE)?, table.need_vector("max_m", COORDINATE)?);
+    if (0..3).all(|axis| max[axis] > min[axis]) {
+        Ok(Shape::Box { min, max })
+    } else {
+        Err(table.bad("max_m", "not above min_m along every axis; exchange the corners"))
+    }
+}
+
+fn read_cylinder(table: &Table<'_>) -> Result<Shape, SceneError> {
+    let base = table.need_vector("base_m", COORDINATE)?;
+    let radius = table.need_number("radius_m", LENGTH)?;
+    let along = match table.vector("top_m", COORDINATE)? {
+        Some(_) if table.has("axis") || table.has("length_m") => {
+            return Err(
+                table.bad("top_m", "axis or length_m is given too; give either top_m or axis and length_m")
+            );
+        }
+        Some(top) => top - base,
+        None => {
+            let axis = match table.get("axis").map(|node| &node.value) {
+                None | Some(Value::Text(_)) => {
+                    let words = [("x", Vector3::x()), ("y", Vector3::y()), ("z", Vector3::z())];
+                    table.word("axis", &words)?.unwrap_or_else(Vector3::z)
+                }
+                Some(_) => table.need_vector("axis", Range::closed(-1e100, 1e100))?,
+            };
+            let length = table.need_number("length_m", LENGTH)?;
+            if axis.norm() < 1e-100 {
+                return Err(table.bad("axis", "the axis has no direction; give \"z\" or a vector"));
+            }
+            axis.normalize() * length
+        }
+    };
+    let length = along.norm();
+    if length > 0.0 {
+        Ok(Shape::Cylinder { base, axis: along / length, radius, length })
+    } else {
+        Err(table.bad("top_m", "the cylinder has no length; move it away from base_m"))
+    }
+}
+
+impl Region {
+    fn new(shape: Shape, domain: &Domain, walls: &[Wall]) -> Result<Self, String> {
+        let (min, max) = shape.bounds();
+        let mut periodic = [false; 3];
+        for axis in Axis::ALL {
+            let k = axis.index();
+            let slack = SLACK * domain.extent()[k];
+            if min[k] < domain.min()[k] - slack || max[k] > domain.max()[k] + slack {
+                return Err(format!(
+                    "reaches from {} to {} m along {axis}, beyond the domain from {} to {} m; shrink it",
+                    min[k],
+                    max[k],
+                    domain.min()[k],
+                    domain.max()[k]
+                ));
+            }
+            let whole = min[k] <= domain.min()[k] + slack && max[k] >= domain.max()[k] - slack;
+            periodic[k] = domain.is_periodic(axis) && whole && shape.is_prism_along(k);
+        }
+        let planes = walls
+            .iter()
+            .filter_map(|wall| match wall.shape {
+                WallShape::Plane { point, normal } => Some((point, normal)),
+                WallShape::Mesh(_) => None,
+            })
+            .collect();
+        Ok(Self { shape, min, max, periodic, planes })
+    }
+
+    /// Volume [m³], walls not subtracted.
+    pub(super) fn volume(&self) -> f64 {
+        match &self.shape {
+            Shape::Box { min, max } => (max - min).product(),
+            Shape::Cylinder { radius, length, .. } => PI * radius * radius * length,
+        }
+    }
+
+    /// A random point that a grain's centre may take, if walls allow it there; `None` where they do not or the
+    /// grain is too large.
+    pub(super) fn draw(&self, radius: f64, random: &mut ChaCha8Rng) -> Option<Vector3<f64>> {
+        let mut uniform =
+            |low: f64, high: f64| if high > low { low + (high - low) * random.random::<f64>() } else { low };
+        let inset = radius * (1.0 + CLEARANCE);
+        let mut point = Vector3::zeros();
+        match &self.shape {
+            Shape::Box { min, max } => {
+                for axis in 0..3 {
+                    let inset = if self.periodic[axis] { 0.0 } else { inset };
+                    point[axis] = uniform(min[axis] + inset, max[axis] - inset);
+                }
+            }
+            Shape::Cylinder { base, axis, radius: outer, length } => {
+                let ends = if self.wraps_along(axis) { 0.0 } else { inset };
+                let along = uniform(ends, length - ends);
+                let (first, second) = perpendicular(axis);
+                let (distance, angle) =
+                    ((outer - inset).max(0.0) * uniform(0.0, 1.0).sqrt(), uniform(0.0, 2.0 * PI));
+                point = base + axis * along + (first * angle.cos() + second * angle.sin()) * distance;
+            }
+        }
+        self.allows(&point, radius).then_some(point)
+    }
+
+    /// Whether a grain may have its centre there.
+    pub(super) fn allows(&self, point: &Vector3<f64>, radius: f64) -> bool {
+        (self.nearest_allowed(*point, radius, 0.5 * CLEARANCE) - point).amax() <= 0.4 * CLEARANCE * radius
+    }
+
+    /// The point moved to where a grain touches neither faces nor walls.
+    pub(super) fn confine(&self, point: Vector3<f64>, radius: f64) -> Vector3<f64> {
+        self.nearest_allowed(point, radius, CLEARANCE)
+    }
+
+    fn nearest_allowed(&self, mut point: Vector3<f64>, radius: f64, clearance: f64) -> Vector3<f64> {
+        let inset = radius * (1.0 + clearance);
+        for (on_plane, normal) in &self.planes {
+            let distance = (point - on_plane).dot(normal);
+            if distance < inset {
+                point += normal * (inset - distance);
+            }
+        }
+        match &self.shape {
+            Shape::Box { min, max } => {
+                for axis in 0..3 {
+                    if !self.periodic[axis] {
+                        point[axis] = point[axis].min(max[axis] - inset).max(min[axis] + inset);
+                    }
+                }
+            }
+            Shape::Cylinder { base, axis, radius: outer, length } => {
+                let along = (point - base).dot(axis);
+                let across = point - base - axis * along;
+                let along = if self.wraps_along(axis) { along } else { along.min(length - inset).max(inset) };
+                let limit = (outer - inset).max(0.0);
+                let distance = across.norm();
+                let across = if distance > limit { across * (limit / distance) } else { across };
+                point = base + axis * along + across;
+            }
+        }
+        self.wrap(point)
+    }
+
+    fn wraps_along(&self, axis: &Vector3<f64>) -> bool {
+        self.periodic[axis.iamax()]
+    }
+
+    /// The point moved into one period.
+    pub(super) fn wrap(&self, mut point: Vector3<f64>) -> Vector3<f64> {
+        for axis in 0..3 {
+            if self.periodic[axis] {
+                let length = self.max[axis] - self.min[axis];
+                point[axis] -= length * ((point[axis] - self.min[axis]) / length).floor();
+                point[axis] = point[axis].clamp(self.min[axis], self.max[axis]);
+            }
+        }
+        point
+    }
+
+    /// Shortest vector between periodic copies.
+    pub(super) fn shortest(&self, mut difference: Vector3<f64>) -> Vector3<f64> {
+        for axis in 0..3 {
+            if self.periodic[axis] {
+                let length = self.max[axis] - self.min[axis];
+                difference[axis] -= length * (difference[axis] / length).round();
+            }
+        }
+        difference
+    }
+
+    /// Largest radius of a grain that fits at all [m].
+    pub(super) fn largest_radius(&self) -> f64 {
+        match &self.shape {
+            Shape::Box { min, max } => 0.5 * (max - min).min(),
+            Shape::Cylinder { radius, length, .. } => radius.min(0.5 * length),
+        }
+    }
+}
+
+impl Shape {
+    fn bounds(&self) -> (Vector3<f64>, Vector3<f64>) {
+        match self {
+            Self::Box { min, max } => (*min, *max),
+            Self::Cylinder { base, axis, radius, length } => {
+                let top = base + axis * *length;
+                // A disc reaches R √(1 − a²) along each coordinate.
+                let disc = axis.map(|a| radius * (1.0 - a * a).max(0.0).sqrt());
+                (base.inf(&top) - disc, base.sup(&top) + disc)
+            }
+        }
+    }
+
+    /// Whether shifting the shape by its length along an axis joins it to itself.
+    fn is_prism_along(&self, k: usize) -> bool {
+        match self {
+            Self::Box { .. } => true,
+            Self::Cylinder { axis, .. } => axis[k].abs() == 1.0,
+        }
+    }
+}
+
+fn perpendicular(axis: &Vector3<f64>) -> (Vector3<f64>, Vector3<f64>) {
+    let mut helper = Vector3::zeros();
+    helper[axis.iamin()] = 1.0;
+    let first = axis.cross(&helper).normalize();
+    (first, axis.cross(&first))
+}

@@ -1,0 +1,91 @@
+//! `particles.generate`.
+
+use super::distribution::{read_charges_spec, read_radii};
+use super::fill::fill;
+use super::region::read_region;
+use crate::SceneError;
+use crate::particles::ReadParticles;
+use crate::scene::limits::{GRAINS, SPEED};
+use crate::scene::materials::Materials;
+use crate::scene::source::Source;
+use crate::tree::{Node, Table};
+use amberfield_core::{Domain, Grain, GroupId, Particles, Wall};
+use nalgebra::Vector3;
+use rand::SeedableRng;
+use rand_chacha::ChaCha8Rng;
+
+/// Keys of a generator.
+const KEYS: [&str; 8] =
+    ["material", "count", "radius_m", "region", "seed", "charge_C", "velocity_m_s", "group"];
+/// Streams of the one seed, so that another charge distribution leaves the places as they are.
+const PLACES: u64 = 0;
+/// Stream of radii.
+const RADII: u64 = 1;
+/// Stream of charges.
+const CHARGES: u64 = 2;
+
+/// What a generator works in.
+pub(crate) struct GenerateContext<'a> {
+    /// The box.
+    pub(crate) domain: &'a Domain,
+    /// Materials by name.
+    pub(crate) materials: &'a Materials,
+    /// Walls; grains keep clear of the planes among them.
+    pub(crate) walls: &'a [Wall],
+    /// For files that the generator names.
+    pub(crate) source: &'a mut Source,
+}
+
+/// Makes the grains that `particles.generate` describes; ids are 1 to `count`.
+///
+/// # Errors
+/// Bad keys, fills that cannot be reached.
+pub(crate) fn generate(
+    node: &Node,
+    path: &str,
+    context: &mut GenerateContext<'_>,
+) -> Result<ReadParticles, SceneError> {
+    let table = Table::new(node, path, &KEYS)?;
+    let material = context.materials.named_by(&table, "material")?;
+    let count = table.integer("count", 1, GRAINS)?;
+    let count = table.need(count, "count", "give the number of grains")?;
+    let count = usize::try_from(count).expect("the range is positive");
+    let seed = table.integer("seed", 0, i64::MAX)?.unwrap_or(0).unsigned_abs();
+    let radii = read_radii(&table, context.materials.ignored)?;
+    let charges = read_charges_spec(&table, count, context)?;
+    let region = read_region(&table, context)?;
+    let velocity = table.vector("velocity_m_s", SPEED)?.unwrap_or_else(Vector3::zeros);
+    let group = table.text("group")?;
+
+    let stream = |stream: u64| {
+        let mut random = ChaCha8Rng::seed_from_u64(seed);
+        random.set_stream(stream);
+        random
+    };
+    let refused = |problem: String| SceneError::Fill { place: table.place().to_string(), problem };
+    let radii = radii.draw(count, &mut stream(RADII)).map_err(refused)?;
+    let charge = match &charges {
+        Some(charges) => charges.draw(count, &mut stream(CHARGES)).map_err(refused)?,
+        None => vec![0.0; count],
+    };
+    let centres = fill(&region, &radii, &mut stream(PLACES)).map_err(refused)?;
+
+    let mut groups = vec!["all".to_owned()];
+    groups.extend(group.filter(|name| *name != "all").map(ToOwned::to_owned));
+    let group = GroupId(if groups.len() == 2 { 1 } else { 0 });
+    let density = context.materials.density(material);
+    let particles: Particles = (0..count)
+        .map(|index| Grain {
+            id: index as u64 + 1,
+            position: centres[index],
+            velocity,
+            angular_velocity: Vector3::zeros(),
+            radius: radii[index],
+            density,
+            charge: charge[index],
+            material,
+            group,
+        })
+        .collect();
+    Ok(ReadParticles { particles, groups, has_charge: charges.is_some() })
+}

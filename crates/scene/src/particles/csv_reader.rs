@@ -1,0 +1,247 @@
+//! Particles CSV.
+
+use super::columns::{Columns, csv_error, line};
+use crate::SceneError;
+use crate::scene::limits::{CHARGE, COORDINATE, DENSITY, RADIUS, RADIUS_OR_POINT, SPEED};
+use crate::scene::materials::Materials;
+use crate::scene::source::decode;
+use amberfield_core::{Domain, Grain, GroupId, MaterialId, Particles};
+use csv::StringRecord;
+use nalgebra::Vector3;
+use std::collections::HashMap;
+
+/// Columns of a particles CSV.
+const COLUMNS: [&str; 15] = [
+    "id",
+    "x_m",
+    "y_m",
+    "z_m",
+    "radius_m",
+    "charge_C",
+    "vx_m_s",
+    "vy_m_s",
+    "vz_m_s",
+    "wx_rad_s",
+    "wy_rad_s",
+    "wz_rad_s",
+    "density_kg_m3",
+    "material",
+    "group",
+];
+/// Columns that must be there.
+const REQUIRED: [&str; 5] = ["id", "x_m", "y_m", "z_m", "radius_m"];
+
+/// What a particles file is read against.
+pub(crate) struct CsvContext<'a> {
+    /// The box that grains must lie in.
+    pub(crate) domain: Option<&'a Domain>,
+    /// Materials by name.
+    pub(crate) materials: &'a Materials,
+    /// Whether grains may be points.
+    pub(crate) allow_points: bool,
+}
+
+/// Grains of a file.
+#[derive(Debug)]
+pub(crate) struct ReadParticles {
+    pub(crate) particles: Particles,
+    pub(crate) groups: Vec<String>,
+    pub(crate) has_charge: bool,
+}
+
+/// Indices of the columns that are there.
+struct Layout {
+    id: usize,
+    position: [usize; 3],
+    radius: usize,
+    charge: Option<usize>,
+    velocity: [Option<usize>; 3],
+    spin: [Option<usize>; 3],
+    density: Option<usize>,
+    material: Option<usize>,
+    group: Option<usize>,
+}
+
+impl Layout {
+    fn new(columns: &Columns<'_>) -> Self {
+        let required = |name: &str| columns.find(name).expect("required columns were checked");
+        Self {
+            id: required("id"),
+            position: ["x_m", "y_m", "z_m"].map(required),
+            radius: required("radius_m"),
+            charge: columns.find("charge_C"),
+            velocity: ["vx_m_s", "vy_m_s", "vz_m_s"].map(|name| columns.find(name)),
+            spin: ["wx_rad_s", "wy_rad_s", "wz_rad_s"].map(|name| columns.find(name)),
+            density: columns.find("density_kg_m3"),
+            material: columns.find("material"),
+            group: columns.find("group"),
+        }
+    }
+}
+
+fn csv_reader(bytes: &[u8]) -> csv::Reader<&[u8]> {
+    let bytes = bytes.strip_prefix(b"\xef\xbb\xbf").unwrap_or(bytes);
+    csv::ReaderBuilder::new().flexible(false).from_reader(bytes)
+}
+
+/// Reads a particles CSV.
+///
+/// # Errors
+/// Bad header, bad values, duplicate ids, grains outside the domain: with line, column and value.
+pub(crate) fn read_particles(
+    file: &str,
+    bytes: &[u8],
+    context: &CsvContext<'_>,
+) -> Result<ReadParticles, SceneError> {
+    decode(file, bytes)?;
+    let mut reader = csv_reader(bytes);
+    let header = reader.headers().map_err(|error| csv_error(file, &error))?;
+    let columns = Columns::new(file, header, &COLUMNS, &REQUIRED)?;
+    let layout = Layout::new(&columns);
+    let mut read = ReadParticles {
+        particles: Particles::default(),
+        groups: vec!["all".to_owned()],
+        has_charge: layout.charge.is_some(),
+    };
+    let mut lines_by_id: HashMap<u64, u64> = HashMap::new();
+    for record in reader.records() {
+        let record = record.map_err(|error| csv_error(file, &error))?;
+        let grain = read_grain(&columns, &layout, &record, context, &mut read.groups)?;
+        if let Some(before) = lines_by_id.insert(grain.id, line(&record)) {
+            return Err(columns.bad(
+                &record,
+                layout.id,
+                &format!("line {before} has this id already; give each grain its own"),
+            ));
+        }
+        read.particles.push(grain);
+    }
+    if read.particles.is_empty() {
+        return Err(SceneError::file(file, "a header row but no grains; add rows"));
+    }
+    Ok(read)
+}
+
+fn read_grain(
+    columns: &Columns<'_>,
+    layout: &Layout,
+    record: &StringRecord,
+    context: &CsvContext<'_>,
+    groups: &mut Vec<String>,
+) -> Result<Grain, SceneError> {
+    let id = record.get(layout.id).unwrap_or_default().trim();
+    let id =
+        id.parse().map_err(|_| columns.bad(record, layout.id, "not a whole number from 0 to 2^64 - 1"))?;
+    let mut position = Vector3::zeros();
+    for (axis, column) in layout.position.into_iter().enumerate() {
+        position[axis] = columns.number(record, column, COORDINATE)?;
+        if let Some(domain) = context.domain {
+            let (low, high) = (domain.min()[axis], domain.max()[axis]);
+            if position[axis] < low || position[axis] > high {
+                let problem =
+                    format!("outside the domain, {low} to {high} m; move the grain or enlarge the domain");
+                return Err(columns.bad(record, column, &problem));
+            }
+        }
+    }
+    let optional = |column: Option<usize>, range| match column {
+        Some(column) => columns.number(record, column, range),
+        None => Ok(0.0),
+    };
+    let vector = |three: [Option<usize>; 3]| -> Result<Vector3<f64>, SceneError> {
+        Ok(Vector3::new(optional(three[0], SPEED)?, optional(three[1], SPEED)?, optional(three[2], SPEED)?))
+    };
+    let material = read_material(columns, layout, record, context.materials)?;
+    let density = match layout.density {
+        Some(column) => columns.number(record, column, DENSITY)?,
+        None => context.materials.density(material),
+    };
+    let radius_range = if context.allow_points { RADIUS_OR_POINT } else { RADIUS };
+    Ok(Grain {
+        id,
+        position,
+        velocity: vector(layout.velocity)?,
+        angular_velocity: vector(layout.spin)?,
+        radius: columns.number(record, layout.radius, radius_range)?,
+        density,
+        charge: optional(layout.charge, CHARGE)?,
+        material,
+        group: read_group(columns, layout, record, groups)?,
+    })
+}
+
+fn read_material(
+    columns: &Columns<'_>,
+    layout: &Layout,
+    record: &StringRecord,
+    materials: &Materials,
+) -> Result<MaterialId, SceneError> {
+    match layout.material {
+        Some(column) => {
+            let name = record.get(column).unwrap_or_default().trim();
+            materials.find(name).map_err(|problem| columns.bad(record, column, &problem))
+        }
+        None => materials.default_id().ok_or_else(|| {
+            let count = materials.list.len();
+            columns.bad(
+                record,
+                layout.id,
+                &format!("the scene has {count} materials and the file has no column material; add it"),
+            )
+        }),
+    }
+}
+
+fn read_group(
+    columns: &Columns<'_>,
+    layout: &Layout,
+    record: &StringRecord,
+    groups: &mut Vec<String>,
+) -> Result<GroupId, SceneError> {
+    let Some(column) = layout.group else { return Ok(GroupId(0)) };
+    let name = record.get(column).unwrap_or_default().trim();
+    if name.is_empty() {
+        return Ok(GroupId(0));
+    }
+    let index = match groups.iter().position(|group| group == name) {
+        Some(index) => index,
+        None => {
+            groups.push(name.to_owned());
+            groups.len() - 1
+        }
+    };
+    u16::try_from(index)
+        .map(GroupId)
+        .map_err(|_| columns.bad(record, column, "more than 65536 groups; merge some"))
+}
+
+/// Reads the column `charge_C` [C] of a file for a generator, one row per grain.
+///
+/// # Errors
+/// As [`read_particles`]; another number of rows than grains.
+pub(crate) fn read_charges(file: &str, bytes: &[u8], count: usize) -> Result<Vec<f64>, SceneError> {
+    decode(file, bytes)?;
+    let mut reader = csv_reader(bytes);
+    let header = reader.headers().map_err(|error| csv_error(file, &error))?;
+    let columns = Columns::new(file, header, &COLUMNS, &["charge_C"])?;
+    let column = columns.find("charge_C").expect("required columns were checked");
+    let mut charges = Vec::new();
+    for record in reader.records() {
+        let record = record.map_err(|error| csv_error(file, &error))?;
+        charges.push(columns.number(&record, column, CHARGE)?);
+        if charges.len() > count {
+            return Err(SceneError::data(
+                file,
+                line(&record),
+                format!("more rows than the {count} grains of the generator; remove some"),
+            ));
+        }
+    }
+    if charges.len() < count {
+        return Err(SceneError::file(
+            file,
+            format!("{} rows for {count} grains of the generator; give one charge per grain", charges.len()),
+        ));
+    }
+    Ok(charges)
+}

@@ -1,0 +1,99 @@
+//! `[domain]`.
+
+use super::limits::{COORDINATE, ELECTRIC};
+use crate::SceneError;
+use crate::tree::{Table, Value};
+use amberfield_core::{Axis, Boundary, Domain, DomainError, Side};
+
+/// Keys of `[domain]`.
+const KEYS: [&str; 3] = ["min_m", "max_m", "boundary"];
+/// Keys of `[domain.boundary]`.
+const FACES: [&str; 9] = ["x", "x_min", "x_max", "y", "y_min", "y_max", "z", "z_min", "z_max"];
+/// What a face may be.
+const FACE_FORMS: &str = "one of \"grounded\", \"insulating\", \"periodic\", \"open\", { potential_V = 1000.0 }, { normal_field_V_m = 0.0 }";
+
+/// Reads `[domain]`.
+pub(super) fn read_domain(document: &Table<'_>) -> Result<Option<Domain>, SceneError> {
+    let Some(table) = document.table("domain", &KEYS)? else { return Ok(None) };
+    let min = table.need_vector("min_m", COORDINATE)?;
+    let max = table.need_vector("max_m", COORDINATE)?;
+    let boundary = table.table("boundary", &FACES)?;
+    let boundary =
+        table.need(boundary, "boundary", "add [domain.boundary] with x, y and z (or x_min, x_max, …)")?;
+    let mut faces = [[Boundary::Open; 2]; 3];
+    for axis in Axis::ALL {
+        faces[axis.index()] = read_axis(&boundary, axis)?;
+    }
+    Domain::new(min, max, faces).map(Some).map_err(|error| match error {
+        DomainError::Extent { .. } => table.bad("max_m", error.to_string()),
+        DomainError::HalfPeriodic(axis) => half_periodic(&boundary, axis, &error),
+        _ => table.bad("boundary", error.to_string()),
+    })
+}
+
+fn half_periodic(boundary: &Table<'_>, axis: Axis, error: &DomainError) -> SceneError {
+    let key = [Side::Min, Side::Max]
+        .map(|side| face_key(axis, side))
+        .into_iter()
+        .find(|key| boundary.get(key).is_some_and(|node| node.value == Value::Text("periodic".into())))
+        .unwrap_or_else(|| face_key(axis, Side::Min));
+    boundary.bad(&key, error.to_string())
+}
+
+fn face_key(axis: Axis, side: Side) -> String {
+    format!("{axis}_{}", if side == Side::Min { "min" } else { "max" })
+}
+
+fn read_axis(boundary: &Table<'_>, axis: Axis) -> Result<[Boundary; 2], SceneError> {
+    let both = axis.to_string();
+    let (low, high) = (face_key(axis, Side::Min), face_key(axis, Side::Max));
+    if boundary.has(&both) {
+        for face in [&low, &high] {
+            if boundary.has(face) {
+                return Err(boundary.bad(
+                    face,
+                    format!("{} gives both faces already; remove one of the two", boundary.key(&both)),
+                ));
+            }
+        }
+        let face = read_face(boundary, &both)?;
+        return Ok([face, face]);
+    }
+    let mut faces = [Boundary::Open; 2];
+    for (face, key) in faces.iter_mut().zip([&low, &high]) {
+        if !boundary.has(key) {
+            return Err(boundary.missing(key, format!("give {key} (or {both} for both faces), {FACE_FORMS}")));
+        }
+        *face = read_face(boundary, key)?;
+    }
+    Ok(faces)
+}
+
+fn read_face(boundary: &Table<'_>, key: &str) -> Result<Boundary, SceneError> {
+    let Some(node) = boundary.get(key) else {
+        return Err(boundary.missing(key, format!("give {FACE_FORMS}")));
+    };
+    match &node.value {
+        Value::Text(_) => {
+            let words = [
+                ("grounded", Boundary::Grounded),
+                ("insulating", Boundary::Insulating { normal_field_v_m: 0.0 }),
+                ("periodic", Boundary::Periodic),
+                ("open", Boundary::Open),
+            ];
+            let face = boundary.word(key, &words)?;
+            boundary.need(face, key, FACE_FORMS)
+        }
+        Value::Table(_) => {
+            let table = Table::new(node, boundary.key(key), &["potential_V", "normal_field_V_m"])?;
+            let potential = table.number("potential_V", ELECTRIC)?;
+            let normal = table.number("normal_field_V_m", ELECTRIC)?;
+            match (potential, normal) {
+                (Some(volts), None) => Ok(Boundary::Potential(volts)),
+                (None, Some(normal_field_v_m)) => Ok(Boundary::Insulating { normal_field_v_m }),
+                _ => Err(boundary.bad(key, format!("give exactly one key; {FACE_FORMS}"))),
+            }
+        }
+        _ => Err(boundary.bad(key, format!("expected {FACE_FORMS}"))),
+    }
+}

@@ -1,0 +1,32 @@
+//! Ranges beyond which a value is a slip of the pen (a wrong unit, a lost exponent), not a scene.
+
+use crate::tree::Range;
+
+/// Coordinates [m].
+pub(crate) const COORDINATE: Range = Range::closed(-1e6, 1e6);
+/// Lengths [m].
+pub(crate) const LENGTH: Range = Range::positive(1e6);
+/// Radii of grains [m].
+pub(crate) const RADIUS: Range = Range::positive(1e3);
+/// Radii of grains that need no size [m].
+pub(crate) const RADIUS_OR_POINT: Range = Range::closed(0.0, 1e3);
+/// Densities [kg/m³].
+pub(crate) const DENSITY: Range = Range::positive(1e6);
+/// Young's moduli [Pa].
+pub(crate) const YOUNG: Range = Range::positive(1e15);
+/// Charges [C].
+pub(crate) const CHARGE: Range = Range::closed(-1.0, 1.0);
+/// Velocities [m/s] and angular velocities [rad/s] of grains.
+pub(crate) const SPEED: Range = Range::closed(-1e9, 1e9);
+/// Times [s].
+pub(crate) const TIME: Range = Range::positive(1e9);
+/// Potentials [V] and fields [V/m].
+pub(crate) const ELECTRIC: Range = Range::closed(-1e15, 1e15);
+/// Fractions.
+pub(crate) const FRACTION: Range = Range::closed(0.0, 1.0);
+/// Friction coefficients.
+pub(crate) const FRICTION: Range = Range::closed(0.0, 1e3);
+/// Tolerances.
+pub(crate) const TOLERANCE: Range = Range::closed(1e-12, 1.0);
+/// Most grains of a generator.
+pub(crate) const GRAINS: i64 = 100_000_000;

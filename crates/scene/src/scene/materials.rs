@@ -1,0 +1,106 @@
+//! `[[materials]]`.
+
+use super::limits::{DENSITY, FRICTION, YOUNG};
+use crate::SceneError;
+use crate::error::Problems;
+use crate::tree::{Range, Table, nearest};
+use amberfield_core::{Material, MaterialId};
+
+/// Keys of a material.
+const KEYS: [&str; 9] = [
+    "name",
+    "density_kg_m3",
+    "young_Pa",
+    "young_real_Pa",
+    "poisson",
+    "restitution",
+    "friction",
+    "rolling_friction",
+    "work_function_eV",
+];
+
+/// Reads `[[materials]]`.
+pub(super) fn read_materials(document: &Table<'_>) -> Result<Vec<Material>, SceneError> {
+    let mut materials: Vec<Material> = Vec::new();
+    let mut problems = Problems::default();
+    let items = document.items("materials")?;
+    if items.is_some_and(<[_]>::is_empty) {
+        return Err(document.bad("materials", "the list is empty; add a material or remove the key"));
+    }
+    for (index, node) in items.unwrap_or_default().iter().enumerate() {
+        if index > usize::from(u16::MAX) {
+            return Err(document.bad("materials", "more than 65536 materials; merge some"));
+        }
+        let read = Table::new(node, format!("materials[{index}]"), &KEYS).and_then(|table| {
+            let material = read_material(&table)?;
+            if materials.iter().any(|other| other.name == material.name) {
+                return Err(table.bad("name", "another material has this name; rename one"));
+            }
+            Ok(material)
+        });
+        materials.extend(problems.keep(read));
+    }
+    problems.finish().map(|()| materials)
+}
+
+fn read_material(table: &Table<'_>) -> Result<Material, SceneError> {
+    let name = table.text("name")?;
+    Ok(Material {
+        name: table.need(name, "name", "give the material a name")?.to_owned(),
+        density_kg_m3: table.need_number("density_kg_m3", DENSITY)?,
+        young_pa: table.need_number("young_Pa", YOUNG)?,
+        young_real_pa: table.number("young_real_Pa", YOUNG)?,
+        // Isotropic solids allow −1 to 1/2; the contact laws divide by 1 − ν², 1 + ν and 2 − ν.
+        poisson: table.need_number("poisson", Range::closed(-0.99, 0.5))?,
+        restitution: table.need_number("restitution", Range::positive(1.0))?,
+        friction: table.need_number("friction", FRICTION)?,
+        rolling_friction: table.number("rolling_friction", FRICTION)?.unwrap_or(0.0),
+        work_function_ev: table.number("work_function_eV", Range::closed(0.0, 100.0))?,
+    })
+}
+
+/// The scene's materials by name.
+#[derive(Debug)]
+pub(crate) struct Materials {
+    /// In the order of the scene.
+    pub(crate) list: Vec<Material>,
+    /// Whether names mean nothing, because no motion is asked for and no material is given.
+    pub(crate) ignored: bool,
+}
+
+impl Materials {
+    /// The id of a name, or what to say about a name that no material has.
+    pub(crate) fn find(&self, name: &str) -> Result<MaterialId, String> {
+        if self.ignored {
+            return Ok(MaterialId(0));
+        }
+        if let Some(index) = self.list.iter().position(|material| material.name == name) {
+            return Ok(MaterialId(u16::try_from(index).expect("materials are at most 65536")));
+        }
+        let names: Vec<&str> = self.list.iter().map(|material| material.name.as_str()).collect();
+        Err(nearest(name, &names).map_or_else(
+            || "no material of this name; add it under [[materials]]".to_owned(),
+            |near| format!("no material of this name; the nearest is \"{near}\""),
+        ))
+    }
+
+    /// The material of what names none: the only one there is.
+    pub(crate) fn default_id(&self) -> Option<MaterialId> {
+        (self.ignored || self.list.len() == 1).then_some(MaterialId(0))
+    }
+
+    /// Density [kg/m³] of a material; 0 where there are no materials and no motion.
+    pub(crate) fn density(&self, id: MaterialId) -> f64 {
+        self.list.get(usize::from(id.0)).map_or(0.0, |material| material.density_kg_m3)
+    }
+
+    /// The material that a table's key names, or the default.
+    pub(crate) fn named_by(&self, table: &Table<'_>, key: &str) -> Result<MaterialId, SceneError> {
+        match table.text(key)? {
+            Some(name) => self.find(name).map_err(|problem| table.bad(key, problem)),
+            None => self.default_id().ok_or_else(|| {
+                table.missing(key, format!("name one of the {} [[materials]] of the scene", self.list.len()))
+            }),
+        }
+    }
+}

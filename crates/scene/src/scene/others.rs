@@ -1,0 +1,72 @@
+//! `[charge_transfer]`, `[solver]`, `[output]`.
+
+use super::description::{ChargeTransferSettings, OutputSettings, SolverLoss, SolverSettings};
+use super::limits::TIME;
+use super::source::Source;
+use crate::SceneError;
+use crate::tree::{Range, Table, Value};
+
+/// Reads `[charge_transfer]`.
+pub(super) fn read_charge_transfer(
+    document: &Table<'_>,
+) -> Result<Option<ChargeTransferSettings>, SceneError> {
+    let keys = ["beyond_previous_maximum", "breakdown_field_V_m", "stiffness_correction", "velocity_ratio"];
+    let Some(table) = document.table("charge_transfer", &keys)? else { return Ok(None) };
+    Ok(Some(ChargeTransferSettings {
+        beyond_previous_maximum: table.boolean("beyond_previous_maximum")?.unwrap_or(false),
+        breakdown_field_v_m: table.number("breakdown_field_V_m", Range::positive(1e15))?,
+        stiffness_correction: table.boolean("stiffness_correction")?.unwrap_or(false),
+        velocity_ratio: table.number("velocity_ratio", Range::positive(1e6))?.unwrap_or(1.0),
+    }))
+}
+
+/// Reads `[solver]`.
+pub(super) fn read_solver(
+    document: &Table<'_>,
+    source: &Source,
+) -> Result<Option<SolverSettings>, SceneError> {
+    let keys = ["openfoam_case", "start", "ranks", "timeout_s", "on_solver_loss"];
+    let Some(table) = document.table("solver", &keys)? else { return Ok(None) };
+    let case = table.text("openfoam_case")?;
+    let case = table.need(case, "openfoam_case", "name the folder with 0/, constant/ and system/")?;
+    let folder = source.path(case);
+    if !folder.is_dir() {
+        return Err(
+            table.bad("openfoam_case", "no such folder; name the folder with 0/, constant/ and system/")
+        );
+    }
+    let ranks = table.integer("ranks", 1, 65_536)?.unwrap_or(1);
+    let losses = [("stop", SolverLoss::Stop), ("fallback", SolverLoss::Fallback), ("wait", SolverLoss::Wait)];
+    Ok(Some(SolverSettings {
+        openfoam_case: folder,
+        start: table.boolean("start")?.unwrap_or(true),
+        ranks: u32::try_from(ranks).expect("the range ends at 65536"),
+        timeout_s: table.number("timeout_s", TIME)?.unwrap_or(30.0),
+        on_solver_loss: table.word("on_solver_loss", &losses)?.unwrap_or_default(),
+    }))
+}
+
+/// Reads `[output]`.
+pub(super) fn read_output(document: &Table<'_>) -> Result<OutputSettings, SceneError> {
+    let keys = ["every_s", "history_every_s", "formats", "checkpoint_every_s"];
+    let mut output = OutputSettings::default();
+    let Some(table) = document.table("output", &keys)? else { return Ok(output) };
+    output.every_s = table.number("every_s", TIME)?;
+    output.history_every_s = table.number("history_every_s", TIME)?;
+    output.checkpoint_every_s = table.number("checkpoint_every_s", TIME)?;
+    if let Some(formats) = table.items("formats")? {
+        (output.vtk, output.csv) = (false, false);
+        for format in formats {
+            match &format.value {
+                Value::Text(word) if word == "vtk" => output.vtk = true,
+                Value::Text(word) if word == "csv" => output.csv = true,
+                _ => {
+                    return Err(
+                        table.bad("formats", format!("{} is not one of \"vtk\", \"csv\"", format.shown()))
+                    );
+                }
+            }
+        }
+    }
+    Ok(output)
+}

@@ -1,0 +1,58 @@
+//! `[particles]`.
+
+use super::materials::Materials;
+use super::source::Source;
+use crate::SceneError;
+use crate::generate::{GenerateContext, generate};
+use crate::particles::{CsvContext, ReadParticles, read_particles};
+use crate::tree::Table;
+use amberfield_core::{Domain, OnExit, Wall};
+
+/// Keys of `[particles]`.
+const KEYS: [&str; 4] = ["file", "generate", "allow_overlap", "on_exit"];
+
+/// What `[particles]` says.
+#[derive(Debug)]
+pub(super) struct ParticlesSection {
+    pub(super) read: ReadParticles,
+    pub(super) on_exit: OnExit,
+    pub(super) allow_overlap: bool,
+}
+
+/// Reads `[particles]`, the file it names or what it generates.
+pub(super) fn read_section(
+    document: &Table<'_>,
+    domain: Option<&Domain>,
+    materials: &Materials,
+    walls: &[Wall],
+    allow_points: bool,
+    source: &mut Source,
+) -> Result<ParticlesSection, SceneError> {
+    let table = document.table("particles", &KEYS)?;
+    let table = document.need(
+        table,
+        "particles",
+        "add [particles] with file = \"grains.csv\" or generate = { … }",
+    )?;
+    let on_exit =
+        table.word("on_exit", &[("stop", OnExit::Stop), ("delete", OnExit::Delete)])?.unwrap_or_default();
+    let allow_overlap = table.boolean("allow_overlap")?.unwrap_or(false);
+    let read = match (table.text("file")?, table.get("generate")) {
+        (Some(_), Some(_)) => {
+            return Err(table.bad("generate", "file is given too; give exactly one of file, generate"));
+        }
+        (None, None) => return Err(table.missing("file", "give file = \"grains.csv\" or generate = { … }")),
+        (Some(file), None) => {
+            let bytes = source.read_file(&table, "file", file)?;
+            read_particles(file, &bytes, &CsvContext { domain, materials, allow_points })?
+        }
+        (None, Some(node)) => {
+            let Some(domain) = domain else {
+                return Err(table.bad("generate", "a generator needs [domain]; add it"));
+            };
+            let mut context = GenerateContext { domain, materials, walls, source };
+            generate(node, &table.key("generate"), &mut context)?
+        }
+    };
+    Ok(ParticlesSection { read, on_exit, allow_overlap })
+}

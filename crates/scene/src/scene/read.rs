@@ -1,0 +1,170 @@
+//! Scene file to description.
+
+use super::description::{Purpose, Scene};
+use super::domain::read_domain;
+use super::electric_field::read_electric_field;
+use super::materials::{Materials, read_materials};
+use super::others::{read_charge_transfer, read_output, read_solver};
+use super::particles::read_section;
+use super::source::{Source, read_text};
+use super::time::read_time;
+use super::together::{check_sections, check_together};
+use super::walls::read_walls;
+use crate::SceneError;
+use crate::error::Problems;
+use crate::tree::{Entries, Node, Place, Table, Value, apply_overrides, parse_document};
+use std::path::Path;
+use std::sync::Arc;
+
+/// Sections of a scene.
+const SECTIONS: [&str; 10] = [
+    "domain",
+    "walls",
+    "materials",
+    "particles",
+    "time",
+    "electric_field",
+    "charge_transfer",
+    "solver",
+    "gas",
+    "output",
+];
+
+/// Reads a scene file, applies `KEY=VALUE` overrides and reads the files that it names.
+///
+/// # Errors
+/// Everything that is wrong with the scene and its files, as far as it can be told apart.
+pub fn read_scene(path: &Path, overrides: &[String], purpose: Purpose) -> Result<Scene, SceneError> {
+    let text = read_text(path)?;
+    let folder = path.parent().unwrap_or(Path::new(""));
+    let title =
+        path.file_stem().map_or_else(|| "scene".to_owned(), |stem| stem.to_string_lossy().into_owned());
+    let mut scene = parse_scene(&text, &path.display().to_string(), folder, overrides, purpose)?;
+    scene.title = title;
+    Ok(scene)
+}
+
+/// Reads a scene from its text; `file` names it in messages, `folder` is where the files that it names are.
+///
+/// # Errors
+/// As [`read_scene`].
+pub fn parse_scene(
+    text: &str,
+    file: &str,
+    folder: &Path,
+    overrides: &[String],
+    purpose: Purpose,
+) -> Result<Scene, SceneError> {
+    let file: Arc<str> = file.into();
+    let mut entries = parse_document(&file, text.strip_prefix('\u{feff}').unwrap_or(text))?;
+    apply_overrides(&mut entries, overrides)?;
+    let document = Table::document(&entries, Place::Line { file, line: 0 }, &SECTIONS)?;
+    let mut source = Source::new(folder);
+    let mut scene = read_sections(&document, &mut source, purpose)?;
+    fingerprint(&entries, &mut source);
+    scene.hash = source.fingerprint();
+    scene.resolved = resolved(&entries, folder);
+    Ok(scene)
+}
+
+fn read_sections(document: &Table<'_>, source: &mut Source, purpose: Purpose) -> Result<Scene, SceneError> {
+    let mut problems = Problems::default();
+    let motion = purpose == Purpose::Run || (purpose == Purpose::Explain && document.has("time"));
+    let sections = problems.keep(check_sections(document, motion, purpose));
+    let domain = problems.keep(read_domain(document));
+    let list = problems.keep(read_materials(document));
+    let field = problems.keep(read_electric_field(document));
+    let charge_transfer = problems.keep(read_charge_transfer(document));
+    let solver = problems.keep(read_solver(document, source));
+    let output = problems.keep(read_output(document));
+    let time_alone = problems.keep(read_time(document, Default::default(), false));
+    // What follows reads files and places grains; it would only repeat what is wrong so far.
+    let (
+        Some(domain),
+        Some(list),
+        Some(electric_field),
+        Some(charge_transfer),
+        Some(solver),
+        Some(output),
+        Some(_),
+        Some(()),
+    ) = (domain, list, field, charge_transfer, solver, output, time_alone, sections)
+    else {
+        return Err(problems.finish().expect_err("a section was refused"));
+    };
+    let materials = Materials { ignored: list.is_empty(), list };
+    let walls = read_walls(document, &materials, source)?;
+    let section = read_section(document, domain.as_ref(), &materials, &walls.walls, !motion, source)?;
+    let time = read_time(document, section.on_exit, section.allow_overlap)?;
+    let mut scene = Scene {
+        title: "scene".to_owned(),
+        domain,
+        materials: materials.list,
+        walls: walls.walls,
+        wall_patches: walls.patches,
+        particles: section.read.particles,
+        groups: section.read.groups,
+        time,
+        electric_field,
+        charge_transfer,
+        solver,
+        gas: document.has("gas"),
+        output,
+        warnings: walls.warnings,
+        resolved: String::new(),
+        hash: 0,
+    };
+    check_together(document, &mut scene, section.read.has_charge)?;
+    Ok(scene)
+}
+
+/// Mixes the scene's keys into the fingerprint, all but those that do not decide the physics.
+fn fingerprint(entries: &Entries, source: &mut Source) {
+    for (section, node) in entries {
+        if section == "output" {
+            continue;
+        }
+        let mut value = node.to_toml();
+        if let (Some(time), "time") = (value.as_table_mut(), section.as_str()) {
+            time.remove("end_s");
+        }
+        // `toml::Table` is sorted, so the order of keys in the file does not matter.
+        source.add(format!("{section} = {value}\n").as_bytes());
+    }
+}
+
+/// The scene as TOML, files named by absolute paths so that it can be run from anywhere.
+fn resolved(entries: &Entries, folder: &Path) -> String {
+    let mut entries = entries.clone();
+    absolute(&mut entries, &["particles", "file"], folder);
+    absolute(&mut entries, &["particles", "generate", "charge_C", "from_file"], folder);
+    absolute(&mut entries, &["solver", "openfoam_case"], folder);
+    absolute(&mut entries, &["walls", "*", "stl"], folder);
+    let root = Node { value: Value::Table(entries), place: Place::Line { file: "".into(), line: 0 } };
+    match root.to_toml() {
+        toml::Value::Table(table) => toml::to_string(&table).unwrap_or_default(),
+        _ => String::new(),
+    }
+}
+
+fn absolute(entries: &mut Entries, path: &[&str], folder: &Path) {
+    let Some((first, rest)) = path.split_first() else { return };
+    for (key, node) in entries.iter_mut().filter(|(key, _)| key == first) {
+        match &mut node.value {
+            Value::Text(name) if rest.is_empty() => {
+                if let Ok(path) = std::path::absolute(folder.join(&*name)) {
+                    *name = path.to_string_lossy().into_owned();
+                }
+            }
+            Value::Table(inner) => absolute(inner, rest, folder),
+            Value::Array(items) if rest.first() == Some(&"*") => {
+                for item in items {
+                    if let Value::Table(inner) = &mut item.value {
+                        absolute(inner, &rest[1..], folder);
+                    }
+                }
+            }
+            _ => debug_assert!(!key.is_empty(), "keys of other kinds name no files"),
+        }
+    }
+}

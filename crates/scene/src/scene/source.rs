@@ -1,0 +1,100 @@
+//! The scene's file, the folder that its other files are named from, and a fingerprint of what was read.
+
+use crate::SceneError;
+use crate::tree::Table;
+use std::io::ErrorKind;
+use std::path::{Path, PathBuf};
+
+/// 64-bit FNV-1a (Fowler, Noll, Vo): stable across versions and machines; guards against mistakes, not malice.
+#[derive(Clone, Debug)]
+pub(crate) struct Fingerprint(u64);
+
+impl Fingerprint {
+    pub(crate) fn new() -> Self {
+        Self(0xcbf2_9ce4_8422_2325)
+    }
+
+    pub(crate) fn add(&mut self, bytes: &[u8]) {
+        for byte in bytes {
+            self.0 = (self.0 ^ u64::from(*byte)).wrapping_mul(0x0000_0100_0000_01b3);
+        }
+    }
+
+    pub(crate) fn value(&self) -> u64 {
+        self.0
+    }
+}
+
+/// Where a scene comes from.
+#[derive(Debug)]
+pub(crate) struct Source {
+    folder: PathBuf,
+    fingerprint: Fingerprint,
+}
+
+impl Source {
+    pub(crate) fn new(folder: &Path) -> Self {
+        Self { folder: folder.to_path_buf(), fingerprint: Fingerprint::new() }
+    }
+
+    /// A path as the scene means it: from the scene's folder.
+    pub(crate) fn path(&self, name: &str) -> PathBuf {
+        self.folder.join(name)
+    }
+
+    /// Bytes of a file that a key names; they count in the fingerprint.
+    pub(crate) fn read_file(
+        &mut self,
+        table: &Table<'_>,
+        key: &str,
+        name: &str,
+    ) -> Result<Vec<u8>, SceneError> {
+        let bytes = read_bytes(&self.path(name)).map_err(|reason| table.bad(key, reason))?;
+        self.fingerprint.add(&bytes);
+        Ok(bytes)
+    }
+
+    /// Mixes more into the fingerprint.
+    pub(crate) fn add(&mut self, bytes: &[u8]) {
+        self.fingerprint.add(bytes);
+    }
+
+    /// Fingerprint of all that was read.
+    pub(crate) fn fingerprint(&self) -> u64 {
+        self.fingerprint.value()
+    }
+}
+
+/// Bytes of a regular file that is not empty.
+fn read_bytes(path: &Path) -> Result<Vec<u8>, String> {
+    if path.is_dir() {
+        return Err(format!("{} is a directory; name a file", path.display()));
+    }
+    let bytes = std::fs::read(path).map_err(|error| match error.kind() {
+        ErrorKind::NotFound => format!("there is no file {}; check the path", path.display()),
+        _ => format!("cannot read {}: {error}", path.display()),
+    })?;
+    if bytes.is_empty() {
+        Err(format!("{} is empty; check that it was written", path.display()))
+    } else {
+        Ok(bytes)
+    }
+}
+
+/// Text of a scene file: UTF-8, with or without a byte-order mark.
+pub(crate) fn read_text(path: &Path) -> Result<String, SceneError> {
+    let file = path.display().to_string();
+    let bytes = read_bytes(path).map_err(|reason| SceneError::Unreadable { file: file.clone(), reason })?;
+    decode(&file, &bytes).map(ToOwned::to_owned)
+}
+
+/// UTF-8 text without its byte-order mark.
+pub(crate) fn decode<'b>(file: &str, bytes: &'b [u8]) -> Result<&'b str, SceneError> {
+    let bytes = bytes.strip_prefix(b"\xef\xbb\xbf").unwrap_or(bytes);
+    std::str::from_utf8(bytes).map_err(|error| {
+        let good = &bytes[..error.valid_up_to()];
+        let line = 1 + good.iter().filter(|byte| **byte == b'\n').count() as u64;
+        let bad = bytes[error.valid_up_to()];
+        SceneError::data(file, line, format!("byte 0x{bad:02x} is not UTF-8 text; save the file as UTF-8"))
+    })
+}

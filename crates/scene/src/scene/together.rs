@@ -1,0 +1,127 @@
+//! What the sections mean together.
+
+use super::description::{Purpose, Scene};
+use crate::SceneError;
+use crate::error::{Problems, shorten};
+use crate::tree::{Table, nearest};
+use amberfield_core::{Method, WallCharging, WallShape};
+
+/// Grains beyond which the direct sum is worth a warning.
+const MANY_FOR_DIRECT: usize = 100_000;
+
+/// Checks what no section can check alone.
+pub(super) fn check_together(
+    document: &Table<'_>,
+    scene: &mut Scene,
+    has_charge: bool,
+) -> Result<(), SceneError> {
+    let mut problems = Problems::default();
+    problems.keep(check_field(document, scene, has_charge));
+    problems.keep(check_charge_transfer(document, scene));
+    problems.finish()?;
+    warn(scene);
+    Ok(())
+}
+
+/// Checks that the sections that the purpose needs are there.
+pub(super) fn check_sections(document: &Table<'_>, motion: bool, purpose: Purpose) -> Result<(), SceneError> {
+    let mut problems = Problems::default();
+    let mut need = |section: &str, advice: &str| {
+        if !document.has(section) {
+            problems.keep::<()>(Err(document.missing(section, advice)));
+        }
+    };
+    if !document.has("solver") {
+        need("domain", "add [domain] with min_m, max_m and [domain.boundary]");
+    }
+    need("particles", "add [particles] with file = \"grains.csv\" or generate = { … }");
+    if motion {
+        need("time", "add [time] with step_s and end_s; a run needs it");
+        need(
+            "materials",
+            "add [[materials]] with name, density_kg_m3, young_Pa, poisson, restitution, friction",
+        );
+    }
+    if purpose == Purpose::Field {
+        need("electric_field", "add [electric_field]; there is no field to compute without it");
+    }
+    problems.finish()
+}
+
+fn check_field(document: &Table<'_>, scene: &Scene, has_charge: bool) -> Result<(), SceneError> {
+    let Some(field) = &scene.electric_field else { return Ok(()) };
+    let mut problems = Problems::default();
+    if !has_charge {
+        problems.keep::<()>(Err(SceneError::Missing {
+            place: document.place_of("particles").to_string(),
+            key: "particles: charge_C".to_owned(),
+            advice: "the scene has an electric field but its grains have no charge; add the column charge_C to the file, or charge_C to the generator (0 where they are neutral)".to_owned(),
+        }));
+    }
+    if !field.use_without_cfd_coupling && scene.solver.is_none() {
+        problems.keep::<()>(Err(document.bad_below(
+            "electric_field",
+            "use_without_cfd_coupling",
+            "false",
+            "the field is not to be computed here, so a field solver must be configured; add [solver] or set use_without_cfd_coupling = true",
+        )));
+    }
+    if !scene.groups.contains(&field.particle_group) {
+        let names: Vec<&str> = scene.groups.iter().map(String::as_str).collect();
+        let near = nearest(&field.particle_group, &names).unwrap_or("all");
+        problems.keep::<()>(Err(document.bad_below(
+            "electric_field",
+            "particle_group",
+            &format!("\"{}\"", shorten(&field.particle_group)),
+            format!("no grain is in this group; the nearest group is \"{near}\""),
+        )));
+    }
+    problems.finish()
+}
+
+fn check_charge_transfer(document: &Table<'_>, scene: &Scene) -> Result<(), SceneError> {
+    let on = scene.electric_field.as_ref().is_some_and(|field| field.enable_collision_charge_transfer);
+    if let (Some(_), false) = (&scene.charge_transfer, on) {
+        return Err(SceneError::Missing {
+            place: document.place_of("charge_transfer").to_string(),
+            key: "electric_field.enable_collision_charge_transfer".to_owned(),
+            advice: "set it to true, or remove the section [charge_transfer]".to_owned(),
+        });
+    }
+    if !on {
+        return Ok(());
+    }
+    let correction = scene.charge_transfer.as_ref().is_some_and(|transfer| transfer.stiffness_correction);
+    for (index, material) in scene.materials.iter().enumerate() {
+        let missing = |key: &str, why: &str| SceneError::Missing {
+            place: document.place_of("materials").to_string(),
+            key: format!("materials[{index}].{key}"),
+            advice: format!("material \"{}\" needs it because {why} is on", material.name),
+        };
+        if material.work_function_ev.is_none() {
+            return Err(missing("work_function_eV", "enable_collision_charge_transfer"));
+        }
+        if correction && material.young_real_pa.is_none() {
+            return Err(missing("young_real_Pa", "stiffness_correction"));
+        }
+    }
+    Ok(())
+}
+
+fn warn(scene: &mut Scene) {
+    let count = scene.particles.len();
+    let method = scene.electric_field.as_ref().map(|field| field.field.method);
+    if method == Some(Method::Direct) && count > MANY_FOR_DIRECT {
+        scene.warnings.push(format!("method direct sums over every pair of {count} grains, which takes long; p3m gives a stated error in a fraction of the time"));
+    }
+    if method.is_some() && scene.solver.is_none() {
+        for wall in &scene.walls {
+            if matches!(wall.shape, WallShape::Mesh(_)) && wall.charging == WallCharging::Grounded {
+                scene.warnings.push(format!(
+                    "{}: on the internal grid the field sees this grounded surface only through images near it, not in the far field",
+                    wall.name
+                ));
+            }
+        }
+    }
+}

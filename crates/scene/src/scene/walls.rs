@@ -1,0 +1,95 @@
+//! `[[walls]]`.
+
+use super::limits::COORDINATE;
+use super::materials::Materials;
+use super::source::Source;
+use crate::SceneError;
+use crate::error::Problems;
+use crate::stl::read_stl;
+use crate::tree::{Range, Table};
+use amberfield_core::{Wall, WallCharging, WallShape};
+
+/// Keys of a wall.
+const KEYS: [&str; 6] = ["stl", "scale", "plane", "material", "charging", "patch"];
+/// Shortest normal that has a direction.
+const SHORTEST_NORMAL: f64 = 1e-100;
+
+/// A wall with what core does not know of it.
+pub(super) struct ReadWalls {
+    pub(super) walls: Vec<Wall>,
+    pub(super) patches: Vec<Option<String>>,
+    pub(super) warnings: Vec<String>,
+}
+
+/// Reads `[[walls]]`.
+pub(super) fn read_walls(
+    document: &Table<'_>,
+    materials: &Materials,
+    source: &mut Source,
+) -> Result<ReadWalls, SceneError> {
+    let mut read = ReadWalls { walls: Vec::new(), patches: Vec::new(), warnings: Vec::new() };
+    let mut problems = Problems::default();
+    for (index, node) in document.items("walls")?.unwrap_or_default().iter().enumerate() {
+        let wall = Table::new(node, format!("walls[{index}]"), &KEYS)
+            .and_then(|table| read_wall(&table, materials, source, &mut read.warnings));
+        if let Some((wall, patch)) = problems.keep(wall) {
+            read.walls.push(wall);
+            read.patches.push(patch);
+        }
+    }
+    problems.finish().map(|()| read)
+}
+
+fn read_wall(
+    table: &Table<'_>,
+    materials: &Materials,
+    source: &mut Source,
+    warnings: &mut Vec<String>,
+) -> Result<(Wall, Option<String>), SceneError> {
+    let material = materials.named_by(table, "material")?;
+    let charging = table.word(
+        "charging",
+        &[
+            ("grounded", WallCharging::Grounded),
+            ("insulating", WallCharging::Insulating),
+            ("none", WallCharging::None),
+        ],
+    )?;
+    let patch = table.text("patch")?.map(ToOwned::to_owned);
+    let (name, shape) = match (table.text("stl")?, table.has("plane")) {
+        (Some(stl), false) => {
+            let scale = table.number("scale", Range::positive(1e6))?.unwrap_or(1.0);
+            let bytes = source.read_file(table, "stl", stl)?;
+            let (mesh, dropped) = read_stl(stl, &bytes, scale)?;
+            if dropped > 0 {
+                warnings.push(format!("{stl}: {dropped} degenerate triangles (no area) were dropped"));
+            }
+            (stl.to_owned(), WallShape::Mesh(mesh))
+        }
+        (None, true) if table.has("scale") => {
+            return Err(table.bad("scale", "a plane has no scale; remove it"));
+        }
+        (None, true) => (table.key("plane"), read_plane(table)?),
+        (Some(_), true) => {
+            return Err(table.bad("plane", "the wall has an stl already; give one of stl, plane"));
+        }
+        (None, false) => {
+            return Err(table.missing(
+                "stl",
+                "give stl = \"file.stl\" or plane = { point_m = [0, 0, 0], normal = [0, 0, 1] }",
+            ));
+        }
+    };
+    Ok((Wall { name, shape, material, charging: charging.unwrap_or_default() }, patch))
+}
+
+fn read_plane(table: &Table<'_>) -> Result<WallShape, SceneError> {
+    let plane = table.table("plane", &["point_m", "normal"])?;
+    let plane = table.need(plane, "plane", "give { point_m, normal }")?;
+    let point = plane.need_vector("point_m", COORDINATE)?;
+    let normal = plane.need_vector("normal", Range::closed(-1e100, 1e100))?;
+    if normal.norm() < SHORTEST_NORMAL {
+        return Err(plane.bad("normal", "the normal has no direction; give it a length, as [0, 0, 1]"));
+    }
+    Ok(WallShape::Plane { point, normal: normal.normalize() })
+}

@@ -1,0 +1,13 @@
+//! A scene's text as a tree whose every value knows its place.
+
+mod node;
+mod overrides;
+mod parse;
+mod range;
+mod table;
+
+pub(crate) use node::{Entries, Node, Place, Value};
+pub(crate) use overrides::apply_overrides;
+pub(crate) use parse::parse_document;
+pub(crate) use range::Range;
+pub(crate) use table::{Table, nearest};

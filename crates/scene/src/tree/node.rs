@@ -1,0 +1,100 @@
+//! Values with their places.
+
+use crate::error::shorten;
+use std::fmt;
+use std::sync::Arc;
+
+/// Where a value was written.
+#[derive(Clone, Debug, PartialEq)]
+pub(crate) enum Place {
+    /// A line of a file.
+    Line {
+        /// File as the user named it.
+        file: Arc<str>,
+        /// Line from 1; 0 when the file as a whole is meant.
+        line: usize,
+    },
+    /// A `--set` on the command line.
+    Set(Arc<str>),
+}
+
+impl fmt::Display for Place {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        match self {
+            Self::Line { file, line: 0 } => f.write_str(file),
+            Self::Line { file, line } => write!(f, "{file}:{line}"),
+            Self::Set(text) => write!(f, "--set {}", shorten(text)),
+        }
+    }
+}
+
+/// Keys of a table in the order of the text.
+pub(crate) type Entries = Vec<(String, Node)>;
+
+/// A TOML value.
+#[derive(Clone, Debug, PartialEq)]
+pub(crate) enum Value {
+    /// String.
+    Text(String),
+    /// Integer.
+    Integer(i64),
+    /// Float, also nan and inf.
+    Float(f64),
+    /// Boolean.
+    Boolean(bool),
+    /// What a scene never uses: dates, integers beyond 64 bits. As written.
+    Other(String),
+    /// Array.
+    Array(Vec<Node>),
+    /// Table.
+    Table(Entries),
+}
+
+/// A value and its place.
+#[derive(Clone, Debug, PartialEq)]
+pub(crate) struct Node {
+    pub(crate) value: Value,
+    pub(crate) place: Place,
+}
+
+impl Node {
+    /// The value as it would be written in a scene, shortened for messages.
+    pub(crate) fn shown(&self) -> String {
+        match &self.value {
+            Value::Text(text) => format!("\"{}\"", shorten(text)),
+            Value::Float(number) => format!("{number:?}"),
+            other => shorten(&Self::toml(other).to_string()),
+        }
+    }
+
+    /// As a plain TOML value.
+    pub(crate) fn to_toml(&self) -> toml::Value {
+        Self::toml(&self.value)
+    }
+
+    fn toml(value: &Value) -> toml::Value {
+        match value {
+            Value::Text(text) | Value::Other(text) => toml::Value::String(text.clone()),
+            Value::Integer(number) => toml::Value::Integer(*number),
+            Value::Float(number) => toml::Value::Float(*number),
+            Value::Boolean(flag) => toml::Value::Boolean(*flag),
+            Value::Array(items) => toml::Value::Array(items.iter().map(Self::to_toml).collect()),
+            Value::Table(entries) => {
+                toml::Value::Table(entries.iter().map(|(key, node)| (key.clone(), node.to_toml())).collect())
+            }
+        }
+    }
+
+    /// What kind of value it is, for messages.
+    pub(crate) fn kind(&self) -> &'static str {
+        match self.value {
+            Value::Text(_) => "a text",
+            Value::Integer(_) => "an integer",
+            Value::Float(_) => "a number",
+            Value::Boolean(_) => "true or false",
+            Value::Other(_) => "a date or a number beyond 64 bits",
+            Value::Array(_) => "an array",
+            Value::Table(_) => "a table",
+        }
+    }
+}

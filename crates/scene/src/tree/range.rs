@@ -1,0 +1,46 @@
+//! Ranges that numbers must lie in.
+
+use std::fmt;
+
+/// An interval of numbers.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Range {
+    low: f64,
+    low_included: bool,
+    high: f64,
+}
+
+impl Range {
+    /// From `low` to `high`, both included.
+    pub(crate) const fn closed(low: f64, high: f64) -> Self {
+        Self { low, low_included: true, high }
+    }
+
+    /// Above 0, at most `high`.
+    pub(crate) const fn positive(high: f64) -> Self {
+        Self { low: 0.0, low_included: false, high }
+    }
+
+    /// Whether a number lies in the range; NaN never does.
+    pub(crate) fn contains(&self, number: f64) -> bool {
+        (number > self.low || (self.low_included && number == self.low)) && number <= self.high
+    }
+}
+
+impl fmt::Display for Range {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        let show = |number: f64| {
+            if (1e-3..1e5).contains(&number.abs()) || number == 0.0 {
+                format!("{number}")
+            } else {
+                format!("{number:e}")
+            }
+        };
+        let (low, high) = (show(self.low), show(self.high));
+        if self.low_included {
+            write!(f, "from {low} to {high}")
+        } else {
+            write!(f, "above {low} and at most {high}")
+        }
+    }
+}

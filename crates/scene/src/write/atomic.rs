@@ -1,0 +1,59 @@
+//! Files that are either whole or not there.
+
+use crate::SceneError;
+use serde::Serialize;
+use std::io::{self, BufWriter, Write};
+use std::path::Path;
+
+/// Writes a file to a temporary name beside it, flushes it to the disk and renames it.
+///
+/// # Errors
+/// What the system says; the file is then as before.
+pub fn write_atomically(
+    path: &Path,
+    content: impl FnOnce(&mut dyn Write) -> io::Result<()>,
+) -> Result<(), SceneError> {
+    let folder = match path.parent() {
+        Some(folder) if !folder.as_os_str().is_empty() => folder,
+        _ => Path::new("."),
+    };
+    if path.is_dir() {
+        return Err(SceneError::unwritable(path, "it is a directory; name a file"));
+    }
+    let write = || -> io::Result<()> {
+        let mut builder = tempfile::Builder::new();
+        builder.prefix(".amberfield-").suffix(".part");
+        #[cfg(unix)]
+        {
+            use std::os::unix::fs::PermissionsExt as _;
+            // Readable for others as far as the umask allows, as any other output.
+            builder.permissions(std::fs::Permissions::from_mode(0o666));
+        }
+        let mut writer = BufWriter::with_capacity(1 << 16, builder.tempfile_in(folder)?);
+        content(&mut writer)?;
+        let file = writer.into_inner().map_err(io::IntoInnerError::into_error)?;
+        file.as_file().sync_all()?;
+        file.persist(path).map_err(|error| error.error)?;
+        Ok(())
+    };
+    write().map_err(|error| SceneError::unwritable(path, error))
+}
+
+/// Writes a text.
+///
+/// # Errors
+/// As [`write_atomically`].
+pub fn write_text(path: &Path, text: &str) -> Result<(), SceneError> {
+    write_atomically(path, |writer| writer.write_all(text.as_bytes()))
+}
+
+/// Writes a value as indented JSON.
+///
+/// # Errors
+/// As [`write_atomically`].
+pub fn write_json(path: &Path, value: &impl Serialize) -> Result<(), SceneError> {
+    let mut text =
+        serde_json::to_string_pretty(value).map_err(|error| SceneError::unwritable(path, error))?;
+    text.push('\n');
+    write_text(path, &text)
+}

@@ -1,0 +1,179 @@
+//! Checkpoints: a header that says what the file is, a payload, and a checksum over both.
+//!
+//! Layout, little endian: magic (8 bytes), format version (u32), length and text of the program version (u16),
+//! fingerprint of the scene (u64), length of the payload (u64), CRC-32 of everything else (u32), payload
+//! (bincode 2).
+
+use super::atomic::write_atomically;
+use crate::SceneError;
+use crate::error::shorten;
+use bincode::config::{Configuration, standard};
+use serde::{Serialize, de::DeserializeOwned};
+use std::path::Path;
+
+/// First bytes of every checkpoint.
+const MAGIC: [u8; 8] = *b"AMBRFLD\x1a";
+/// Version of the layout.
+const FORMAT: u32 = 1;
+/// Version of the program that writes and reads.
+const PROGRAM: &str = env!("CARGO_PKG_VERSION");
+
+fn configuration() -> Configuration {
+    standard()
+}
+
+/// Writes a checkpoint.
+///
+/// # Errors
+/// What the system says.
+pub fn write_checkpoint(path: &Path, scene_hash: u64, state: &impl Serialize) -> Result<(), SceneError> {
+    let payload = bincode::serde::encode_to_vec(state, configuration())
+        .map_err(|error| SceneError::unwritable(path, error))?;
+    let header = header(PROGRAM, scene_hash, payload.len() as u64);
+    let checksum = checksum(&header, &payload);
+    write_atomically(path, |writer| {
+        writer.write_all(&header)?;
+        writer.write_all(&checksum.to_le_bytes())?;
+        writer.write_all(&payload)
+    })
+}
+
+fn header(program: &str, scene_hash: u64, payload: u64) -> Vec<u8> {
+    let mut header = MAGIC.to_vec();
+    header.extend(FORMAT.to_le_bytes());
+    header.extend(u16::try_from(program.len()).expect("versions are short").to_le_bytes());
+    header.extend(program.as_bytes());
+    header.extend(scene_hash.to_le_bytes());
+    header.extend(payload.to_le_bytes());
+    header
+}
+
+fn checksum(header: &[u8], payload: &[u8]) -> u32 {
+    let mut hasher = crc32fast::Hasher::new();
+    hasher.update(header);
+    hasher.update(payload);
+    hasher.finalize()
+}
+
+/// Reads a checkpoint of the scene with the given fingerprint.
+///
+/// # Errors
+/// Files that are no checkpoint, of another version, of another scene, cut short or damaged.
+pub fn read_checkpoint<T: DeserializeOwned>(path: &Path, scene_hash: u64) -> Result<T, SceneError> {
+    let bad = |problem: String| SceneError::Checkpoint { path: path.to_path_buf(), problem };
+    if path.is_dir() {
+        return Err(bad("is a directory; name a checkpoint file (checkpoints/*.amber)".to_owned()));
+    }
+    let bytes = std::fs::read(path).map_err(|error| bad(format!("cannot be read: {error}")))?;
+    let payload = open(&bytes, scene_hash).map_err(bad)?;
+    match bincode::serde::decode_from_slice(payload, configuration()) {
+        Ok((state, used)) if used == payload.len() => Ok(state),
+        Ok((_, used)) => Err(bad(format!(
+            "holds {} bytes more than its state; take another checkpoint",
+            payload.len() - used
+        ))),
+        Err(error) => Err(bad(format!("its state cannot be read ({error}); take another checkpoint"))),
+    }
+}
+
+/// The payload of a sound file.
+fn open(bytes: &[u8], scene_hash: u64) -> Result<&[u8], String> {
+    let cut = || "is cut short; take an earlier checkpoint".to_owned();
+    let mut rest = bytes;
+    let mut take = |count: usize| -> Option<&[u8]> {
+        let (taken, after) = rest.split_at_checked(count)?;
+        rest = after;
+        Some(taken)
+    };
+    let magic = take(MAGIC.len()).ok_or_else(cut)?;
+    if magic != MAGIC {
+        return Err("is not a checkpoint of amberfield; name a file checkpoints/*.amber".to_owned());
+    }
+    let format = u32::from_le_bytes(take(4).ok_or_else(cut)?.try_into().expect("four bytes"));
+    if format != FORMAT {
+        return Err(format!(
+            "has format {format}, this version reads {FORMAT}; continue with the version that wrote it"
+        ));
+    }
+    let length = u16::from_le_bytes(take(2).ok_or_else(cut)?.try_into().expect("two bytes"));
+    let program = take(usize::from(length)).ok_or_else(cut)?.to_vec();
+    let found = u64::from_le_bytes(take(8).ok_or_else(cut)?.try_into().expect("eight bytes"));
+    let payload = u64::from_le_bytes(take(8).ok_or_else(cut)?.try_into().expect("eight bytes"));
+    let expected = u32::from_le_bytes(take(4).ok_or_else(cut)?.try_into().expect("four bytes"));
+    if rest.len() as u64 != payload {
+        return Err(format!(
+            "has {} bytes of state where {payload} were written: cut short or damaged; take an earlier checkpoint",
+            rest.len()
+        ));
+    }
+    let header = &bytes[..bytes.len() - rest.len() - 4];
+    if checksum(header, rest) != expected {
+        return Err("is damaged (its checksum differs); take an earlier checkpoint".to_owned());
+    }
+    if program != PROGRAM.as_bytes() {
+        return Err(format!(
+            "was written by version {}, this is {PROGRAM}; continue with the version that wrote it",
+            shorten(&String::from_utf8_lossy(&program))
+        ));
+    }
+    if found != scene_hash {
+        return Err(format!(
+            "belongs to another scene (fingerprint {found:016x}, this scene has {scene_hash:016x}); only [output] and time.end_s may change"
+        ));
+    }
+    Ok(rest)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    type State = (u64, Vec<f64>, String);
+
+    fn written() -> (tempfile::TempDir, std::path::PathBuf, State) {
+        let folder = tempfile::tempdir().unwrap();
+        let path = folder.path().join("a.amber");
+        let state: State = (7, vec![0.1, -0.0, f64::MIN_POSITIVE], "x".into());
+        write_checkpoint(&path, 42, &state).unwrap();
+        (folder, path, state)
+    }
+
+    fn problem(path: &Path, hash: u64) -> String {
+        read_checkpoint::<State>(path, hash).unwrap_err().to_string()
+    }
+
+    #[test]
+    fn state_comes_back_bitwise() {
+        let (_folder, path, state) = written();
+        assert_eq!(read_checkpoint::<State>(&path, 42).unwrap(), state);
+    }
+
+    #[test]
+    fn every_truncation_and_every_flipped_bit_is_refused() {
+        let (_folder, path, _) = written();
+        let bytes = std::fs::read(&path).unwrap();
+        for length in 0..bytes.len() {
+            assert!(open(&bytes[..length], 42).is_err(), "{length}");
+        }
+        for bit in 0..8 * bytes.len() {
+            let mut flipped = bytes.clone();
+            flipped[bit / 8] ^= 1 << (bit % 8);
+            assert!(open(&flipped, 42).is_err(), "{bit}");
+        }
+    }
+
+    #[test]
+    fn other_scenes_and_versions_are_named() {
+        let (_folder, path, _) = written();
+        assert!(problem(&path, 43).contains("another scene"));
+        let payload = [1, 2, 3];
+        let header = header("0.0.9", 42, 3);
+        let mut bytes = header.clone();
+        bytes.extend(checksum(&header, &payload).to_le_bytes());
+        bytes.extend(payload);
+        std::fs::write(&path, bytes).unwrap();
+        assert!(problem(&path, 42).contains("version 0.0.9"));
+        std::fs::write(&path, b"# no checkpoint at all").unwrap();
+        assert!(problem(&path, 42).contains("not a checkpoint"));
+    }
+}

@@ -1,0 +1,116 @@
+//! `history.csv`: one row per interval, only the columns of the scene's plan.
+
+use crate::SceneError;
+use crate::write::atomic::write_text;
+use std::fmt::Write as _;
+use std::fs::{File, OpenOptions};
+use std::io::Write as _;
+use std::path::{Path, PathBuf};
+
+/// A value of a row.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum Cell {
+    /// A count.
+    Count(u64),
+    /// A quantity, written with 17 significant digits.
+    Number(f64),
+}
+
+/// An open history; every row is on the disk's way once it is appended.
+#[derive(Debug)]
+pub struct History {
+    path: PathBuf,
+    file: File,
+    columns: usize,
+}
+
+impl History {
+    /// A new history with a header. The first column is `step`.
+    ///
+    /// # Errors
+    /// What the system says.
+    pub fn create(path: &Path, columns: &[String]) -> Result<Self, SceneError> {
+        write_text(path, &format!("{}\n", columns.join(",")))?;
+        Self::open(path, columns.len())
+    }
+
+    /// The history of a run that is continued: rows after `step` are removed.
+    ///
+    /// # Errors
+    /// What the system says; a history with other columns.
+    pub fn resume(path: &Path, columns: &[String], step: u64) -> Result<Self, SceneError> {
+        let text = std::fs::read_to_string(path).map_err(|error| SceneError::unwritable(path, error))?;
+        let mut lines = text.split_inclusive('\n');
+        let header = columns.join(",");
+        if lines.next().map(str::trim_end) != Some(&header) {
+            return Err(SceneError::unwritable(
+                path,
+                format!("its columns are not {header}; start a new run with --out"),
+            ));
+        }
+        let mut kept = format!("{header}\n");
+        for line in lines.filter(|line| line.ends_with('\n')) {
+            let row: Option<u64> = line.split(',').next().and_then(|first| first.parse().ok());
+            if row.is_some_and(|row| row <= step) {
+                kept.push_str(line);
+            }
+        }
+        write_text(path, &kept)?;
+        Self::open(path, columns.len())
+    }
+
+    fn open(path: &Path, columns: usize) -> Result<Self, SceneError> {
+        let file = OpenOptions::new()
+            .append(true)
+            .open(path)
+            .map_err(|error| SceneError::unwritable(path, error))?;
+        Ok(Self { path: path.to_path_buf(), file, columns })
+    }
+
+    /// Appends a row.
+    ///
+    /// # Errors
+    /// What the system says.
+    ///
+    /// # Panics
+    /// When the row has another number of cells than the header.
+    pub fn append(&mut self, row: &[Cell]) -> Result<(), SceneError> {
+        assert_eq!(row.len(), self.columns, "a row has one cell per column");
+        let mut line = String::with_capacity(25 * row.len());
+        for (index, cell) in row.iter().enumerate() {
+            let comma = if index == 0 { "" } else { "," };
+            // Writing to a String cannot fail.
+            let _ = match cell {
+                Cell::Count(count) => write!(line, "{comma}{count}"),
+                Cell::Number(number) => write!(line, "{comma}{number:.16e}"),
+            };
+        }
+        line.push('\n');
+        self.file.write_all(line.as_bytes()).map_err(|error| SceneError::unwritable(&self.path, error))
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn rows_after_the_checkpoint_and_torn_rows_are_removed() {
+        let folder = tempfile::tempdir().unwrap();
+        let path = folder.path().join("history.csv");
+        let columns = ["step".to_owned(), "time_s".to_owned()];
+        let mut history = History::create(&path, &columns).unwrap();
+        for step in 0..5 {
+            history.append(&[Cell::Count(step), Cell::Number(0.5)]).unwrap();
+        }
+        let mut text = std::fs::read_to_string(&path).unwrap();
+        text.push_str("1,0.");
+        std::fs::write(&path, text).unwrap();
+        let mut history = History::resume(&path, &columns, 2).unwrap();
+        history.append(&[Cell::Count(3), Cell::Number(1.0)]).unwrap();
+        let text = std::fs::read_to_string(&path).unwrap();
+        let steps: Vec<&str> = text.lines().skip(1).filter_map(|line| line.split(',').next()).collect();
+        assert_eq!(steps, ["0", "1", "2", "3"]);
+        assert!(History::resume(&path, &["step".to_owned()], 2).is_err());
+    }
+}

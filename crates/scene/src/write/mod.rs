@@ -1,0 +1,17 @@
+//! Result files. Whatever is final is written to a temporary name in the same folder and renamed.
+
+mod atomic;
+mod checkpoint;
+mod field_csv;
+mod history;
+mod particles_csv;
+mod pvd;
+mod vtu;
+
+pub use atomic::{write_atomically, write_json, write_text};
+pub use checkpoint::{read_checkpoint, write_checkpoint};
+pub use field_csv::{FieldColumns, FieldReport, FieldReportSeconds, write_field_csv};
+pub use history::{Cell, History};
+pub use particles_csv::write_particles_csv;
+pub use pvd::PvdSeries;
+pub use vtu::{FieldArrays, write_vtu};

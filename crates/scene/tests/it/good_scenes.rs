@@ -1,0 +1,134 @@
+//! What good scenes mean.
+
+use crate::common::{Folder, GRAINS, SCENE};
+use amberfield_core::{Boundary, CouplingInterval, Method, Skin, Step, WallCharging, WallShape};
+use amberfield_scene::{Purpose, write_particles_csv};
+use nalgebra::Vector3;
+
+#[test]
+fn a_scene_becomes_its_description() {
+    let folder = Folder::good();
+    let scene = folder.read(&[]).unwrap();
+    let domain = scene.domain.as_ref().unwrap();
+    assert_eq!(domain.faces()[0], [Boundary::Periodic; 2]);
+    assert_eq!(domain.faces()[2], [Boundary::Grounded, Boundary::Potential(100.0)]);
+    assert_eq!(scene.title, "scene");
+    assert_eq!(scene.materials[1].density_kg_m3, 7800.0);
+    assert_eq!(scene.materials[1].rolling_friction, 0.0);
+    assert!(matches!(scene.walls[0].shape, WallShape::Plane { normal, .. } if normal == Vector3::z()));
+    let WallShape::Mesh(mesh) = &scene.walls[1].shape else { panic!("a surface") };
+    assert_eq!(mesh.vertices[1], Vector3::new(20.0 * 1e-3, 0.0, 1e-3));
+    assert_eq!(scene.walls[1].charging, WallCharging::Grounded);
+    assert_eq!(scene.particles.id, [1, 2, 7]);
+    assert_eq!(scene.particles.density, [2500.0, 2500.0, 7800.0]);
+    assert_eq!(scene.groups, ["all", "fine", "coarse"]);
+    assert_eq!(scene.particles.group[1].0, 0);
+    let time = scene.time.as_ref().unwrap();
+    assert_eq!((time.step, time.skin), (Step::Seconds(1e-6), Skin::Auto));
+    assert!(scene.output.vtk && scene.output.csv);
+    assert_eq!(scene.warnings.len(), 1, "the grounded surface on the internal grid: {:?}", scene.warnings);
+}
+
+#[test]
+fn defaults_of_the_electric_field_are_those_of_the_contract() {
+    let field = Folder::good().read(&[]).unwrap().electric_field.unwrap();
+    assert_eq!((field.field.method, field.field.tolerance), (Method::P3m, 1e-2));
+    assert_eq!(field.particle_group, "all");
+    assert!(
+        field.use_without_cfd_coupling && !field.enable_collision_charge_transfer && !field.limit_field_force
+    );
+    assert_eq!((field.charge_transfer_cutoff_m, field.field_force_limit_factor), (5e-7, 1e-3));
+    assert_eq!(field.field.relative_permittivity, 1.0);
+    assert_eq!(field.field.coupling_interval, CouplingInterval::Auto);
+    assert_eq!(field.field.force_limit, None);
+}
+
+#[test]
+fn byte_order_marks_and_windows_line_ends_are_accepted() {
+    let folder = Folder::good();
+    let plain = folder.read(&[]).unwrap();
+    folder.write("scene.toml", format!("\u{feff}{}", SCENE.replace('\n', "\r\n")));
+    folder.write("grains.csv", format!("\u{feff}{}", GRAINS.replace('\n', "\r\n")));
+    assert_eq!(folder.read(&[]).unwrap().particles, plain.particles);
+}
+
+#[test]
+fn overrides_change_any_key() {
+    let folder = Folder::good();
+    let scene = folder
+        .read(&[
+            "electric_field.tolerance=1e-4",
+            "domain.boundary.z_max=open",
+            "walls.1.charging=\"none\"",
+            "output={ every_s = 2.0 }",
+        ])
+        .unwrap();
+    assert_eq!(scene.electric_field.as_ref().unwrap().field.tolerance, 1e-4);
+    assert_eq!(scene.domain.as_ref().unwrap().faces()[2][1], Boundary::Open);
+    assert_eq!(scene.output.every_s, Some(2.0));
+    assert!(scene.resolved().contains("0.0001"), "{}", scene.resolved());
+}
+
+#[test]
+fn the_resolved_scene_is_the_same_scene_from_anywhere() {
+    let folder = Folder::good();
+    let scene = folder.read(&["time.end_s=0.01"]).unwrap();
+    let elsewhere = tempfile::tempdir().unwrap();
+    let path = elsewhere.path().join("scene.toml");
+    std::fs::write(&path, scene.resolved()).unwrap();
+    let again = amberfield_scene::read_scene(&path, &[], Purpose::Run).unwrap();
+    assert_eq!((again.particles, again.walls.len(), again.time), (scene.particles, 2, scene.time));
+}
+
+#[test]
+fn the_fingerprint_knows_physics_from_output() {
+    let folder = Folder::good();
+    let hash = folder.read(&[]).unwrap().hash();
+    assert_eq!(folder.read(&["time.end_s=1.0", "output.every_s=0.5"]).unwrap().hash(), hash);
+    assert_ne!(folder.read(&["electric_field.tolerance=1e-3"]).unwrap().hash(), hash);
+    folder.write("grains.csv", GRAINS.replace("0.003", "0.004"));
+    assert_ne!(folder.read(&[]).unwrap().hash(), hash);
+}
+
+#[test]
+fn a_field_needs_neither_materials_nor_time_nor_sizes() {
+    let folder = Folder::good();
+    folder.write(
+        "scene.toml",
+        "domain = { min_m = [0, 0, 0], max_m = [1, 1, 1], boundary = { x = 'open', y = 'open', z = 'open' } }\n\
+         particles.file = 'grains.csv'\n[electric_field]\n",
+    );
+    folder.write("grains.csv", "charge_C,radius_m,z_m,y_m,x_m,id\n1e-9,0,0.5,0.5,0.5,3\n");
+    let scene = folder.read_for(Purpose::Field, &[]).unwrap();
+    assert_eq!((scene.particles.radius[0], scene.particles.charge[0]), (0.0, 1e-9));
+    assert!(folder.read_for(Purpose::Explain, &[]).is_ok());
+    assert!(folder.read(&[]).is_err());
+}
+
+#[test]
+fn particles_written_are_read_back_bitwise() {
+    let folder = Folder::good();
+    let mut scene = folder.read(&[]).unwrap();
+    scene.particles.velocity[0] = Vector3::new(0.1, 1.0 / 3.0, -2e-300);
+    write_particles_csv(&folder.file("grains.csv"), &scene.particles, &scene.materials, &scene.groups)
+        .unwrap();
+    assert_eq!(folder.read(&[]).unwrap().particles, scene.particles);
+}
+
+#[test]
+fn a_command_line_is_the_same_as_keys() {
+    let folder = Folder::good();
+    let keys = folder
+        .read(&[
+            "electric_field={ field_cutoff_radius = 3e-3, enable_collision_charge_transfer = true }",
+            "materials.1.work_function_eV=4.0",
+        ])
+        .unwrap();
+    let line = folder
+        .read(&[
+            "electric_field={ command = \"enable_electric_field field_cutoff_radius 3e-3 enable_collision_charge_transfer yes\" }",
+            "materials.1.work_function_eV=4.0",
+        ])
+        .unwrap();
+    assert_eq!(keys.electric_field, line.electric_field);
+}

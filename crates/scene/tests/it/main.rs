@@ -1,0 +1,10 @@
+//! The scene crate through its public functions.
+
+#![expect(clippy::unwrap_used, reason = "helpers of tests fail as tests do")]
+
+mod any_input;
+mod bad_scenes;
+mod common;
+mod generators;
+mod good_scenes;
+mod outputs;

@@ -1,0 +1,48 @@
+//! Result files: columns, digits, structure.
+
+use crate::common::Folder;
+use amberfield_scene::{FieldArrays, FieldColumns, write_field_csv, write_vtu};
+use nalgebra::Vector3;
+
+#[test]
+fn field_csv_has_the_columns_of_the_contract_and_all_digits() {
+    let folder = Folder::good();
+    let path = folder.file("field.csv");
+    let e = [Vector3::new(1.0 / 3.0, -2e-300, 0.0), Vector3::new(f64::MIN_POSITIVE, 1e300, 0.1)];
+    let parts = [&e[..]; 4];
+    let columns = FieldColumns { id: &[9, 3], e: &e, potential: &[0.1, -0.7], components: None };
+    write_field_csv(&path, &columns).unwrap();
+    let text = std::fs::read_to_string(&path).unwrap();
+    let mut lines = text.lines();
+    assert_eq!(lines.next().unwrap(), "id,ex_V_per_m,ey_V_per_m,ez_V_per_m,potential_V");
+    let row: Vec<f64> = lines.next().unwrap().split(',').map(|cell| cell.parse().unwrap()).collect();
+    assert_eq!(row, [9.0, 1.0 / 3.0, -2e-300, 0.0, 0.1]);
+    write_field_csv(&path, &FieldColumns { components: Some(parts), ..columns }).unwrap();
+    let text = std::fs::read_to_string(&path).unwrap();
+    let header: Vec<&str> = text.lines().next().unwrap().split(',').collect();
+    assert_eq!((header.len(), header[5], header[16]), (17, "near_ex_V_per_m", "correction_ez_V_per_m"));
+    assert!(text.lines().all(|line| line.split(',').count() == 17));
+}
+
+#[test]
+fn appended_arrays_lie_where_the_header_says() {
+    let folder = Folder::good();
+    let grains = folder.read(&[]).unwrap().particles;
+    let path = folder.file("a.vtu");
+    let e = vec![Vector3::new(1.0, 2.0, 3.0); grains.len()];
+    write_vtu(&path, &grains, FieldArrays { e: Some(&e), potential: None }).unwrap();
+    let bytes = std::fs::read(&path).unwrap();
+    let start = bytes.windows(2).position(|pair| pair == b"\n_").unwrap() + 2;
+    let header = String::from_utf8(bytes[..start].to_vec()).unwrap();
+    for (name, length) in [("charge_C", 24), ("electric_field_V_m", 72), ("types", 3)] {
+        let line = header.lines().find(|line| line.contains(&format!("Name=\"{name}\""))).unwrap();
+        let offset: usize =
+            line.split("offset=\"").nth(1).unwrap().split('"').next().unwrap().parse().unwrap();
+        let at = start + offset;
+        assert_eq!(u64::from_le_bytes(bytes[at..at + 8].try_into().unwrap()), length, "{name}");
+    }
+    let left_over = std::fs::read_dir(folder.path())
+        .unwrap()
+        .filter(|entry| entry.as_ref().unwrap().file_name().to_string_lossy().ends_with(".part"));
+    assert_eq!(left_over.count(), 0);
+}
