@@ -42,6 +42,25 @@ pub(crate) fn check_inside(domain: &Domain, positions: &[Vector3<f64>]) -> Resul
     Ok(())
 }
 
+/// Refuses grains beyond any face that is not periodic. `index` is counted from 0.
+pub(crate) fn check_in_box(domain: &Domain, positions: &[Vector3<f64>]) -> Result<(), FieldError> {
+    check_inside(domain, positions)?;
+    let outside = |position: &Vector3<f64>| {
+        Axis::ALL.into_iter().any(|axis| {
+            let at = position[axis.index()];
+            !domain.is_periodic(axis)
+                && !(domain.min()[axis.index()]..=domain.max()[axis.index()]).contains(&at)
+        })
+    };
+    match positions.iter().position(outside) {
+        None => Ok(()),
+        Some(index) => Err(FieldError::Settings(format!(
+            "grain at index {index} has its centre at {:?} m, outside the domain; enlarge the domain",
+            positions[index].as_slice()
+        ))),
+    }
+}
+
 /// Charge [C] that the prescribed normal fields of the faces stand for by Gauss's law: ε Σ (E·n) A, counted on
 /// the faces of axes without an open face.
 pub(crate) fn charge_of_normal_fields(domain: &Domain, permittivity: f64) -> f64 {
