@@ -1,0 +1,23 @@
+//! Errors of the study crate.
+
+use std::path::PathBuf;
+
+/// Why a plot, picture or report cannot be made.
+#[derive(Debug, thiserror::Error)]
+#[non_exhaustive]
+pub enum StudyError {
+    /// A file cannot be written.
+    #[error("cannot write {}: {source}; check that the folder exists and is writable", path.display())]
+    Write {
+        /// The file.
+        path: PathBuf,
+        /// What the system says.
+        source: std::io::Error,
+    },
+    /// The file's ending names no known format.
+    #[error("{} ends in no known picture format; give .png or .svg", path.display())]
+    Ending {
+        /// The file.
+        path: PathBuf,
+    },
+}
