@@ -1,22 +1,42 @@
 //! The evaluator: one scene's field, with the parameters chosen for it.
 
+use crate::boundary_field::BoundaryField;
+use crate::cutoff::Cutoff;
+use crate::direct::Direct;
+use crate::images::{Geometry, ImageLattice};
+use crate::inputs::{check_finite, check_in_box, check_net_charge, check_result};
+use crate::p3m::{P3m, P3mParameters};
+use crate::tuning::Tuner;
 use crate::{FieldError, FieldValues, Wanted};
+use amberfield_core::constants::VACUUM_PERMITTIVITY;
 use amberfield_core::{Domain, FieldSettings, Method, Plan};
 use nalgebra::Vector3;
+use rayon::prelude::*;
 use serde::{Deserialize, Serialize};
 
 /// Parameters chosen for a scene. Written to the run folder and reused on resume, so that results never
 /// depend on a stopwatch.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
-pub struct Choice {
-    /// Method.
-    pub method: Method,
+#[serde(tag = "method", rename_all = "snake_case")]
+#[non_exhaustive]
+pub enum Choice {
+    /// The truncated sum.
+    Cutoff {
+        /// Cut-off radius r_c [m].
+        cutoff_m: f64,
+    },
+    /// The direct sum.
+    Direct,
+    /// p3m in open space with so few grains that every pair is summed: no grid is built.
+    AllPairs,
+    /// p3m on the internal grid.
+    P3m(P3mParameters),
 }
 
 /// Error found by comparing with a more exact evaluation on a sample of grains.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Measured {
-    /// RMS error of E over the scale the tolerance refers to.
+    /// RMS error of E over the larger of E_rms and q_rms n^{2/3}/(4πε).
     pub relative_rms: f64,
     /// Grains in the sample.
     pub sample: usize,
@@ -27,20 +47,72 @@ pub struct Measured {
 pub struct Statistics {
     /// Mean number of partners within the cut-off per particle (images included, full list).
     pub pairs_per_particle: f64,
-    /// Cells of the internal grid per axis; `None` when no grid was built.
+    /// Nodes of the internal grid per axis; `None` when no grid was built.
     pub grid_cells: Option<[usize; 3]>,
     /// Stage name and seconds, in the order in which they ran.
     pub seconds: Vec<(&'static str, f64)>,
 }
 
+/// What computes the field of the charges.
+#[derive(Debug)]
+enum Levels {
+    Cutoff(Box<Cutoff>),
+    Direct(Box<Direct>),
+    P3m(Box<P3m>),
+}
+
 /// The field of one scene.
 #[derive(Debug)]
 pub struct ElectricField {
+    domain: Domain,
+    settings: FieldSettings,
     choice: Choice,
+    levels: Levels,
+    outside: Option<Outside>,
+    error_estimated: Option<f64>,
+    error_measured: Option<Measured>,
+}
+
+/// The field that is there without any charge: of the faces, and external.
+#[derive(Debug)]
+struct Outside {
+    boundary: Option<BoundaryField>,
+    external: Vector3<f64>,
+    centre: Vector3<f64>,
+    values: Vec<(Vector3<f64>, f64)>,
+}
+
+impl Outside {
+    /// `None` where there is nothing to add.
+    fn new(domain: &Domain, settings: &FieldSettings) -> Result<Option<Self>, FieldError> {
+        /// The quadrature of the faces' field costs little: it takes no part of the tolerance worth naming.
+        const SHARE: f64 = 1e-3;
+        let boundary = match settings.method {
+            Method::P3m => BoundaryField::with_tolerance(domain, SHARE * settings.tolerance)?,
+            _ => BoundaryField::new(domain)?,
+        };
+        let external = settings.external_field_v_m;
+        let nothing = boundary.is_none() && external == Vector3::zeros();
+        let outside = Self { boundary, external, centre: domain.centre(), values: Vec::new() };
+        Ok((!nothing).then_some(outside))
+    }
+
+    /// E = boundary + external, V = boundary − E_external·(x − centre).
+    fn evaluate(&mut self, positions: &[Vector3<f64>]) -> &[(Vector3<f64>, f64)] {
+        self.values.resize(positions.len(), (Vector3::zeros(), 0.0));
+        self.values.par_iter_mut().zip(positions).for_each(|(value, position)| {
+            let (e, potential) = match &self.boundary {
+                Some(boundary) => boundary.evaluate(position),
+                None => (Vector3::zeros(), 0.0),
+            };
+            *value = (e + self.external, potential - self.external.dot(&(position - self.centre)));
+        });
+        &self.values
+    }
 }
 
 impl ElectricField {
-    /// Chooses parameters for the given particles and builds what they need.
+    /// Chooses parameters for the given particles (positions in m, charges in C) and builds what they need.
     ///
     /// # Errors
     /// Settings that the method or the boundaries do not allow, a net charge without a field, values that are
@@ -51,8 +123,26 @@ impl ElectricField {
         positions: &[Vector3<f64>],
         charges: &[f64],
     ) -> Result<Self, FieldError> {
-        let _ = (domain, settings, positions, charges);
-        Ok(Self { choice: Choice { method: settings.method } })
+        check_finite(positions, charges)?;
+        let (mut error_estimated, mut error_measured) = (None, None);
+        let choice = match settings.method {
+            Method::Cutoff => Choice::Cutoff { cutoff_m: cutoff_radius(settings)? },
+            Method::Direct => Choice::Direct,
+            Method::P3m => {
+                check_charges(domain, settings, positions, charges)?;
+                let tuner = Tuner::new(domain, settings, positions, charges);
+                if Geometry::of(domain)? == Geometry::Open && tuner.all_pairs_are_cheaper(images(domain)) {
+                    Choice::AllPairs
+                } else {
+                    let chosen = tuner.choose()?;
+                    (error_estimated, error_measured) = (chosen.estimated, chosen.measured);
+                    Choice::P3m(chosen.parameters)
+                }
+            }
+            method => return Err(FieldError::Settings(format!("method {method} is not known here"))),
+        };
+        let field = Self::with_choice(domain, settings, &choice)?;
+        Ok(Self { error_estimated, error_measured, ..field })
     }
 
     /// Builds a field with parameters chosen earlier.
@@ -64,15 +154,38 @@ impl ElectricField {
         settings: &FieldSettings,
         choice: &Choice,
     ) -> Result<Self, FieldError> {
-        let _ = (domain, settings);
-        Ok(Self { choice: choice.clone() })
+        Geometry::of(domain)?;
+        let permittivity = settings.relative_permittivity;
+        let levels = match choice {
+            Choice::Cutoff { cutoff_m } => {
+                Levels::Cutoff(Box::new(Cutoff::new(domain, permittivity, *cutoff_m)?))
+            }
+            Choice::Direct | Choice::AllPairs => {
+                let direct = Direct::new(domain, permittivity, settings.neutralising_background)?;
+                Levels::Direct(Box::new(direct))
+            }
+            Choice::P3m(parameters) => Levels::P3m(Box::new(P3m::new(domain, permittivity, *parameters))),
+        };
+        Ok(Self {
+            domain: domain.clone(),
+            settings: settings.clone(),
+            choice: choice.clone(),
+            levels,
+            outside: Outside::new(domain, settings)?,
+            error_estimated: None,
+            error_measured: None,
+        })
     }
 
-    /// E (and what else is wanted) at every particle. Allocates nothing once `out` has its size and the
-    /// particles' number is unchanged.
+    /// E (and what else is wanted) at every particle, positions in m, charges in C:
+    ///
+    /// E = near + middle + far + correction (the charges with their images) + boundary (potentials and normal
+    /// fields of the faces) + external.
+    ///
+    /// Allocates nothing once `out` has its size and the number of particles stays.
     ///
     /// # Errors
-    /// Values that are not finite; net charge that no longer vanishes where it must.
+    /// Values that are not finite; a net charge that no longer vanishes where it must; grains outside the box.
     pub fn evaluate(
         &mut self,
         positions: &[Vector3<f64>],
@@ -80,14 +193,33 @@ impl ElectricField {
         wanted: Wanted,
         out: &mut FieldValues,
     ) -> Result<(), FieldError> {
-        let _ = (charges, wanted);
-        out.e.clear();
-        out.e.resize(positions.len(), Vector3::zeros());
-        Ok(())
+        check_finite(positions, charges)?;
+        out.clear();
+        match &mut self.levels {
+            Levels::Cutoff(cutoff) => cutoff.evaluate(positions, charges, wanted, out)?,
+            Levels::Direct(direct) => direct.evaluate(positions, charges, wanted, out)?,
+            Levels::P3m(p3m) => {
+                check_charges(&self.domain, &self.settings, positions, charges)?;
+                p3m.evaluate(positions, charges, wanted, out);
+            }
+        }
+        out.complete(positions.len(), wanted);
+        if let Some(outside) = &mut self.outside {
+            for (particle, (e, potential)) in outside.evaluate(positions).iter().enumerate() {
+                out.e[particle] += e;
+                if wanted.potential {
+                    out.potential[particle] += potential;
+                }
+                if wanted.components {
+                    out.components.far[particle] += e;
+                }
+            }
+        }
+        check_result(&out.e)
     }
 
-    /// Measures the error of E on a sample by an independent, more exact splitting; `None` for methods that
-    /// make no promise (`cutoff`, `kolehmainen`) and for `direct`.
+    /// Measures the error of E on a sample by a second, more exact splitting; `None` for methods that make no
+    /// promise (`cutoff`, `kolehmainen`) and for sums that are exact.
     ///
     /// # Errors
     /// As [`Self::evaluate`].
@@ -96,8 +228,15 @@ impl ElectricField {
         positions: &[Vector3<f64>],
         charges: &[f64],
     ) -> Result<Option<Measured>, FieldError> {
-        let _ = (positions, charges);
-        Ok(None)
+        let Levels::P3m(p3m) = &self.levels else { return Ok(None) };
+        check_finite(positions, charges)?;
+        check_charges(&self.domain, &self.settings, positions, charges)?;
+        if charges.iter().all(|charge| *charge == 0.0) {
+            return Ok(None);
+        }
+        let tuner = Tuner::new(&self.domain, &self.settings, positions, charges);
+        self.error_measured = Some(tuner.measure(*p3m.parameters(), tuner.scale()?));
+        Ok(self.error_measured)
     }
 
     /// Parameters in force.
@@ -109,24 +248,77 @@ impl ElectricField {
     /// A-priori estimate of the relative RMS error; `None` for methods that make no promise.
     #[must_use]
     pub fn error_estimated(&self) -> Option<f64> {
-        None
+        self.error_estimated
+    }
+
+    /// Error measured last, when parameters were chosen or by [`Self::measure_error`].
+    #[must_use]
+    pub fn error_measured(&self) -> Option<Measured> {
+        self.error_measured
     }
 
     /// Cost of the last evaluation.
     #[must_use]
     pub fn statistics(&self) -> Statistics {
-        Statistics::default()
+        match &self.levels {
+            Levels::Cutoff(cutoff) => Statistics {
+                pairs_per_particle: cutoff.pairs_per_particle(),
+                grid_cells: None,
+                seconds: cutoff.seconds().to_vec(),
+            },
+            Levels::Direct(direct) => Statistics {
+                pairs_per_particle: direct.pairs_per_particle(),
+                grid_cells: None,
+                seconds: direct.seconds().to_vec(),
+            },
+            Levels::P3m(p3m) => Statistics {
+                pairs_per_particle: p3m.pairs_per_particle(),
+                grid_cells: Some(p3m.cells()),
+                seconds: p3m.stopwatch.laps().to_vec(),
+            },
+        }
     }
 
     /// Memory held [bytes].
     #[must_use]
     pub fn memory_bytes(&self) -> usize {
-        0
+        match &self.levels {
+            Levels::Cutoff(cutoff) => cutoff.memory_bytes(),
+            Levels::Direct(direct) => direct.memory_bytes(),
+            Levels::P3m(p3m) => p3m.memory_bytes(),
+        }
     }
 
     /// Which field stages are built and which are not, with reasons.
     #[must_use]
     pub fn plan(&self) -> Plan {
-        Plan::new()
+        crate::plan::plan(&self.domain, &self.settings, &self.choice)
     }
+}
+
+/// Refuses what the grid cannot carry: grains outside the box and a net charge that no face takes.
+fn check_charges(
+    domain: &Domain,
+    settings: &FieldSettings,
+    positions: &[Vector3<f64>],
+    charges: &[f64],
+) -> Result<(), FieldError> {
+    check_in_box(domain, positions)?;
+    let permittivity = VACUUM_PERMITTIVITY * settings.relative_permittivity;
+    check_net_charge(domain, permittivity, settings.neutralising_background, charges)
+}
+
+/// The cut-off radius of a method that cannot do without.
+fn cutoff_radius(settings: &FieldSettings) -> Result<f64, FieldError> {
+    settings.cutoff_radius_m.ok_or_else(|| {
+        FieldError::Settings(format!(
+            "method {} needs electric_field.field_cutoff_radius [m]; give one",
+            settings.method
+        ))
+    })
+}
+
+/// Images per charge in a box without closed axes.
+fn images(domain: &Domain) -> usize {
+    ImageLattice::new(domain).axes.iter().map(|axis| axis.images.len()).product()
 }

@@ -2,11 +2,26 @@
 //!
 //! E = near + far + boundary + external (+ correction), see [`ElectricField::evaluate`].
 
+mod boundary_field;
+mod cutoff;
+mod direct;
 mod electric_field;
 mod error;
+mod error_model;
 mod grid;
+mod image_cells;
+mod images;
+mod inputs;
+mod near;
+mod p3m;
+mod plan;
+mod stopwatch;
+mod tuning;
 mod values;
 
+pub use boundary_field::BoundaryField;
+pub use direct::Direct;
 pub use electric_field::{Choice, ElectricField, Measured, Statistics};
 pub use error::FieldError;
+pub use p3m::P3mParameters;
 pub use values::{Components, FieldValues, Wanted};

@@ -34,3 +34,33 @@ pub struct FieldValues {
     /// Parts of E; empty vectors unless asked for.
     pub components: Components,
 }
+
+impl FieldValues {
+    /// Forgets all values, keeping their memory.
+    pub(crate) fn clear(&mut self) {
+        self.e.clear();
+        self.potential.clear();
+        for part in self.components.parts() {
+            part.clear();
+        }
+    }
+
+    /// Zeros for what is wanted and no level has filled.
+    pub(crate) fn complete(&mut self, particles: usize, wanted: Wanted) {
+        self.e.resize(particles, Vector3::zeros());
+        if wanted.potential {
+            self.potential.resize(particles, 0.0);
+        }
+        if wanted.components {
+            for part in self.components.parts() {
+                part.resize(particles, Vector3::zeros());
+            }
+        }
+    }
+}
+
+impl Components {
+    fn parts(&mut self) -> [&mut Vec<Vector3<f64>>; 4] {
+        [&mut self.near, &mut self.middle, &mut self.far, &mut self.correction]
+    }
+}

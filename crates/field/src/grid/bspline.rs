@@ -14,7 +14,7 @@ pub(crate) const HALO: usize = MAX_ORDER / 2 + 1;
 /// and derivatives with respect to `u` at the `P` nodes from there.
 #[inline(always)]
 pub(crate) fn weights<const P: usize>(u: f64) -> (isize, [f64; P], [f64; P]) {
-    let shift = if P % 2 == 0 { 0.0 } else { 0.5 };
+    let shift = if P.is_multiple_of(2) { 0.0 } else { 0.5 };
     let cell = (u + shift).floor();
     let first = cell as isize - (P as isize - 1) / 2;
     // Distance past the lowest knot of the last spline that is non-zero here, in [0, 1).

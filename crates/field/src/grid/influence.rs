@@ -44,7 +44,12 @@ impl AxisTables {
             let (mut a, mut b, mut n) = (0.0, 0.0, [0.0; 2]);
             for m in -ALIASES..=ALIASES {
                 let km = phase + 2.0 * PI * f64::from(m);
-                let sinc = if km == 0.0 { 1.0 } else { (0.5 * km).sin() / (0.5 * km) };
+                // At k = 0 the principal alias alone is not zero, exactly: rounding must not fill the rest.
+                let sinc = match (phase == 0.0, m == 0) {
+                    (true, true) => 1.0,
+                    (true, false) => 0.0,
+                    _ => (0.5 * km).sin() / (0.5 * km),
+                };
                 let window = sinc.powi(2 * order as i32);
                 let wave_squared = (km / spacing).powi(2);
                 a += window;

@@ -17,7 +17,7 @@ const GATHER: usize = 256;
 
 /// What the grid is made of.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
-pub struct GridParameters {
+pub(crate) struct GridParameters {
     /// Largest node spacing [m].
     pub spacing_m: f64,
     /// Order of the splines, 4 to 8.

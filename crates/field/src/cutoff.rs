@@ -1,0 +1,160 @@
+//! The plain truncated sum: what most DEM runs use today.
+
+use crate::image_cells::ImageCells;
+use crate::images::ImageLattice;
+use crate::inputs::{check_finite, check_result};
+use crate::{FieldError, FieldValues, Wanted};
+use amberfield_core::Domain;
+use amberfield_core::constants::coulomb_constant;
+use nalgebra::Vector3;
+use rayon::prelude::*;
+use std::time::Instant;
+
+/// Coulomb's sum over the charges and their periodic copies within a cut-off radius; walls have no images.
+///
+/// Memory is kept: repeated evaluations of as many particles allocate nothing. Results do not depend on the
+/// number of threads.
+#[derive(Debug)]
+pub struct Cutoff {
+    domain: Domain,
+    lattice: ImageLattice,
+    relative_permittivity: f64,
+    radius: f64,
+    cells: ImageCells<()>,
+    wrapped: Vec<Vector3<f64>>,
+    sums: Vec<CoulombSum>,
+    pairs_per_particle: f64,
+    seconds: [(&'static str, f64); 1],
+}
+
+/// Coulomb's sum over k_e at one particle.
+#[derive(Clone, Copy, Debug, Default)]
+pub(crate) struct CoulombSum {
+    /// Potential [C/m].
+    pub(crate) potential: f64,
+    /// Field [C/m²].
+    pub(crate) e: Vector3<f64>,
+    /// Number of partners.
+    pub(crate) partners: usize,
+}
+
+impl Cutoff {
+    /// The truncated sum with cut-off radius `radius_m` [m].
+    ///
+    /// # Errors
+    /// A radius that is not positive and finite.
+    pub fn new(domain: &Domain, relative_permittivity: f64, radius_m: f64) -> Result<Self, FieldError> {
+        check_radius(radius_m)?;
+        Ok(Self {
+            domain: domain.clone(),
+            lattice: ImageLattice::periodic_only(domain),
+            relative_permittivity,
+            radius: radius_m,
+            cells: ImageCells::default(),
+            wrapped: Vec::new(),
+            sums: Vec::new(),
+            pairs_per_particle: 0.0,
+            seconds: [("near", 0.0)],
+        })
+    }
+
+    /// E [V/m] (and what else is wanted) at every particle, positions in m, charges in C. All of it is near.
+    ///
+    /// # Errors
+    /// Values that are not finite, two charges in one place.
+    pub fn evaluate(
+        &mut self,
+        positions: &[Vector3<f64>],
+        charges: &[f64],
+        wanted: Wanted,
+        out: &mut FieldValues,
+    ) -> Result<(), FieldError> {
+        check_finite(positions, charges)?;
+        let start = Instant::now();
+        self.wrapped.clear();
+        self.wrapped.extend(positions.iter().map(|position| self.domain.wrap(*position)));
+        self.cells.build(&self.lattice, &self.wrapped, charges, self.radius, |_, _| ());
+        coulomb_sums(&self.cells, &self.wrapped, self.radius, &mut self.sums);
+        let k = coulomb_constant(self.relative_permittivity);
+        out.e.clear();
+        out.e.extend(self.sums.iter().map(|sum| sum.e * k));
+        if wanted.potential {
+            out.potential.clear();
+            out.potential.extend(self.sums.iter().map(|sum| sum.potential * k));
+        }
+        if wanted.components {
+            out.components.near.clone_from(&out.e);
+            let components = &mut out.components;
+            for part in [&mut components.middle, &mut components.far, &mut components.correction] {
+                part.clear();
+                part.resize(positions.len(), Vector3::zeros());
+            }
+        }
+        self.pairs_per_particle = mean_partners(&self.sums);
+        self.seconds[0].1 = start.elapsed().as_secs_f64();
+        check_result(&out.e)
+    }
+
+    /// Mean number of partners within the radius in the last evaluation, periodic copies included.
+    #[must_use]
+    pub fn pairs_per_particle(&self) -> f64 {
+        self.pairs_per_particle
+    }
+
+    /// Stages of the last evaluation and their time [s].
+    #[must_use]
+    pub fn seconds(&self) -> &[(&'static str, f64)] {
+        &self.seconds
+    }
+
+    /// Memory kept between evaluations [bytes].
+    #[must_use]
+    pub fn memory_bytes(&self) -> usize {
+        self.cells.memory_bytes()
+            + self.wrapped.capacity() * size_of::<Vector3<f64>>()
+            + self.sums.capacity() * size_of::<CoulombSum>()
+    }
+}
+
+/// Refuses a cut-off radius that is not a length.
+pub(crate) fn check_radius(radius_m: f64) -> Result<(), FieldError> {
+    if radius_m.is_finite() && radius_m > 0.0 {
+        return Ok(());
+    }
+    Err(FieldError::Settings(format!(
+        "cut-off radius {radius_m} m; give electric_field.field_cutoff_radius a positive length"
+    )))
+}
+
+/// Mean number of partners.
+pub(crate) fn mean_partners(sums: &[CoulombSum]) -> f64 {
+    sums.iter().map(|sum| sum.partners).sum::<usize>() as f64 / sums.len().max(1) as f64
+}
+
+/// Σ q/r within the radius at every particle, itself left out.
+pub(crate) fn coulomb_sums<T: Copy + Default + Send + Sync>(
+    cells: &ImageCells<T>,
+    positions: &[Vector3<f64>],
+    radius: f64,
+    sums: &mut Vec<CoulombSum>,
+) {
+    sums.resize(positions.len(), CoulombSum::default());
+    let limit = radius * radius;
+    sums.par_iter_mut().zip(positions).enumerate().for_each(|(index, (sum, at))| {
+        let mut total = CoulombSum::default();
+        cells.for_each_range(at, |range| {
+            for k in range {
+                let d = Vector3::new(at.x - cells.x[k], at.y - cells.y[k], at.z - cells.z[k]);
+                let square = d.norm_squared();
+                if square < limit && cells.real[k] as usize != index {
+                    let inverse = 1.0 / square.sqrt();
+                    let potential = cells.charge[k] * inverse;
+                    total.potential += potential;
+                    total.e += d * (potential * inverse * inverse);
+                    total.partners += 1;
+                }
+            }
+        });
+        *sum = total;
+    });
+}

@@ -1,0 +1,167 @@
+//! Particle–particle particle–mesh with smooth Gaussian splitting:
+//!
+//! 1/r = [1 − erf(r/√2σ)]/r + erf(r/√2σ)/r — pairs within r_c, and the internal grid with the box's faces.
+
+use crate::grid::level::{GridLevel, GridParameters};
+use crate::near::{NearLevel, NearParameters};
+use crate::stopwatch::Stopwatch;
+use crate::{FieldValues, Wanted};
+use amberfield_core::Domain;
+use amberfield_core::constants::coulomb_constant;
+use amberfield_laws::gaussian_cloud::cloud_potential;
+use nalgebra::Vector3;
+use serde::{Deserialize, Serialize};
+use std::f64::consts::PI;
+
+/// Parameters of the splitting.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
+pub struct P3mParameters {
+    /// Gaussian width σ of the clouds [m].
+    pub sigma_m: f64,
+    /// Near cut-off radius r_c [m].
+    pub cutoff_m: f64,
+    /// Largest node spacing of the grid [m].
+    pub spacing_m: f64,
+    /// Order of the B-splines, 4 to 8.
+    pub order: usize,
+    /// Error of the near kernel's polynomials over the cloud's value at its centre.
+    pub kernel_accuracy: f64,
+}
+
+impl P3mParameters {
+    pub(crate) fn near(&self) -> NearParameters {
+        NearParameters {
+            sigma_m: self.sigma_m,
+            cutoff_m: self.cutoff_m,
+            kernel_accuracy: self.kernel_accuracy,
+        }
+    }
+
+    pub(crate) fn grid(&self) -> GridParameters {
+        GridParameters { spacing_m: self.spacing_m, order: self.order, sigma_m: self.sigma_m }
+    }
+}
+
+/// Both levels and their buffers.
+#[derive(Debug)]
+pub(crate) struct P3m {
+    domain: Domain,
+    parameters: P3mParameters,
+    coulomb: f64,
+    near: NearLevel,
+    grid: GridLevel,
+    positions: Vec<Vector3<f64>>,
+    near_field: Vec<(Vector3<f64>, f64)>,
+    grid_field: Vec<(Vector3<f64>, f64)>,
+    pub(crate) stopwatch: Stopwatch,
+}
+
+impl P3m {
+    pub(crate) fn new(domain: &Domain, relative_permittivity: f64, parameters: P3mParameters) -> Self {
+        Self {
+            domain: domain.clone(),
+            parameters,
+            coulomb: coulomb_constant(relative_permittivity),
+            near: NearLevel::new(domain, parameters.near()),
+            grid: GridLevel::new(domain, parameters.grid()),
+            positions: Vec::new(),
+            near_field: Vec::new(),
+            grid_field: Vec::new(),
+            stopwatch: Stopwatch::default(),
+        }
+    }
+
+    pub(crate) fn parameters(&self) -> &P3mParameters {
+        &self.parameters
+    }
+
+    pub(crate) fn cells(&self) -> [usize; 3] {
+        self.grid.cells()
+    }
+
+    pub(crate) fn pairs_per_particle(&self) -> f64 {
+        self.near.pairs_per_particle()
+    }
+
+    pub(crate) fn memory_bytes(&self) -> usize {
+        self.near.memory_bytes() + self.grid.memory_bytes() + self.positions.capacity() * 88
+    }
+
+    /// E (and what else is wanted) of the charges alone, positions inside the domain or a period away.
+    pub(crate) fn evaluate(
+        &mut self,
+        positions: &[Vector3<f64>],
+        charges: &[f64],
+        wanted: Wanted,
+        out: &mut FieldValues,
+    ) {
+        self.stopwatch.restart();
+        self.load(positions);
+        self.near.sort(&self.positions, charges);
+        self.stopwatch.lap("sort");
+        self.near.add_all(wanted.potential, &mut self.near_field);
+        self.stopwatch.lap("near");
+        self.grid.solve(&self.positions, charges);
+        self.stopwatch.lap("grid");
+        self.grid.gather(&self.positions, &mut self.grid_field);
+        self.stopwatch.lap("gather");
+
+        let k = self.coulomb;
+        let levels = || self.near_field.iter().zip(&self.grid_field);
+        out.e.clear();
+        out.e.extend(levels().map(|(near, far)| k * (near.0 + far.0)));
+        if wanted.potential {
+            let own_cloud = cloud_potential(0.0, self.parameters.sigma_m);
+            let background = self.background_potential(charges);
+            out.potential.clear();
+            out.potential.extend(
+                levels()
+                    .zip(charges)
+                    .map(|((near, far), charge)| k * (near.1 + far.1 - charge * own_cloud - background)),
+            );
+        }
+        if wanted.components {
+            out.components.near.clear();
+            out.components.near.extend(self.near_field.iter().map(|near| k * near.0));
+            out.components.far.clear();
+            out.components.far.extend(self.grid_field.iter().map(|far| k * far.0));
+        }
+        self.stopwatch.lap("sum");
+    }
+
+    /// E of the charges alone at a sample of the particles.
+    pub(crate) fn sample(
+        &mut self,
+        positions: &[Vector3<f64>],
+        charges: &[f64],
+        sample: &[usize],
+    ) -> Vec<Vector3<f64>> {
+        self.load(positions);
+        self.near.sort(&self.positions, charges);
+        self.grid.solve(&self.positions, charges);
+        let places: Vec<_> = sample.iter().map(|&particle| self.positions[particle]).collect();
+        let mut far = vec![(Vector3::zeros(), 0.0); sample.len()];
+        self.grid.gather(&places, &mut far);
+        let near = self.near.at(sample);
+        near.iter().zip(&far).map(|(near, far)| self.coulomb * (near + far.0)).collect()
+    }
+
+    fn load(&mut self, positions: &[Vector3<f64>]) {
+        let nothing = (Vector3::zeros(), 0.0);
+        self.positions.clear();
+        self.positions.extend(positions.iter().map(|&position| self.domain.wrap(position)));
+        for field in [&mut self.near_field, &mut self.grid_field] {
+            field.clear();
+            field.resize(positions.len(), nothing);
+        }
+    }
+
+    /// Mean potential of the near level in a box without conductor, where the mean must vanish.
+    fn background_potential(&self, charges: &[f64]) -> f64 {
+        if !self.domain.needs_neutrality() {
+            return 0.0;
+        }
+        let net: f64 = charges.iter().sum();
+        2.0 * PI * self.parameters.sigma_m.powi(2) * net / self.domain.volume()
+    }
+}

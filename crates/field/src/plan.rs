@@ -1,0 +1,47 @@
+//! Which field stages a scene has, and why.
+
+use crate::Choice;
+use amberfield_core::{Domain, FieldSettings, Plan};
+
+/// Stages of a scene's field and what it leaves out.
+pub(crate) fn plan(domain: &Domain, settings: &FieldSettings, choice: &Choice) -> Plan {
+    let mut plan = Plan::new();
+    match choice {
+        Choice::Cutoff { cutoff_m } => {
+            plan.build("near", format!("method cutoff: pairs within r_c = {cutoff_m:.4e} m, nothing beyond"));
+            plan.leave_out("grid", "method cutoff has no far level");
+        }
+        Choice::Direct => plan.build("pairs", "method direct: every pair and every image"),
+        Choice::AllPairs => {
+            plan.build("near", "open space and few grains: every pair costs less than a grid");
+            plan.leave_out("grid", "the near level covers the domain");
+        }
+        Choice::P3m(parameters) => {
+            plan.build(
+                "near",
+                format!(
+                    "pairs and images within r_c = {:.4e} m, for tolerance {:e}",
+                    parameters.cutoff_m, settings.tolerance
+                ),
+            );
+            plan.build(
+                "grid",
+                format!(
+                    "smooth part: clouds of {:.4e} m on nodes {:.4e} m apart, splines of order {}",
+                    parameters.sigma_m, parameters.spacing_m, parameters.order
+                ),
+            );
+        }
+    }
+    plan.leave_out("middle", "no external field solver: the internal grid carries middle and far level");
+    if settings.external_field_v_m == nalgebra::Vector3::zeros() {
+        plan.leave_out("external", "external_field_V_m is zero");
+    } else {
+        plan.build("external", "external_field_V_m is given");
+    }
+    let images = domain.faces().iter().flatten().any(|face| face.is_conductor() || face.is_insulating());
+    if !images {
+        plan.leave_out("images", "no conducting or insulating face");
+    }
+    plan
+}

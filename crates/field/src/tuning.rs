@@ -1,0 +1,383 @@
+//! From a tolerance and a cloud of charges to the parameters of p3m: error model, candidates, timing, check.
+
+use crate::error_model::{grid_error_squared, near_error_squared};
+use crate::grid::level::grid_axes;
+use crate::p3m::{P3m, P3mParameters};
+use crate::{FieldError, FieldValues, Measured, Wanted};
+use amberfield_core::constants::coulomb_constant;
+use amberfield_core::{Domain, FieldSettings, Tuning};
+use nalgebra::Vector3;
+use std::time::Instant;
+
+/// Share of the tolerance that the model aims at: a sample knows the true error to some ten per cent only.
+const AIM: f64 = 0.75;
+/// Share of the tolerance that a measured error may reach.
+const ACCEPT: f64 = 0.9;
+/// Grains in the sample on which the error is measured.
+const SAMPLE: usize = 600;
+/// The second splitting's width over the first.
+const SECOND_WIDTH: f64 = 1.5;
+/// Rounds of tightening before a tolerance counts as out of reach.
+const ROUNDS: usize = 6;
+/// Candidates that are timed.
+const TIMED: usize = 4;
+/// Tolerance of the first look at E_rms.
+const FIRST_LOOK: f64 = 0.05;
+/// Smallest and largest σ/h considered: below, the model is no longer a model; above, order 8 has no use.
+const RATIOS: [f64; 2] = [0.3, 4.0];
+/// Smallest and largest r_c/σ considered.
+const CUTOFFS: [f64; 2] = [0.5, 9.0];
+
+/// Cost of the pieces, in nanoseconds on a reference machine; only ratios matter.
+mod cost {
+    /// A pair within the cut-off, the neighbours beyond it that are looked at included.
+    pub(super) const PAIR: f64 = 2.2;
+    /// A pair of the direct sum.
+    pub(super) const ALL_PAIRS: f64 = 1.0;
+    /// Spreading and gathering, per node of a spline.
+    pub(super) const NODE: f64 = 0.9;
+    /// Transforms there and back, per padded node and factor log₂(nodes).
+    pub(super) const TRANSFORM: f64 = 0.75;
+    /// Sorting and summing a particle.
+    pub(super) const PARTICLE: f64 = 100.0;
+}
+
+/// What a cloud of charges means for the error.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Cloud {
+    count: f64,
+    /// q_rms [C].
+    charge: f64,
+    /// Number density where the charges are [1/m³].
+    density: f64,
+    /// Scale to which errors are relative, before E_rms is known: q_rms n^{2/3} k_e [V/m].
+    floor: f64,
+}
+
+impl Cloud {
+    pub(crate) fn new(
+        domain: &Domain,
+        permittivity: f64,
+        positions: &[Vector3<f64>],
+        charges: &[f64],
+    ) -> Self {
+        let count = positions.len() as f64;
+        let charge = (charges.iter().map(|q| q * q).sum::<f64>() / count.max(1.0)).sqrt();
+        let mean_density = count / domain.volume();
+        let floor = coulomb_constant(permittivity) * charge * mean_density.powf(2.0 / 3.0);
+        let density = local_density(domain, positions, charges).max(mean_density);
+        Self { count, charge, density, floor }
+    }
+
+    /// Squared error [V²/m²] for a coefficient in 1/m.
+    fn squared_error(&self, permittivity: f64, coefficient: f64) -> f64 {
+        (coulomb_constant(permittivity) * self.charge).powi(2) * self.density * coefficient
+    }
+}
+
+/// Mean density around a charge, weighted with q²: clouds need not fill the domain.
+fn local_density(domain: &Domain, positions: &[Vector3<f64>], charges: &[f64]) -> f64 {
+    const PER_CELL: f64 = 8.0;
+    let cells = (positions.len() as f64 / PER_CELL).cbrt().max(1.0);
+    let mean = domain.volume().cbrt();
+    let counts = domain.extent().map(|length| (cells * length / mean).round().clamp(1.0, 512.0) as usize);
+    let cell_of = |position: &Vector3<f64>| {
+        let offset = domain.wrap(*position) - domain.min();
+        (0..3).fold(0, |index, axis| {
+            let cell = (offset[axis] / domain.extent()[axis] * counts[axis] as f64).max(0.0) as usize;
+            index * counts[axis] + cell.min(counts[axis] - 1)
+        })
+    };
+    let mut square_sums = vec![0.0; counts.product()];
+    for (position, charge) in positions.iter().zip(charges) {
+        square_sums[cell_of(position)] += charge * charge;
+    }
+    let total: f64 = square_sums.iter().sum();
+    if total == 0.0 {
+        return 0.0;
+    }
+    let mean_square = total / positions.len() as f64;
+    let cell_volume = domain.volume() / square_sums.len() as f64;
+    square_sums.iter().map(|sum| sum * sum).sum::<f64>() / (total * mean_square * cell_volume)
+}
+
+/// What the tuner settled on.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Chosen {
+    pub(crate) parameters: P3mParameters,
+    /// Error by the model.
+    pub(crate) estimated: Option<f64>,
+    /// Error on a sample; `None` while no grain is charged.
+    pub(crate) measured: Option<Measured>,
+}
+
+/// The tuner of one scene.
+pub(crate) struct Tuner<'a> {
+    domain: &'a Domain,
+    settings: &'a FieldSettings,
+    positions: &'a [Vector3<f64>],
+    charges: &'a [f64],
+    cloud: Cloud,
+    grid_errors: Vec<OrderErrors>,
+}
+
+/// ln Q over ln(σ/h) for one order.
+struct OrderErrors {
+    order: usize,
+    samples: Vec<(f64, f64)>,
+}
+
+impl OrderErrors {
+    fn new(order: usize) -> Self {
+        const COUNT: usize = 28;
+        let [low, high] = RATIOS.map(f64::ln);
+        let samples = (0..=COUNT)
+            .map(|i| {
+                let ratio = low + (high - low) * i as f64 / COUNT as f64;
+                (ratio, grid_error_squared(order, ratio.exp()).max(f64::MIN_POSITIVE).ln())
+            })
+            .collect();
+        Self { order, samples }
+    }
+
+    /// Smallest σ/h whose squared coefficient is at most `bound`.
+    fn ratio_for(&self, bound: f64) -> Option<f64> {
+        let bound = bound.ln();
+        let at = self.samples.iter().position(|(_, error)| *error <= bound)?;
+        if at == 0 {
+            return Some(self.samples[0].0.exp());
+        }
+        let ((r0, e0), (r1, e1)) = (self.samples[at - 1], self.samples[at]);
+        Some((r0 + (r1 - r0) * (e0 - bound) / (e0 - e1)).exp())
+    }
+}
+
+/// Smallest r_c/σ whose squared coefficient is at most `bound`.
+fn cutoff_for(bound: f64) -> Option<f64> {
+    let [mut low, mut high] = CUTOFFS;
+    if near_error_squared(high) > bound {
+        return None;
+    }
+    for _ in 0..30 {
+        let middle = 0.5 * (low + high);
+        if near_error_squared(middle) > bound {
+            low = middle;
+        } else {
+            high = middle;
+        }
+    }
+    Some(high)
+}
+
+impl<'a> Tuner<'a> {
+    pub(crate) fn new(
+        domain: &'a Domain,
+        settings: &'a FieldSettings,
+        positions: &'a [Vector3<f64>],
+        charges: &'a [f64],
+    ) -> Self {
+        let cloud = Cloud::new(domain, settings.relative_permittivity, positions, charges);
+        let grid_errors = (4..=8).map(OrderErrors::new).collect();
+        Self { domain, settings, positions, charges, cloud, grid_errors }
+    }
+
+    /// Parameters that meet the tolerance, with their measured error.
+    pub(crate) fn choose(&self) -> Result<Chosen, FieldError> {
+        if self.cloud.charge == 0.0 {
+            // No charge yet: what a unit charge per grain would need.
+            let cloud = Cloud {
+                charge: 1.0,
+                density: self.cloud.count.max(1.0) / self.domain.volume(),
+                ..self.cloud
+            };
+            let scale = coulomb_constant(self.settings.relative_permittivity) * cloud.density.powf(2.0 / 3.0);
+            let bound = AIM * self.settings.tolerance * scale;
+            let parameters = self.best_by_model(&cloud, bound)?;
+            return Ok(Chosen { parameters, estimated: None, measured: None });
+        }
+        let scale = self.scale()?;
+        let asked = self.settings.tolerance;
+        let mut aim = AIM * asked;
+        let mut best: Option<f64> = None;
+        for _ in 0..ROUNDS {
+            let candidates = self.candidates(&self.cloud, aim * scale);
+            if candidates.is_empty() {
+                break;
+            }
+            let timed = self.fastest(&candidates);
+            let measured = self.measure(timed, scale);
+            tracing::debug!(?timed, aim, measured = measured.relative_rms, "p3m candidate");
+            if measured.relative_rms <= ACCEPT * asked {
+                let estimated = Some(self.estimate(&timed, scale));
+                return Ok(Chosen { parameters: timed, estimated, measured: Some(measured) });
+            }
+            best = Some(best.unwrap_or(f64::INFINITY).min(measured.relative_rms));
+            aim *= (AIM * asked / measured.relative_rms).clamp(0.05, 0.8);
+        }
+        Err(FieldError::Tolerance {
+            asked,
+            reached: best.unwrap_or(f64::NAN),
+            advice: "raise electric_field.tolerance, remove field_cutoff_radius or grid.cells, or use method = \"direct\"".into(),
+        })
+    }
+
+    /// What errors are relative to [V/m]: the larger of E_rms and q_rms n^{2/3}/(4πε).
+    pub(crate) fn scale(&self) -> Result<f64, FieldError> {
+        let first = self.best_by_model(&self.cloud, FIRST_LOOK * self.cloud.floor)?;
+        let mut field = FieldValues::default();
+        let mut p3m = P3m::new(self.domain, self.settings.relative_permittivity, first);
+        p3m.evaluate(self.positions, self.charges, Wanted::default(), &mut field);
+        let sum: f64 = field.e.iter().map(Vector3::norm_squared).sum();
+        Ok((sum / self.cloud.count).sqrt().max(self.cloud.floor))
+    }
+
+    /// Measures the error of parameters against a second, wider and more exact splitting.
+    pub(crate) fn measure(&self, parameters: P3mParameters, scale: f64) -> Measured {
+        let step = self.positions.len().div_ceil(SAMPLE).max(1);
+        let sample: Vec<usize> = (0..self.positions.len()).step_by(step).collect();
+        let sigma = SECOND_WIDTH * parameters.sigma_m;
+        let second = P3mParameters {
+            sigma_m: sigma,
+            cutoff_m: sigma * (parameters.cutoff_m / parameters.sigma_m + 0.7),
+            order: (parameters.order + 1).min(8),
+            kernel_accuracy: 0.1 * parameters.kernel_accuracy,
+            ..parameters
+        };
+        let field = |parameters| {
+            P3m::new(self.domain, self.settings.relative_permittivity, parameters).sample(
+                self.positions,
+                self.charges,
+                &sample,
+            )
+        };
+        let (first, second) = (field(parameters), field(second));
+        let sum: f64 = first.iter().zip(&second).map(|(a, b)| (a - b).norm_squared()).sum();
+        let relative_rms = (sum / sample.len().max(1) as f64).sqrt() / scale;
+        Measured { relative_rms, sample: sample.len() }
+    }
+
+    /// A-priori relative error of parameters.
+    pub(crate) fn estimate(&self, parameters: &P3mParameters, scale: f64) -> f64 {
+        let spacing = self.widest_spacing(parameters);
+        let sigma = parameters.sigma_m;
+        let coefficient = near_error_squared(parameters.cutoff_m / sigma) / sigma
+            + grid_error_squared(parameters.order, sigma / spacing) / spacing;
+        self.cloud.squared_error(self.settings.relative_permittivity, coefficient).sqrt() / scale
+    }
+
+    /// Whether summing every pair with `images` images each costs less than the cheapest grid.
+    pub(crate) fn all_pairs_are_cheaper(&self, images: usize) -> bool {
+        let error = AIM * self.settings.tolerance * self.cloud.floor;
+        let grid = self.candidates(&self.cloud, error).first().map_or(f64::INFINITY, |(cost, _)| *cost);
+        let free = self.settings.cutoff_radius_m.is_none() && self.settings.grid_cells.is_none();
+        free && cost::ALL_PAIRS * images as f64 * self.cloud.count * self.cloud.count < grid
+    }
+
+    fn widest_spacing(&self, parameters: &P3mParameters) -> f64 {
+        let axes = grid_axes(self.domain, parameters.spacing_m, parameters.sigma_m);
+        axes.iter().map(|axis| axis.spacing).fold(0.0, f64::max)
+    }
+
+    fn best_by_model(&self, cloud: &Cloud, error: f64) -> Result<P3mParameters, FieldError> {
+        self.candidates(cloud, error).first().map(|(_, parameters)| *parameters).ok_or_else(|| {
+            FieldError::Settings(
+                "no p3m parameters fit field_cutoff_radius and grid.cells together; remove one of them"
+                    .into(),
+            )
+        })
+    }
+
+    /// Candidates with an error of `error` [V/m], cheapest first by the cost model: the best of each order.
+    fn candidates(&self, cloud: &Cloud, error: f64) -> Vec<(f64, P3mParameters)> {
+        let one = cloud.squared_error(self.settings.relative_permittivity, 1.0);
+        let half = 0.5 * error * error / one;
+        let mut best: Vec<(f64, P3mParameters)> = Vec::new();
+        for errors in &self.grid_errors {
+            let of_order = self
+                .spacings(cloud)
+                .into_iter()
+                .filter_map(|spacing| self.candidate(errors, spacing, half, error))
+                .map(|parameters| (self.cost(cloud, &parameters), parameters))
+                .min_by(|a, b| a.0.total_cmp(&b.0));
+            best.extend(of_order);
+        }
+        best.sort_by(|a, b| a.0.total_cmp(&b.0));
+        best
+    }
+
+    fn candidate(&self, errors: &OrderErrors, spacing: f64, half: f64, error: f64) -> Option<P3mParameters> {
+        let least_sigma = errors.ratio_for(half * spacing)? * spacing;
+        let (sigma_m, cutoff_m) = match self.settings.cutoff_radius_m {
+            None => (least_sigma, least_sigma * cutoff_for(half * least_sigma)?),
+            Some(cutoff) => {
+                // The widest clouds that the fixed cut-off allows.
+                let mut sigma = cutoff / CUTOFFS[0];
+                for _ in 0..60 {
+                    sigma = cutoff / cutoff_for(half * sigma)?;
+                }
+                (sigma, cutoff)
+            }
+        };
+        if sigma_m < least_sigma {
+            return None;
+        }
+        let kernel_accuracy = self.kernel_accuracy(error);
+        Some(P3mParameters { sigma_m, cutoff_m, spacing_m: spacing, order: errors.order, kernel_accuracy })
+    }
+
+    /// Polynomials a good deal better than the tolerance, never better than round-off.
+    fn kernel_accuracy(&self, error: f64) -> f64 {
+        (0.02 * error / self.cloud.floor.max(error)).clamp(1e-13, 1e-4)
+    }
+
+    /// Node spacings worth a look [m].
+    fn spacings(&self, cloud: &Cloud) -> Vec<f64> {
+        const FINEST: f64 = 0.25;
+        const COARSEST: f64 = 4.0;
+        const STEP: f64 = 1.12;
+        const MOST_NODES: f64 = 1e9;
+        if let Some(cells) = self.settings.grid_cells {
+            let extent = self.domain.extent();
+            return vec![(0..3).map(|axis| extent[axis] / cells[axis] as f64).fold(0.0, f64::max)];
+        }
+        let distance = cloud.density.cbrt().recip();
+        let finest = (self.domain.volume() / MOST_NODES).cbrt();
+        let count = ((COARSEST / FINEST).ln() / STEP.ln()).ceil() as i32;
+        (0..=count).map(|i| distance * FINEST * STEP.powi(i)).filter(|spacing| *spacing > finest).collect()
+    }
+
+    /// Modelled cost of one evaluation [ns].
+    fn cost(&self, cloud: &Cloud, parameters: &P3mParameters) -> f64 {
+        let pairs = 4.0 / 3.0 * std::f64::consts::PI * cloud.density * parameters.cutoff_m.powi(3);
+        let nodes: f64 = grid_axes(self.domain, parameters.spacing_m, parameters.sigma_m)
+            .iter()
+            .map(|axis| axis.transform.len() as f64)
+            .product();
+        let per_particle =
+            cost::PARTICLE + cost::PAIR * pairs + cost::NODE * (parameters.order as f64).powi(3);
+        cloud.count * per_particle + cost::TRANSFORM * nodes * nodes.max(2.0).log2()
+    }
+
+    /// The candidate with the shortest evaluation, or the cheapest by the model when timing is off.
+    fn fastest(&self, candidates: &[(f64, P3mParameters)]) -> P3mParameters {
+        const WORTH_TIMING: f64 = 2.5;
+        if self.settings.tuning == Tuning::Model || candidates.len() == 1 {
+            return candidates[0].1;
+        }
+        let worth = candidates.iter().take(TIMED).filter(|(cost, _)| *cost < WORTH_TIMING * candidates[0].0);
+        let mut field = FieldValues::default();
+        worth
+            .map(|(_, parameters)| {
+                let mut p3m = P3m::new(self.domain, self.settings.relative_permittivity, *parameters);
+                let mut seconds = f64::INFINITY;
+                for _ in 0..2 {
+                    let start = Instant::now();
+                    p3m.evaluate(self.positions, self.charges, Wanted::default(), &mut field);
+                    seconds = seconds.min(start.elapsed().as_secs_f64());
+                }
+                (seconds, *parameters)
+            })
+            .min_by(|a, b| a.0.total_cmp(&b.0))
+            .map_or(candidates[0].1, |(_, parameters)| parameters)
+    }
+}
