@@ -118,9 +118,23 @@ fn read_sections(document: &Table<'_>, source: &mut Source, purpose: Purpose) ->
     Ok(scene)
 }
 
-/// Mixes the scene's keys into the fingerprint, all but those that do not decide the physics.
+/// Keys whose values are paths, from the scene's folder.
+const PATHS: [&[&str]; 4] = [
+    &["particles", "file"],
+    &["particles", "generate", "charge_C", "from_file"],
+    &["solver", "openfoam_case"],
+    &["walls", "*", "stl"],
+];
+
+/// Mixes the scene's keys into the fingerprint, all but those that do not decide the physics: outputs, the end,
+/// and where files are (their contents are in it already).
 fn fingerprint(entries: &Entries, source: &mut Source) {
-    for (section, node) in entries {
+    let mut entries = entries.clone();
+    for path in PATHS {
+        change_texts(&mut entries, path, &|_| String::new());
+    }
+    entries.sort_by(|a, b| a.0.cmp(&b.0));
+    for (section, node) in &entries {
         if section == "output" {
             continue;
         }
@@ -128,7 +142,7 @@ fn fingerprint(entries: &Entries, source: &mut Source) {
         if let (Some(time), "time") = (value.as_table_mut(), section.as_str()) {
             time.remove("end_s");
         }
-        // `toml::Table` is sorted, so the order of keys in the file does not matter.
+        // A TOML table is sorted, so the order of keys in the file does not matter.
         source.add(format!("{section} = {value}\n").as_bytes());
     }
 }
@@ -136,10 +150,12 @@ fn fingerprint(entries: &Entries, source: &mut Source) {
 /// The scene as TOML, files named by absolute paths so that it can be run from anywhere.
 fn resolved(entries: &Entries, folder: &Path) -> String {
     let mut entries = entries.clone();
-    absolute(&mut entries, &["particles", "file"], folder);
-    absolute(&mut entries, &["particles", "generate", "charge_C", "from_file"], folder);
-    absolute(&mut entries, &["solver", "openfoam_case"], folder);
-    absolute(&mut entries, &["walls", "*", "stl"], folder);
+    for path in PATHS {
+        change_texts(&mut entries, path, &|name| {
+            std::path::absolute(folder.join(name))
+                .map_or_else(|_| name.to_owned(), |path| path.to_string_lossy().into_owned())
+        });
+    }
     let root = Node { value: Value::Table(entries), place: Place::Line { file: "".into(), line: 0 } };
     match root.to_toml() {
         toml::Value::Table(table) => toml::to_string(&table).unwrap_or_default(),
@@ -147,24 +163,21 @@ fn resolved(entries: &Entries, folder: &Path) -> String {
     }
 }
 
-fn absolute(entries: &mut Entries, path: &[&str], folder: &Path) {
+/// Changes every text at a path of keys; `*` is every item of an array.
+fn change_texts(entries: &mut Entries, path: &[&str], change: &dyn Fn(&str) -> String) {
     let Some((first, rest)) = path.split_first() else { return };
-    for (key, node) in entries.iter_mut().filter(|(key, _)| key == first) {
+    for (_, node) in entries.iter_mut().filter(|(key, _)| key == first) {
         match &mut node.value {
-            Value::Text(name) if rest.is_empty() => {
-                if let Ok(path) = std::path::absolute(folder.join(&*name)) {
-                    *name = path.to_string_lossy().into_owned();
-                }
-            }
-            Value::Table(inner) => absolute(inner, rest, folder),
+            Value::Text(text) if rest.is_empty() => *text = change(text),
+            Value::Table(inner) => change_texts(inner, rest, change),
             Value::Array(items) if rest.first() == Some(&"*") => {
                 for item in items {
                     if let Value::Table(inner) = &mut item.value {
-                        absolute(inner, &rest[1..], folder);
+                        change_texts(inner, &rest[1..], change);
                     }
                 }
             }
-            _ => debug_assert!(!key.is_empty(), "keys of other kinds name no files"),
+            _ => {}
         }
     }
 }

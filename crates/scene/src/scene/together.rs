@@ -114,6 +114,13 @@ fn warn(scene: &mut Scene) {
     if method == Some(Method::Direct) && count > MANY_FOR_DIRECT {
         scene.warnings.push(format!("method direct sums over every pair of {count} grains, which takes long; p3m gives a stated error in a fraction of the time"));
     }
+    if scene.solver.is_none() && scene.wall_patches.iter().any(Option::is_some) {
+        scene.warnings.push("walls.patch has no effect without [solver]".to_owned());
+    }
+    let far_tolerance = scene.electric_field.as_ref().is_some_and(|field| field.far_tolerance.is_some());
+    if scene.solver.is_none() && far_tolerance {
+        scene.warnings.push("electric_field.far_tolerance has no effect without [solver]: the internal grid is solved exactly".to_owned());
+    }
     if method.is_some() && scene.solver.is_none() {
         for wall in &scene.walls {
             if matches!(wall.shape, WallShape::Mesh(_)) && wall.charging == WallCharging::Grounded {

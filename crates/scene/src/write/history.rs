@@ -34,11 +34,16 @@ impl History {
         Self::open(path, columns.len())
     }
 
-    /// The history of a run that is continued: rows after `step` are removed.
+    /// The history of a run that is continued: only rows up to `step` that `is_due` would write are kept.
     ///
     /// # Errors
     /// What the system says; a history with other columns.
-    pub fn resume(path: &Path, columns: &[String], step: u64) -> Result<Self, SceneError> {
+    pub fn resume(
+        path: &Path,
+        columns: &[String],
+        step: u64,
+        is_due: impl Fn(u64) -> bool,
+    ) -> Result<Self, SceneError> {
         let text = std::fs::read_to_string(path).map_err(|error| SceneError::unwritable(path, error))?;
         let mut lines = text.split_inclusive('\n');
         let header = columns.join(",");
@@ -51,7 +56,7 @@ impl History {
         let mut kept = format!("{header}\n");
         for line in lines.filter(|line| line.ends_with('\n')) {
             let row: Option<u64> = line.split(',').next().and_then(|first| first.parse().ok());
-            if row.is_some_and(|row| row <= step) {
+            if row.is_some_and(|row| row <= step && is_due(row)) {
                 kept.push_str(line);
             }
         }
@@ -106,11 +111,13 @@ mod tests {
         let mut text = std::fs::read_to_string(&path).unwrap();
         text.push_str("1,0.");
         std::fs::write(&path, text).unwrap();
-        let mut history = History::resume(&path, &columns, 2).unwrap();
+        let mut history = History::resume(&path, &columns, 2, |_| true).unwrap();
         history.append(&[Cell::Count(3), Cell::Number(1.0)]).unwrap();
         let text = std::fs::read_to_string(&path).unwrap();
         let steps: Vec<&str> = text.lines().skip(1).filter_map(|line| line.split(',').next()).collect();
         assert_eq!(steps, ["0", "1", "2", "3"]);
-        assert!(History::resume(&path, &["step".to_owned()], 2).is_err());
+        drop(History::resume(&path, &columns, 9, |row| row % 2 == 0).unwrap());
+        assert_eq!(std::fs::read_to_string(&path).unwrap().lines().count(), 3);
+        assert!(History::resume(&path, &["step".to_owned()], 2, |_| true).is_err());
     }
 }

@@ -14,4 +14,4 @@ pub use field_csv::{FieldColumns, FieldReport, FieldReportSeconds, write_field_c
 pub use history::{Cell, History};
 pub use particles_csv::write_particles_csv;
 pub use pvd::PvdSeries;
-pub use vtu::{FieldArrays, write_vtu};
+pub use vtu::write_vtu;

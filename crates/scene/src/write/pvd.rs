@@ -19,16 +19,16 @@ impl PvdSeries {
         Self { path: path.to_path_buf(), frames: Vec::new() }
     }
 
-    /// The series of a run that is continued: frames after `time_s` [s] are forgotten. A file that is not there
-    /// is an empty series.
+    /// The series of a run that is continued: only frames whose file `is_kept` are remembered. A file that is not
+    /// there is an empty series.
     #[must_use]
-    pub fn resume(path: &Path, time_s: f64) -> Self {
+    pub fn resume(path: &Path, is_kept: impl Fn(&str) -> bool) -> Self {
         let mut series = Self::new(path);
         let text = std::fs::read_to_string(path).unwrap_or_default();
         for line in text.lines() {
             if let (Some(time), Some(file)) = (attribute(line, "timestep"), attribute(line, "file"))
                 && let Ok(time) = time.parse::<f64>()
-                && time <= time_s
+                && is_kept(file)
             {
                 series.frames.push((time, file.to_owned()));
             }
@@ -73,9 +73,9 @@ mod tests {
         for step in 0..4_u32 {
             series.append(f64::from(step) * 0.1, &format!("particles/{step}.vtu")).unwrap();
         }
-        let mut series = PvdSeries::resume(&path, 0.1);
+        let mut series = PvdSeries::resume(&path, |file| file < "particles/2");
         assert_eq!(series.frames.len(), 2);
         series.append(0.15, "particles/x.vtu").unwrap();
-        assert_eq!(PvdSeries::resume(&path, 1.0).frames.len(), 3);
+        assert_eq!(PvdSeries::resume(&path, |_| true).frames.len(), 3);
     }
 }

@@ -10,15 +10,6 @@ use nalgebra::Vector3;
 use std::io::{self, Write};
 use std::path::Path;
 
-/// Field values that go with the grains, in their order; absent ones are not written.
-#[derive(Clone, Copy, Debug, Default)]
-pub struct FieldArrays<'a> {
-    /// E [V/m].
-    pub e: Option<&'a [Vector3<f64>]>,
-    /// Potential [V].
-    pub potential: Option<&'a [f64]>,
-}
-
 /// Values of an array.
 enum Values<'a> {
     Vectors(&'a [Vector3<f64>]),
@@ -78,11 +69,16 @@ impl Values<'_> {
     }
 }
 
-/// Writes grains: position, id, radius, charge, velocities, material, group and the field if given.
+/// Writes grains: position, id, radius, charge, velocities, material, group, and further vectors by name, one per
+/// grain.
 ///
 /// # Errors
 /// What the system says.
-pub fn write_vtu(path: &Path, particles: &Particles, field: FieldArrays<'_>) -> Result<(), SceneError> {
+pub fn write_vtu(
+    path: &Path,
+    particles: &Particles,
+    vectors: &[(&str, &[Vector3<f64>])],
+) -> Result<(), SceneError> {
     let count = particles.len();
     let mut point_data = vec![
         ("id", Values::Ids(&particles.id)),
@@ -93,8 +89,7 @@ pub fn write_vtu(path: &Path, particles: &Particles, field: FieldArrays<'_>) -> 
         ("material", Values::Groups(particles.material.iter().map(|material| material.0).collect())),
         ("group", Values::Groups(particles.group.iter().map(|group| group.0).collect())),
     ];
-    point_data.extend(field.e.map(|e| ("electric_field_V_m", Values::Vectors(e))));
-    point_data.extend(field.potential.map(|potential| ("potential_V", Values::Numbers(potential))));
+    point_data.extend(vectors.iter().map(|(name, values)| (*name, Values::Vectors(values))));
     let points = [("points_m", Values::Vectors(&particles.position))];
     let cells = [
         ("connectivity", Values::Count { from: 0, count }),

@@ -77,6 +77,7 @@ fn the_resolved_scene_is_the_same_scene_from_anywhere() {
     let path = elsewhere.path().join("scene.toml");
     std::fs::write(&path, scene.resolved()).unwrap();
     let again = amberfield_scene::read_scene(&path, &[], Purpose::Run).unwrap();
+    assert_eq!(again.hash(), scene.hash());
     assert_eq!((again.particles, again.walls.len(), again.time), (scene.particles, 2, scene.time));
 }
 

@@ -1,7 +1,7 @@
 //! Result files: columns, digits, structure.
 
 use crate::common::Folder;
-use amberfield_scene::{FieldArrays, FieldColumns, write_field_csv, write_vtu};
+use amberfield_scene::{FieldColumns, write_field_csv, write_vtu};
 use nalgebra::Vector3;
 
 #[test]
@@ -30,11 +30,11 @@ fn appended_arrays_lie_where_the_header_says() {
     let grains = folder.read(&[]).unwrap().particles;
     let path = folder.file("a.vtu");
     let e = vec![Vector3::new(1.0, 2.0, 3.0); grains.len()];
-    write_vtu(&path, &grains, FieldArrays { e: Some(&e), potential: None }).unwrap();
+    write_vtu(&path, &grains, &[("electric_force_N", &e)]).unwrap();
     let bytes = std::fs::read(&path).unwrap();
     let start = bytes.windows(2).position(|pair| pair == b"\n_").unwrap() + 2;
     let header = String::from_utf8(bytes[..start].to_vec()).unwrap();
-    for (name, length) in [("charge_C", 24), ("electric_field_V_m", 72), ("types", 3)] {
+    for (name, length) in [("charge_C", 24), ("electric_force_N", 72), ("types", 3)] {
         let line = header.lines().find(|line| line.contains(&format!("Name=\"{name}\""))).unwrap();
         let offset: usize =
             line.split("offset=\"").nth(1).unwrap().split('"').next().unwrap().parse().unwrap();
