@@ -1,1 +1,32 @@
 //! Moves grains: neighbours, contacts with history, walls, integrator, step, checkpoint state.
+//!
+//! A scene is a [`Setup`]; [`Simulation::new`] checks it, compiles it into stages and [`Simulation::step`]
+//! runs them. Results are bit-identical for any number of threads of the caller's rayon pool.
+
+mod cells;
+mod chunks;
+mod contact_law;
+mod energy;
+mod error;
+mod field_stage;
+mod grains;
+mod guards;
+mod integrate;
+mod material_pairs;
+mod mesh_wall;
+mod neighbours;
+mod pair_forces;
+mod setup;
+mod simulation;
+mod start_checks;
+mod state;
+mod timing;
+mod walls;
+
+pub use energy::Energies;
+pub use error::DemError;
+pub use field_stage::Limited;
+pub use guards::Guard;
+pub use setup::{FieldStageSetup, Setup};
+pub use simulation::Simulation;
+pub use state::State;

@@ -1,0 +1,106 @@
+//! Energies of the grains.
+
+use crate::cells::INDEX_MASK;
+use crate::chunks::CHUNK;
+use crate::grains::Grains;
+use crate::material_pairs::{Features, PairConstants, PairTable};
+use crate::neighbours::Neighbours;
+use crate::walls::Walls;
+use amberfield_core::Vector3;
+use amberfield_laws::rolling_friction;
+
+/// Energies [J].
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct Energies {
+    /// Translation and rotation [J].
+    pub kinetic: f64,
+    /// Elastic energy of the contacts: normal, tangential and rolling springs [J].
+    pub contact: f64,
+    /// −Σ m g·x [J], zero at the origin; along periodic axes with the coordinates that the run uses.
+    pub gravity: f64,
+    /// ½ Σ q (V + V_external) [J]; `None` when not asked for or without a field.
+    pub electric: Option<f64>,
+}
+
+/// ½ m v² + ½ I ω², I = (2/5) m r².
+pub(crate) fn kinetic(grains: &Grains) -> f64 {
+    (0..grains.len())
+        .map(|i| {
+            let r = grains.centre[i][3];
+            let spin = 0.4 * r * r * grains.angular[i].norm_squared();
+            0.5 * (grains.velocity[i].norm_squared() + spin) / grains.inverse_mass[i]
+        })
+        .sum()
+}
+
+/// −Σ m g·x.
+pub(crate) fn gravity(grains: &Grains, gravity: Vector3<f64>) -> f64 {
+    (0..grains.len()).map(|i| -grains.position(i).dot(&gravity) / grains.inverse_mass[i]).sum()
+}
+
+/// Elastic energy of all touching contacts.
+pub(crate) fn contact(
+    grains: &Grains,
+    neighbours: &Neighbours,
+    walls: Option<&Walls>,
+    table: &PairTable,
+    features: Features,
+) -> f64 {
+    let mut sum = 0.0;
+    for (k, list) in neighbours.lists.iter().enumerate() {
+        for local in 0..list.start.len() - 1 {
+            for entry in list.start[local] as usize..list.start[local + 1] as usize {
+                if !list.touching[entry] {
+                    continue;
+                }
+                let (i, code) = (k * CHUNK + local, list.partner[entry]);
+                let j = (code & INDEX_MASK) as usize;
+                let (a, b) = (&grains.centre[i], &grains.centre[j]);
+                let shift = neighbours.shifts[(code >> crate::cells::INDEX_BITS) as usize];
+                let distance = (0..3).map(|x| (b[x] + shift[x] - a[x]).powi(2)).sum::<f64>().sqrt();
+                let pair = table.get(grains.material[i], grains.material[j]);
+                let springs = Springs {
+                    pair,
+                    features,
+                    radius: a[3] * b[3] / (a[3] + b[3]),
+                    overlap: (a[3] + b[3] - distance).max(0.0),
+                };
+                let spring = list.spring.get(entry).copied().unwrap_or_default();
+                let rolling = list.rolling.get(entry).copied().unwrap_or_default();
+                sum += springs.energy(&spring, &rolling);
+            }
+        }
+    }
+    if let Some(walls) = walls {
+        walls.each_contact(|i, material, overlap, spring, rolling| {
+            let pair = table.get(grains.material[i], material);
+            let springs = Springs { pair, features, radius: grains.centre[i][3], overlap };
+            sum += springs.energy(spring, rolling);
+        });
+    }
+    sum
+}
+
+struct Springs<'a> {
+    pair: &'a PairConstants,
+    features: Features,
+    radius: f64,
+    overlap: f64,
+}
+
+impl Springs<'_> {
+    fn energy(&self, spring: &[f64; 4], rolling: &[f64; 3]) -> f64 {
+        let contact_radius = (self.radius * self.overlap).sqrt();
+        let mut energy = 0.4 * self.pair.hertz * contact_radius * self.overlap * self.overlap;
+        if self.features.friction && contact_radius > 0.0 {
+            let force2 = spring[..3].iter().map(|f| f * f).sum::<f64>();
+            energy += 0.5 * force2 / (self.pair.tangential * contact_radius);
+        }
+        if self.features.rolling && contact_radius > 0.0 && self.pair.rolling > 0.0 {
+            let stiffness =
+                rolling_friction::stiffness(self.pair.normal * contact_radius, self.pair.rolling, self.radius);
+            energy += 0.5 * rolling.iter().map(|t| t * t).sum::<f64>() / stiffness;
+        }
+        energy
+    }
+}

@@ -1,0 +1,124 @@
+//! The moving grains, sorted in space: structures of arrays.
+
+use amberfield_core::{Particles, Vector3};
+
+/// Moving grains in the order of the last sort; everything constant stays with the set-up's particles and is
+/// found through `original`.
+#[derive(Debug, Default)]
+pub(crate) struct Grains {
+    /// Index in the set-up's order.
+    pub(crate) original: Vec<u32>,
+    /// Centre and radius [m]; periodic coordinates are wrapped at rebuilds only.
+    pub(crate) centre: Vec<[f64; 4]>,
+    /// Velocity [m/s]; during a step predicted to its end.
+    pub(crate) velocity: Vec<Vector3<f64>>,
+    /// Angular velocity [rad/s], likewise.
+    pub(crate) angular: Vec<Vector3<f64>>,
+    /// Force of the last evaluation without gravity [N].
+    pub(crate) force: Vec<Vector3<f64>>,
+    /// Torque of the last evaluation [N·m]; empty when nothing can turn a grain.
+    pub(crate) torque: Vec<Vector3<f64>>,
+    /// 1/m [1/kg].
+    pub(crate) inverse_mass: Vec<f64>,
+    /// Material index.
+    pub(crate) material: Vec<u16>,
+    /// Level of the cells.
+    pub(crate) level: Vec<u8>,
+}
+
+impl Grains {
+    pub(crate) fn new(particles: &Particles, level: Vec<u8>, rotation: bool) -> Self {
+        let count = particles.len();
+        Self {
+            original: (0..count as u32).collect(),
+            centre: (0..count)
+                .map(|i| {
+                    let x = particles.position[i];
+                    [x.x, x.y, x.z, particles.radius[i]]
+                })
+                .collect(),
+            velocity: particles.velocity.clone(),
+            angular: particles.angular_velocity.clone(),
+            force: vec![Vector3::zeros(); count],
+            torque: vec![Vector3::zeros(); if rotation { count } else { 0 }],
+            inverse_mass: (0..count).map(|i| 1.0 / particles.mass(i)).collect(),
+            material: particles.material.iter().map(|m| m.0).collect(),
+            level,
+        }
+    }
+
+    pub(crate) fn len(&self) -> usize {
+        self.original.len()
+    }
+
+    pub(crate) fn position(&self, index: usize) -> Vector3<f64> {
+        let c = self.centre[index];
+        Vector3::new(c[0], c[1], c[2])
+    }
+
+    /// Reorders to `order[new] = old`; grains that are not named are dropped.
+    pub(crate) fn reorder(&mut self, order: &[u32]) {
+        pick(&mut self.original, order);
+        pick(&mut self.centre, order);
+        pick(&mut self.velocity, order);
+        pick(&mut self.angular, order);
+        pick(&mut self.force, order);
+        if !self.torque.is_empty() {
+            pick(&mut self.torque, order);
+        }
+        pick(&mut self.inverse_mass, order);
+        pick(&mut self.material, order);
+        pick(&mut self.level, order);
+    }
+
+    /// Order along a Morton curve, equal keys by original index: it depends on positions only.
+    pub(crate) fn spatial_order(&self, keys: &mut Vec<(u64, u32, u32)>, order: &mut Vec<u32>) {
+        let mut min = Vector3::repeat(f64::INFINITY);
+        let mut max = Vector3::repeat(f64::NEG_INFINITY);
+        for i in 0..self.len() {
+            min = min.inf(&self.position(i));
+            max = max.sup(&self.position(i));
+        }
+        // One scale for all axes keeps the curve's cells cubic.
+        let extent = (max - min).max();
+        let scale = if extent > 0.0 { f64::from((1_u32 << MORTON_BITS) - 1) / extent } else { 0.0 };
+        keys.clear();
+        keys.extend((0..self.len()).map(|i| {
+            let cell = (self.position(i) - min) * scale;
+            let key = spread(cell.x as u64) | spread(cell.y as u64) << 1 | spread(cell.z as u64) << 2;
+            (key, self.original[i], i as u32)
+        }));
+        keys.sort_unstable();
+        order.clear();
+        order.extend(keys.iter().map(|key| key.2));
+    }
+}
+
+/// Bits per axis of the Morton key.
+const MORTON_BITS: u32 = 20;
+
+/// Spreads 20 bits to every third bit.
+fn spread(x: u64) -> u64 {
+    let x = x & 0x1f_ffff;
+    let x = (x | x << 32) & 0x1f_0000_0000_ffff;
+    let x = (x | x << 16) & 0x1f_0000_ff00_00ff;
+    let x = (x | x << 8) & 0x100f_00f0_0f00_f00f;
+    let x = (x | x << 4) & 0x10c3_0c30_c30c_30c3;
+    (x | x << 2) & 0x1249_2492_4924_9249
+}
+
+/// array[new] = array[order[new]].
+pub(crate) fn pick<T: Copy>(array: &mut Vec<T>, order: &[u32]) {
+    *array = order.iter().map(|&old| array[old as usize]).collect();
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn spread_leaves_two_zero_bits_between() {
+        assert_eq!(spread(0b1011), 0b1_000_001_001);
+        assert_eq!(spread((1 << 20) - 1).count_ones(), 20);
+    }
+}

@@ -1,0 +1,139 @@
+//! Limits on the time step: computed at the start, watched while running.
+
+use crate::error::DemError;
+use crate::grains::Grains;
+use crate::material_pairs::PairTable;
+use amberfield_core::{Domain, Material, Particles};
+use amberfield_laws::{hertz_mindlin, time_step_limits};
+
+/// `step_s = "auto"` is this fraction of the tightest guard.
+pub(crate) const AUTO_FRACTION: f64 = 0.2;
+/// Fraction of the shortest elastic contact time that still resolves a collision: velocity Verlet is stable up
+/// to 2/π of the contact time of a linear spring; a quarter leaves four steps in a collision.
+const CONTACT_TIME_FRACTION: f64 = 0.25;
+
+/// A limit on the time step.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Guard {
+    /// Name: `rayleigh`, `hertz`, `electric pair`, `wall image` or `plasma`.
+    pub name: &'static str,
+    /// Largest step [s]; infinite when nothing limits it at present.
+    pub limit_s: f64,
+    /// Limit over step; below 1 the step is too long.
+    pub margin: f64,
+}
+
+/// Limits on the time step, without the step.
+#[derive(Clone, Debug)]
+pub(crate) struct Limits {
+    /// Rayleigh time of the tightest grain [s].
+    rayleigh: f64,
+    /// min over grains of contact time · speed^{1/5} [s·(m/s)^{1/5}] for two equal grains.
+    hertz: f64,
+    /// Electric limits; `None` without charges.
+    electric: Option<ElectricLimits>,
+}
+
+/// Electric limits.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct ElectricLimits {
+    /// Pair of touching grains [s].
+    pub(crate) pair: f64,
+    /// Grain that touches a conducting face of the domain [s].
+    pub(crate) wall_image: f64,
+    /// Interval between field evaluations at which the cloud is unstable, over the interval's steps [s].
+    pub(crate) plasma: f64,
+}
+
+impl Limits {
+    pub(crate) fn new(
+        particles: &Particles,
+        materials: &[Material],
+        table: &PairTable,
+        electric: Option<ElectricLimits>,
+    ) -> Self {
+        let (mut rayleigh, mut hertz) = (f64::INFINITY, f64::INFINITY);
+        for i in 0..particles.len() {
+            let (radius, material) = (particles.radius[i], &materials[particles.material[i].0 as usize]);
+            let shear = hertz_mindlin::shear_modulus(material.young_pa, material.poisson);
+            let density = particles.density[i];
+            rayleigh =
+                rayleigh.min(time_step_limits::rayleigh(radius, density, shear, material.poisson));
+            let young = table.stiffest(particles.material[i]);
+            let mass = particles.mass(i);
+            hertz = hertz.min(hertz_mindlin::contact_time(young, 0.5 * radius, 0.5 * mass, 1.0));
+        }
+        Self { rayleigh, hertz, electric }
+    }
+
+    pub(crate) fn set_electric(&mut self, electric: ElectricLimits) {
+        self.electric = Some(electric);
+    }
+
+    /// All guards for a step and the grains' largest speed [m/s] (two of them head-on).
+    pub(crate) fn guards(&self, step: f64, speed: f64) -> Vec<Guard> {
+        let hertz = CONTACT_TIME_FRACTION * self.hertz * (2.0 * speed).powf(-0.2);
+        let mut limits = vec![("rayleigh", self.rayleigh), ("hertz", hertz)];
+        if let Some(e) = &self.electric {
+            limits.extend([("electric pair", e.pair), ("wall image", e.wall_image), ("plasma", e.plasma)]);
+        }
+        limits
+            .into_iter()
+            .map(|(name, limit_s)| Guard { name, limit_s, margin: limit_s / step })
+            .collect()
+    }
+
+    /// The step that `auto` stands for [s].
+    pub(crate) fn auto_step(&self, speed: f64) -> f64 {
+        let tightest = self.guards(1.0, speed).iter().map(|g| g.limit_s).fold(f64::INFINITY, f64::min);
+        AUTO_FRACTION * tightest
+    }
+
+    /// The guard that a step breaks, if any.
+    pub(crate) fn broken(&self, step: f64, speed: f64, time_s: f64) -> Option<DemError> {
+        let tightest =
+            self.guards(step, speed).into_iter().min_by(|a, b| a.limit_s.total_cmp(&b.limit_s))?;
+        // `!(a <= b)`: a limit that is not a number is broken too.
+        let holds = step <= tightest.limit_s;
+        (!holds).then_some(DemError::Unstable {
+            guard: tightest.name,
+            step_s: step,
+            limit_s: tightest.limit_s,
+            time_s,
+        })
+    }
+}
+
+/// Limits of pair and wall image. Pairs: every member with its like, and the listed pairs, all at contact.
+pub(crate) fn electric_stiffness(
+    domain: &Domain,
+    grains: &Grains,
+    particles: &Particles,
+    member: &[bool],
+    permittivity: f64,
+    pairs: impl Iterator<Item = (usize, usize)>,
+) -> (f64, f64) {
+    let conductor = domain.faces().iter().flatten().any(|face| face.is_conductor());
+    let charge = |i: usize| {
+        let original = grains.original[i] as usize;
+        if member[original] { particles.charge[original] } else { 0.0 }
+    };
+    let limit = |i: usize, j: usize| {
+        let mass = 1.0 / (grains.inverse_mass[i] + grains.inverse_mass[j]);
+        let distance = grains.centre[i][3] + grains.centre[j][3];
+        let k = time_step_limits::pair_stiffness(charge(i), charge(j), permittivity, distance);
+        time_step_limits::stiffness_limit(mass, k)
+    };
+    let (mut pair, mut wall) = (f64::INFINITY, f64::INFINITY);
+    for i in 0..grains.len() {
+        pair = pair.min(limit(i, i));
+        if conductor {
+            let k = time_step_limits::wall_image_stiffness(charge(i), permittivity, grains.centre[i][3]);
+            wall = wall.min(time_step_limits::stiffness_limit(1.0 / grains.inverse_mass[i], k));
+        }
+    }
+    for (i, j) in pairs {
+        pair = pair.min(limit(i, j));
+    }
+    (pair, wall)
+}

@@ -1,0 +1,185 @@
+//! Velocity Verlet, in two passes around the forces.
+//!
+//! First pass: x += Δt v + ½Δt² a, v += Δt a (a of the last forces): the velocity predicted to the end of the
+//! step, which damping and friction see, so that the scheme stays of second order for them too. Second pass:
+//! v += ½Δt (a_new − a_old), which is velocity Verlet to the last term. Angular velocity likewise; a sphere
+//! needs no orientation.
+
+use crate::chunks::{CHUNK, chunk_count, for_each_chunk, is_parallel};
+use crate::grains::Grains;
+use crate::neighbours::Neighbours;
+use amberfield_core::Vector3;
+use rayon::prelude::*;
+
+/// Moment of inertia of a solid sphere over m r².
+const SPHERE_INERTIA: f64 = 0.4;
+
+/// What the first pass finds in a chunk.
+#[derive(Clone, Copy, Debug, Default)]
+pub(crate) struct ChunkMotion {
+    /// Largest squared speed of the drift [m²/s²].
+    speed2: f64,
+    /// Whether a grain left the box.
+    outside: bool,
+}
+
+/// What the first pass finds.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Motion {
+    /// Largest speed of the drift [m/s].
+    pub(crate) speed: f64,
+    /// Whether a grain left the box.
+    pub(crate) outside: bool,
+}
+
+/// The box that grains may not leave: infinite along periodic axes.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Bounds {
+    pub(crate) min: [f64; 3],
+    pub(crate) max: [f64; 3],
+}
+
+impl Bounds {
+    /// The axis and side (0 or 1) of the face that a position is beyond; `None` when inside. NaN is outside
+    /// too, of an axis but beyond no side.
+    pub(crate) fn beyond(&self, centre: &[f64; 4]) -> Option<(usize, Option<usize>)> {
+        (0..3).find(|&a| !self.holds(a, centre[a])).map(|a| {
+            let side = if centre[a] < self.min[a] {
+                Some(0)
+            } else if centre[a] > self.max[a] {
+                Some(1)
+            } else {
+                None
+            };
+            (a, side)
+        })
+    }
+
+    #[inline(always)]
+    fn holds(&self, axis: usize, x: f64) -> bool {
+        x >= self.min[axis] && x <= self.max[axis]
+    }
+}
+
+/// First pass.
+pub(crate) fn drift(
+    grains: &mut Grains,
+    gravity: Vector3<f64>,
+    step: f64,
+    bounds: &Bounds,
+    found: &mut [ChunkMotion],
+) -> Motion {
+    let count = grains.len();
+    let (parallel, chunks) = (is_parallel(count), chunk_count(count));
+    let Grains { centre, velocity, angular, force, torque, inverse_mass, .. } = grains;
+    let half = 0.5 * step;
+    for_each_chunk!(
+        parallel,
+        chunks,
+        (centre / CHUNK, velocity / CHUNK, found / 1),
+        |k: usize,
+         (centre, velocity, found): (&mut [[f64; 4]], &mut [Vector3<f64>], &mut [ChunkMotion])| {
+            let first = k * CHUNK;
+            let (mut speed2, mut inside) = (0.0_f64, true);
+            let length = centre.len();
+            let (force, inverse_mass) =
+                (&force[first..first + length], &inverse_mass[first..first + length]);
+            for (((c, v), f), &im) in centre.iter_mut().zip(velocity).zip(force).zip(inverse_mass) {
+                let kick = (f * im + gravity) * half;
+                let middle = *v + kick;
+                c[0] += middle.x * step;
+                c[1] += middle.y * step;
+                c[2] += middle.z * step;
+                *v = middle + kick;
+                speed2 = speed2.max(middle.norm_squared());
+                inside &= bounds.holds(0, c[0]) & bounds.holds(1, c[1]) & bounds.holds(2, c[2]);
+            }
+            found[0] = ChunkMotion { speed2, outside: !inside };
+        }
+    );
+    if !torque.is_empty() {
+        turn(parallel, angular, |i| torque[i] * (step * inverse_inertia(inverse_mass[i], &centre[i])));
+    }
+    Motion {
+        speed: found[..chunks].iter().map(|m| m.speed2).fold(0.0, f64::max).sqrt(),
+        outside: found[..chunks].iter().any(|m| m.outside),
+    }
+}
+
+/// 1/I of a solid sphere [1/(kg·m²)].
+#[inline(always)]
+fn inverse_inertia(inverse_mass: f64, centre: &[f64; 4]) -> f64 {
+    inverse_mass / (SPHERE_INERTIA * centre[3] * centre[3])
+}
+
+/// Adds a change to every angular velocity.
+fn turn(
+    parallel: bool,
+    angular: &mut [Vector3<f64>],
+    change: impl Fn(usize) -> Vector3<f64> + Sync,
+) {
+    if parallel {
+        angular.par_chunks_mut(CHUNK).enumerate().for_each(|(k, part)| {
+            part.iter_mut().enumerate().for_each(|(n, w)| *w += change(k * CHUNK + n));
+        });
+    } else {
+        angular.iter_mut().enumerate().for_each(|(i, w)| *w += change(i));
+    }
+}
+
+/// Second pass: takes in what other chunks do, then corrects the velocities. `force` and `torque` hold the new
+/// values and are swapped with the grains'.
+pub(crate) fn kick(
+    grains: &mut Grains,
+    neighbours: &Neighbours,
+    step: f64,
+    force: &mut Vec<Vector3<f64>>,
+    torque: &mut Vec<Vector3<f64>>,
+) {
+    let count = grains.len();
+    let (parallel, chunks) = (is_parallel(count), chunk_count(count));
+    let half = 0.5 * step;
+    let rotation = !grains.torque.is_empty();
+    let Grains { centre, velocity, angular, force: old, torque: old_torque, inverse_mass, .. } = grains;
+    {
+        let (velocity, force) = (&mut velocity[..], &mut force[..]);
+        for_each_chunk!(
+            parallel,
+            chunks,
+            (velocity / CHUNK, force / CHUNK),
+            |k: usize, (velocity, force): (&mut [Vector3<f64>], &mut [Vector3<f64>])| {
+                for inbound in &neighbours.inbox[k] {
+                    force[inbound.local as usize] +=
+                        neighbours.lists[inbound.chunk as usize].outbox[inbound.slot as usize].force;
+                }
+                let first = k * CHUNK;
+                for (n, (v, f)) in velocity.iter_mut().zip(&*force).enumerate() {
+                    *v += (f - old[first + n]) * (half * inverse_mass[first + n]);
+                }
+            }
+        );
+    }
+    if rotation {
+        let (angular, torque) = (&mut angular[..], &mut torque[..]);
+        for_each_chunk!(
+            parallel,
+            chunks,
+            (angular / CHUNK, torque / CHUNK),
+            |k: usize, (angular, torque): (&mut [Vector3<f64>], &mut [Vector3<f64>])| {
+                for inbound in &neighbours.inbox[k] {
+                    torque[inbound.local as usize] +=
+                        neighbours.lists[inbound.chunk as usize].outbox[inbound.slot as usize].torque;
+                }
+                let first = k * CHUNK;
+                for (n, (w, t)) in angular.iter_mut().zip(&*torque).enumerate() {
+                    let i = first + n;
+                    *w += (t - old_torque[i]) * (half * inverse_inertia(inverse_mass[i], &centre[i]));
+                }
+            }
+        );
+    }
+    std::mem::swap(&mut grains.force, force);
+    if rotation {
+        std::mem::swap(&mut grains.torque, torque);
+    }
+}

@@ -1,0 +1,270 @@
+//! Verlet lists by chunk, and the contact histories that live in them.
+
+use crate::cells::{Cells, INDEX_BITS, INDEX_MASK};
+use crate::chunks::{CHUNK, chunk_count, for_each_chunk, is_parallel};
+use crate::grains::Grains;
+use crate::material_pairs::Features;
+use crate::state::PairHistory;
+use amberfield_core::{Domain, Vector3};
+
+/// A touching entry found by the distance test of the step.
+#[derive(Clone, Copy, Debug, Default)]
+pub(crate) struct Hit {
+    pub(crate) entry: u32,
+    pub(crate) local: u32,
+    /// Outbox slot; only meaningful when the partner is in another chunk.
+    pub(crate) slot: u32,
+}
+
+/// Force and torque on a grain of another chunk.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Push {
+    pub(crate) force: Vector3<f64>,
+    pub(crate) torque: Vector3<f64>,
+}
+
+/// No push.
+pub(crate) const NO_PUSH: Push = Push { force: Vector3::new(0.0, 0.0, 0.0), torque: Vector3::new(0.0, 0.0, 0.0) };
+
+/// Lists of the grains of one chunk: each pair is in one list only.
+#[derive(Debug, Default)]
+pub(crate) struct ChunkList {
+    /// First entry of each grain, and the end.
+    pub(crate) start: Vec<u32>,
+    /// Partner index and shift code.
+    pub(crate) partner: Vec<u32>,
+    /// Whether the entry touched at the last evaluation.
+    pub(crate) touching: Vec<bool>,
+    /// Tangential spring force [N] and contact radius [m]; empty without friction.
+    pub(crate) spring: Vec<[f64; 4]>,
+    /// Rolling spring torque [N·m]; empty without rolling friction.
+    pub(crate) rolling: Vec<[f64; 3]>,
+    /// Scratch of the step.
+    pub(crate) hits: Vec<Hit>,
+    /// What this chunk does to other chunks.
+    pub(crate) outbox: Vec<Push>,
+    /// Touching pairs of the last evaluation.
+    pub(crate) contacts: usize,
+}
+
+/// Where a grain finds what another chunk does to it.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Inbound {
+    pub(crate) chunk: u32,
+    pub(crate) slot: u32,
+    pub(crate) local: u32,
+}
+
+/// All lists.
+#[derive(Debug)]
+pub(crate) struct Neighbours {
+    cells: Cells,
+    pub(crate) shifts: [[f64; 3]; 32],
+    features: Features,
+    pub(crate) lists: Vec<ChunkList>,
+    previous: Vec<ChunkList>,
+    pub(crate) inbox: Vec<Vec<Inbound>>,
+    /// Centres at the last build [m].
+    pub(crate) reference: Vec<Vector3<f64>>,
+}
+
+impl Neighbours {
+    pub(crate) fn new(cells: Cells, shifts: [[f64; 3]; 32], features: Features) -> Self {
+        Self {
+            cells,
+            shifts,
+            features,
+            lists: Vec::new(),
+            previous: Vec::new(),
+            inbox: Vec::new(),
+            reference: Vec::new(),
+        }
+    }
+
+    pub(crate) fn level_count(&self) -> usize {
+        self.cells.level_count()
+    }
+
+    /// Builds all lists from the grains' present centres. `order[new] = old` tells where each grain was when
+    /// the present lists were built, so that histories move along.
+    pub(crate) fn build(&mut self, domain: &Domain, grains: &Grains, order: &[u32]) {
+        self.reference.clear();
+        self.reference.extend((0..grains.len()).map(|i| grains.position(i)));
+        self.cells.fill(domain, &self.shifts, &grains.centre, |i| grains.level[i]);
+        std::mem::swap(&mut self.lists, &mut self.previous);
+        let chunks = chunk_count(grains.len());
+        self.lists.resize_with(chunks, ChunkList::default);
+        let (cells, features, shifts, previous) = (&self.cells, self.features, &self.shifts, &self.previous);
+        let lists = &mut self.lists;
+        let mut marks = vec![(); chunks];
+        for_each_chunk!(
+            is_parallel(grains.len()),
+            chunks,
+            (lists / 1, marks / 1),
+            |k: usize, (list, _): (&mut [ChunkList], &mut [()])| {
+                let list = &mut list[0];
+                list.fill(k, cells, grains, features);
+                if features.rotation() && !previous.is_empty() {
+                    list.inherit(k, grains, shifts, previous, order, features);
+                }
+            }
+        );
+        self.connect(grains.len());
+    }
+
+    /// Gives every entry that crosses chunks a slot, and tells the other chunk about it.
+    fn connect(&mut self, count: usize) {
+        let chunks = chunk_count(count);
+        self.inbox.resize_with(chunks, Vec::new);
+        for inbox in &mut self.inbox {
+            inbox.clear();
+        }
+        for (k, list) in self.lists.iter_mut().enumerate() {
+            let mut slots = 0;
+            for partner in &list.partner {
+                let j = (partner & INDEX_MASK) as usize;
+                if j / CHUNK != k {
+                    self.inbox[j / CHUNK].push(Inbound {
+                        chunk: k as u32,
+                        slot: slots,
+                        local: (j % CHUNK) as u32,
+                    });
+                    slots += 1;
+                }
+            }
+            list.outbox.clear();
+            list.outbox.resize(slots as usize, NO_PUSH);
+        }
+    }
+
+    /// Histories of the touching pairs, with indices of the set-up's order.
+    pub(crate) fn histories(&self, grains: &Grains) -> Vec<PairHistory> {
+        let mut out = Vec::new();
+        for (k, list) in self.lists.iter().enumerate() {
+            for local in 0..list.start.len() - 1 {
+                for entry in list.start[local] as usize..list.start[local + 1] as usize {
+                    if list.touching[entry] {
+                        out.push(PairHistory {
+                            i: (k * CHUNK + local) as u32,
+                            entry: entry as u32 - list.start[local],
+                            partner: grains.original[(list.partner[entry] & INDEX_MASK) as usize],
+                            spring: list.spring.get(entry).copied().unwrap_or_default(),
+                            rolling: list.rolling.get(entry).copied().unwrap_or_default(),
+                        });
+                    }
+                }
+            }
+        }
+        out
+    }
+
+    /// Puts saved histories back; `Err` names the first that finds no entry.
+    pub(crate) fn restore(&mut self, grains: &Grains, histories: &[PairHistory]) -> Result<(), String> {
+        for h in histories {
+            let (k, local) = (h.i as usize / CHUNK, h.i as usize % CHUNK);
+            let list = self.lists.get_mut(k).filter(|list| local + 1 < list.start.len());
+            let list = list.ok_or_else(|| format!("contact of unknown grain index {}", h.i))?;
+            let entry = (list.start[local] + h.entry) as usize;
+            let known = entry < list.start[local + 1] as usize
+                && grains.original[(list.partner[entry] & INDEX_MASK) as usize] == h.partner;
+            if !known {
+                return Err(format!("contact {} of grain index {} has another partner", h.entry, h.i));
+            }
+            list.touching[entry] = true;
+            list.contacts += 1;
+            if let Some(spring) = list.spring.get_mut(entry) {
+                *spring = h.spring;
+            }
+            if let Some(rolling) = list.rolling.get_mut(entry) {
+                *rolling = h.rolling;
+            }
+        }
+        Ok(())
+    }
+
+    /// All listed pairs, sorted indices.
+    pub(crate) fn pairs(&self) -> impl Iterator<Item = (usize, usize)> + '_ {
+        self.lists.iter().enumerate().flat_map(|(k, list)| {
+            (0..list.start.len() - 1).flat_map(move |local| {
+                let range = list.start[local] as usize..list.start[local + 1] as usize;
+                list.partner[range].iter().map(move |code| (k * CHUNK + local, (code & INDEX_MASK) as usize))
+            })
+        })
+    }
+
+    /// Number of touching pairs.
+    pub(crate) fn contacts(&self) -> usize {
+        self.lists.iter().map(|list| list.contacts).sum()
+    }
+}
+
+impl ChunkList {
+    fn fill(&mut self, k: usize, cells: &Cells, grains: &Grains, features: Features) {
+        self.start.clear();
+        self.partner.clear();
+        let (first, last) = (k * CHUNK, grains.len().min((k + 1) * CHUNK));
+        for i in first..last {
+            self.start.push(self.partner.len() as u32);
+            let partner = &mut self.partner;
+            cells.partners(i as u32, grains.level[i], &grains.centre[i], |entry| partner.push(entry));
+        }
+        let entries = self.partner.len();
+        self.start.push(entries as u32);
+        self.touching.clear();
+        self.touching.resize(entries, false);
+        self.spring.clear();
+        self.spring.resize(if features.friction { entries } else { 0 }, [0.0; 4]);
+        self.rolling.clear();
+        self.rolling.resize(if features.rolling { entries } else { 0 }, [0.0; 3]);
+        self.hits.resize(entries + 1, Hit::default());
+        self.contacts = 0;
+    }
+
+    /// Takes the histories of pairs that overlap now from the lists before.
+    fn inherit(
+        &mut self,
+        k: usize,
+        grains: &Grains,
+        shifts: &[[f64; 3]; 32],
+        previous: &[Self],
+        order: &[u32],
+        features: Features,
+    ) {
+        for local in 0..self.start.len() - 1 {
+            let i = k * CHUNK + local;
+            for entry in self.start[local] as usize..self.start[local + 1] as usize {
+                let partner = self.partner[entry];
+                let j = (partner & INDEX_MASK) as usize;
+                let shift = shifts[(partner >> INDEX_BITS) as usize];
+                let (a, b) = (&grains.centre[i], &grains.centre[j]);
+                let d2: f64 = (0..3).map(|x| (b[x] + shift[x] - a[x]).powi(2)).sum();
+                if d2 >= (a[3] + b[3]).powi(2) {
+                    continue;
+                }
+                let (old_i, old_j) = (order[i], order[j]);
+                let found = find(previous, old_i, old_j)
+                    .map(|(list, e)| (list, e, 1.0))
+                    .or_else(|| find(previous, old_j, old_i).map(|(list, e)| (list, e, -1.0)));
+                if let Some((list, old, sign)) = found {
+                    self.touching[entry] = true;
+                    if features.friction {
+                        let [x, y, z, radius] = list.spring[old];
+                        self.spring[entry] = [sign * x, sign * y, sign * z, radius];
+                    }
+                    if features.rolling {
+                        self.rolling[entry] = list.rolling[old].map(|c| sign * c);
+                    }
+                }
+            }
+        }
+    }
+}
+
+/// The touching entry of `j` in the list of `i`.
+fn find(lists: &[ChunkList], i: u32, j: u32) -> Option<(&ChunkList, usize)> {
+    let list = &lists[i as usize / CHUNK];
+    let local = i as usize % CHUNK;
+    (list.start[local] as usize..list.start[local + 1] as usize)
+        .find(|&entry| list.partner[entry] & INDEX_MASK == j && list.touching[entry])
+        .map(|entry| (list, entry))
+}

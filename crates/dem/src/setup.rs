@@ -1,0 +1,32 @@
+//! What a simulation is made of.
+
+use amberfield_core::{Domain, FieldSettings, Material, Particles, TimeSettings, Wall};
+use amberfield_field::Choice;
+
+/// The electric field of a scene.
+#[derive(Clone, Debug)]
+pub struct FieldStageSetup {
+    /// What the scene asks of the field.
+    pub settings: FieldSettings,
+    /// Whether each grain, in the order of `Setup::particles`, makes and feels the field.
+    pub member: Vec<bool>,
+    /// Parameters chosen earlier; `None` lets the field choose.
+    pub choice: Option<Choice>,
+}
+
+/// A scene, validated by `Simulation::new`.
+#[derive(Clone, Debug)]
+pub struct Setup {
+    /// The box; its periodic faces join the motion too.
+    pub domain: Domain,
+    /// Materials that grains and walls refer to.
+    pub materials: Vec<Material>,
+    /// Grains at the start.
+    pub particles: Particles,
+    /// Contact walls.
+    pub walls: Vec<Wall>,
+    /// Step, gravity, skin and rules of the run.
+    pub time: TimeSettings,
+    /// Electric field; `None`: plain DEM.
+    pub field: Option<FieldStageSetup>,
+}

@@ -1,0 +1,253 @@
+//! One run: the stages of a scene and the order in which they act.
+
+mod plan;
+mod report;
+mod start;
+
+use crate::error::DemError;
+use crate::field_stage::FieldStage;
+use crate::grains::Grains;
+use crate::guards::{ElectricLimits, Limits, electric_stiffness};
+use crate::integrate::{Bounds, ChunkMotion, drift, kick};
+use crate::material_pairs::{Features, PairTable};
+use crate::neighbours::Neighbours;
+use crate::pair_forces::pair_forces;
+use crate::timing::{Stage, Stopwatch};
+use crate::walls::Walls;
+use amberfield_core::{Domain, OnExit, Particles, Plan, TimeSettings, Vector3};
+
+/// Margin of the displacement test against round-off.
+const HALF_SKIN: f64 = 0.499_999;
+
+/// A run. After an error of [`Self::step`] the grains are between two steps: do not step on.
+#[derive(Debug)]
+pub struct Simulation {
+    domain: Domain,
+    time: TimeSettings,
+    /// Grains as set up: ids, sizes, charges; motion is in `grains`.
+    particles: Particles,
+    plan: Plan,
+    table: PairTable,
+    features: Features,
+    periodic: bool,
+    bounds: Bounds,
+    limits: Limits,
+    step_s: f64,
+    skin: f64,
+    step_index: u64,
+    grains: Grains,
+    neighbours: Neighbours,
+    walls: Option<Walls>,
+    field: Option<FieldStage>,
+    /// Bound on any grain's displacement since the lists were built [m].
+    travel: f64,
+    /// Largest speed of the last drift [m/s].
+    speed: f64,
+    /// Forces and torques in the making.
+    new_force: Vec<Vector3<f64>>,
+    new_torque: Vec<Vector3<f64>>,
+    motion: Vec<ChunkMotion>,
+    /// Scratch of the sort.
+    keys: Vec<(u64, u32, u32)>,
+    order: Vec<u32>,
+    warned_unstable: bool,
+    watch: Stopwatch,
+}
+
+impl Simulation {
+    /// Advances by one step.
+    ///
+    /// # Errors
+    /// A grain that leaves or whose position is not finite, a step that a guard no longer allows, a field that
+    /// fails.
+    pub fn step(&mut self) -> Result<(), DemError> {
+        self.watch.start();
+        self.step_index += 1;
+        let motion = drift(
+            &mut self.grains,
+            self.time.gravity_m_s2,
+            self.step_s,
+            &self.bounds,
+            &mut self.motion,
+        );
+        self.speed = motion.speed;
+        let left = motion.outside && self.handle_exits()?;
+        self.watch.lap(Stage::Integrate);
+        self.travel += self.step_s * motion.speed;
+        if left || self.must_rebuild() {
+            self.rebuild();
+            self.watch_guards()?;
+        }
+        self.watch.lap(Stage::Neighbours);
+        self.forces(self.step_s)?;
+        kick(&mut self.grains, &self.neighbours, self.step_s, &mut self.new_force, &mut self.new_torque);
+        self.watch.lap(Stage::Integrate);
+        Ok(())
+    }
+
+    /// Contact, wall and field forces at the present positions, into `new_force` and `new_torque`; pushes
+    /// across chunks wait in the outboxes.
+    fn forces(&mut self, step: f64) -> Result<(), DemError> {
+        pair_forces(
+            &self.grains,
+            &mut self.neighbours,
+            &self.table,
+            self.features,
+            self.periodic,
+            step,
+            &mut self.new_force,
+            &mut self.new_torque,
+        );
+        self.watch.lap(Stage::Contacts);
+        if let Some(walls) = &mut self.walls {
+            let (force, torque) = (&mut self.new_force, &mut self.new_torque);
+            walls.forces(&self.grains, &self.table, self.features, step, force, torque);
+            self.watch.lap(Stage::Walls);
+        }
+        if let Some(field) = &mut self.field {
+            // The forces at the start come with a step of zero: the field was evaluated just before.
+            if step > 0.0 {
+                if field.is_due(step, self.speed) {
+                    field.evaluate(&self.domain, &self.grains, &self.particles, self.skin, self.step_s)?;
+                }
+                field.book_step();
+            }
+            for (force, electric) in self.new_force.iter_mut().zip(&field.force) {
+                *force += electric;
+            }
+            self.watch.lap(Stage::Field);
+        }
+        Ok(())
+    }
+
+    /// Whether a grain may have moved by half the skin since the lists were built. The travel is only a
+    /// bound; when it is used up, the displacements themselves decide.
+    fn must_rebuild(&mut self) -> bool {
+        let limit = HALF_SKIN * self.skin;
+        if self.travel <= limit {
+            return false;
+        }
+        let displacement2 = self
+            .neighbours
+            .reference
+            .iter()
+            .enumerate()
+            .map(|(i, x)| (self.grains.position(i) - x).norm_squared())
+            .fold(0.0, f64::max);
+        self.travel = displacement2.sqrt();
+        self.travel > limit
+    }
+
+    /// Wraps, sorts and lists the grains anew; histories move along.
+    fn rebuild(&mut self) {
+        if self.periodic {
+            for c in &mut self.grains.centre {
+                let wrapped = self.domain.wrap(Vector3::new(c[0], c[1], c[2]));
+                (c[0], c[1], c[2]) = (wrapped.x, wrapped.y, wrapped.z);
+            }
+        }
+        let wall_histories = self.walls.as_ref().map(|walls| walls.histories(&self.grains));
+        self.grains.spatial_order(&mut self.keys, &mut self.order);
+        self.grains.reorder(&self.order);
+        if let Some(field) = &mut self.field {
+            crate::grains::pick(&mut field.force, &self.order);
+        }
+        self.neighbours.build(&self.domain, &self.grains, &self.order);
+        if let Some(walls) = &mut self.walls {
+            walls.build(&self.domain, &self.grains, self.skin, &wall_histories.unwrap_or_default());
+        }
+        self.travel = 0.0;
+    }
+
+    /// Handles grains outside; whether any was removed.
+    fn handle_exits(&mut self) -> Result<bool, DemError> {
+        let outside: Vec<usize> =
+            (0..self.grains.len()).filter(|&i| self.bounds.beyond(&self.grains.centre[i]).is_some()).collect();
+        let id = |i: usize| self.particles.id[self.grains.original[i] as usize];
+        let time_s = self.time_s();
+        if let Some(&i) = outside.iter().filter(|&&i| !self.is_finite(i)).min_by_key(|&&i| id(i)) {
+            return Err(DemError::NotFinite { id: id(i), time_s });
+        }
+        if self.time.on_exit == OnExit::Stop
+            && let Some(&i) = outside.iter().min_by_key(|&&i| id(i))
+        {
+            let (axis, side) = self.bounds.beyond(&self.grains.centre[i]).expect("listed as outside");
+            let face = format!("{}_{}", ["x", "y", "z"][axis], ["min", "max"][side.unwrap_or(0)]);
+            return Err(DemError::Left { id: id(i), position_m: self.grains.position(i), face, time_s });
+        }
+        for &i in &outside {
+            tracing::warn!(id = id(i), time_s, "grain left the domain and was removed");
+        }
+        self.remove(&outside);
+        Ok(!outside.is_empty())
+    }
+
+    fn is_finite(&self, i: usize) -> bool {
+        self.grains.centre[i].iter().all(|x| x.is_finite())
+    }
+
+    /// Removes grains (ascending sorted indices). The lists still have the old numbers: the rebuild that must
+    /// follow needs the order from them.
+    fn remove(&mut self, gone: &[usize]) {
+        if gone.is_empty() {
+            return;
+        }
+        let wall_histories = self.walls.as_ref().map(|walls| walls.histories(&self.grains));
+        let mut keep: Vec<u32> = (0..self.grains.len() as u32).collect();
+        keep.retain(|&i| gone.binary_search(&(i as usize)).is_err());
+        self.grains.reorder(&keep);
+        if let Some(field) = &mut self.field {
+            crate::grains::pick(&mut field.force, &keep);
+        }
+        self.resize_scratch();
+        self.neighbours.build(&self.domain, &self.grains, &keep);
+        if let Some(walls) = &mut self.walls {
+            walls.build(&self.domain, &self.grains, self.skin, &wall_histories.unwrap_or_default());
+        }
+    }
+
+    /// Evaluates the field now.
+    fn evaluate_field(&mut self) -> Result<(), DemError> {
+        if let Some(field) = &mut self.field {
+            field.evaluate(&self.domain, &self.grains, &self.particles, self.skin, self.step_s)?;
+        }
+        Ok(())
+    }
+
+    fn resize_scratch(&mut self) {
+        let count = self.grains.len();
+        self.new_force.resize(count, Vector3::zeros());
+        self.new_torque.resize(if self.grains.torque.is_empty() { 0 } else { count }, Vector3::zeros());
+        self.motion.resize(crate::chunks::chunk_count(count), ChunkMotion::default());
+    }
+
+    /// Computes the electric guards anew.
+    fn update_electric_limits(&mut self) {
+        let Some(field) = &self.field else { return };
+        let (pair, wall_image) = electric_stiffness(
+            &self.domain,
+            &self.grains,
+            &self.particles,
+            &field.member,
+            field.permittivity(),
+            self.neighbours.pairs(),
+        );
+        self.limits.set_electric(ElectricLimits { pair, wall_image, plasma: field.plasma_limit });
+    }
+
+    /// Checks the guards at the present speed.
+    fn watch_guards(&mut self) -> Result<(), DemError> {
+        self.update_electric_limits();
+        let Some(broken) = self.limits.broken(self.step_s, self.speed, self.time_s()) else {
+            return Ok(());
+        };
+        if !self.time.allow_unstable {
+            return Err(broken);
+        }
+        if !self.warned_unstable {
+            tracing::warn!("{broken}");
+            self.warned_unstable = true;
+        }
+        Ok(())
+    }
+}

@@ -1,0 +1,49 @@
+//! Which stages a scene has, and why.
+
+use crate::material_pairs::Features;
+use amberfield_core::Plan;
+
+/// The plan; the field's own plan is appended.
+pub(super) fn plan(
+    features: Features,
+    periodic: bool,
+    walls: usize,
+    levels: usize,
+    field_asked: bool,
+    field: Option<Plan>,
+) -> Plan {
+    let mut plan = Plan::new();
+    let mut entry = |there: bool, stage: &str, yes: String, no: &str| {
+        if there { plan.build(stage, yes) } else { plan.leave_out(stage, no) }
+    };
+    entry(true, "integrate", "velocity Verlet, every step".to_owned(), "");
+    let grids = format!("linked cells on {levels} level(s) of size, Verlet lists rebuilt by displacement");
+    entry(true, "neighbours", grids, "");
+    entry(true, "contacts", "Hertz contacts of grains".to_owned(), "");
+    entry(walls > 0, "walls", format!("{walls} wall(s)"), "no wall");
+    entry(features.damping, "contact damping", "a restitution is below 1".to_owned(), "every restitution is 1");
+    entry(
+        features.friction,
+        "tangential history",
+        "a pair of materials has friction".to_owned(),
+        "no pair of materials has friction",
+    );
+    entry(
+        features.rolling,
+        "rolling history",
+        "a pair of materials has rolling friction".to_owned(),
+        "no pair of materials has rolling friction",
+    );
+    entry(features.rotation(), "rotation", "friction can turn grains".to_owned(), "nothing can turn a grain");
+    entry(periodic, "periodic images", "an axis is periodic".to_owned(), "no axis is periodic");
+    let reason = if field_asked {
+        "every charge in the particle group is zero and nothing makes one"
+    } else {
+        "no [electric_field]"
+    };
+    entry(field.is_some(), "field", "charged grains".to_owned(), reason);
+    if let Some(field) = field {
+        plan.extend(field);
+    }
+    plan
+}

@@ -1,0 +1,139 @@
+//! What a run tells about itself.
+
+use super::Simulation;
+use crate::energy::{self, Energies};
+use crate::error::DemError;
+use crate::field_stage::Limited;
+use crate::guards::Guard;
+use crate::timing::STAGE_NAMES;
+use amberfield_core::{Particles, Plan, Vector3};
+use amberfield_field::ElectricField;
+
+impl Simulation {
+    /// Simulated time [s].
+    #[must_use]
+    pub fn time_s(&self) -> f64 {
+        self.step_index as f64 * self.step_s
+    }
+
+    /// Time step [s].
+    #[must_use]
+    pub fn step_s(&self) -> f64 {
+        self.step_s
+    }
+
+    /// Neighbour-list skin [m].
+    #[must_use]
+    pub fn skin_m(&self) -> f64 {
+        self.skin
+    }
+
+    /// Steps done.
+    #[must_use]
+    pub fn step_index(&self) -> u64 {
+        self.step_index
+    }
+
+    /// Number of grains that are still there.
+    #[must_use]
+    pub fn len(&self) -> usize {
+        self.grains.len()
+    }
+
+    /// Whether no grain is left.
+    #[must_use]
+    pub fn is_empty(&self) -> bool {
+        self.grains.len() == 0
+    }
+
+    /// The grains that are still there, in the order of the set-up, positions inside the domain.
+    #[must_use]
+    pub fn particles(&self) -> Particles {
+        let mut sorted: Vec<u32> = (0..self.grains.len() as u32).collect();
+        sorted.sort_unstable_by_key(|&i| self.grains.original[i as usize]);
+        sorted
+            .into_iter()
+            .map(|i| {
+                let i = i as usize;
+                let mut grain = self.particles.grain(self.grains.original[i] as usize);
+                grain.position = self.domain.wrap(self.grains.position(i));
+                grain.velocity = self.grains.velocity[i];
+                grain.angular_velocity = self.grains.angular[i];
+                grain
+            })
+            .collect()
+    }
+
+    /// Electric force held on each grain [N], in the order of [`Self::particles`]; `None` without a field.
+    #[must_use]
+    pub fn electric_forces(&self) -> Option<Vec<Vector3<f64>>> {
+        let field = self.field.as_ref()?;
+        let mut sorted: Vec<usize> = (0..self.grains.len()).collect();
+        sorted.sort_unstable_by_key(|&i| self.grains.original[i]);
+        Some(sorted.into_iter().map(|i| field.force[i]).collect())
+    }
+
+    /// Energies [J]. With `electric` the field is evaluated once more, with potentials, at the present
+    /// positions; the motion does not change.
+    ///
+    /// # Errors
+    /// A field that fails.
+    pub fn energies(&mut self, electric: bool) -> Result<Energies, DemError> {
+        let electric = match &mut self.field {
+            Some(field) if electric => Some(field.energy(&self.domain, &self.grains, &self.particles)?),
+            _ => None,
+        };
+        Ok(Energies {
+            kinetic: energy::kinetic(&self.grains),
+            contact: energy::contact(
+                &self.grains,
+                &self.neighbours,
+                self.walls.as_ref(),
+                &self.table,
+                self.features,
+            ),
+            gravity: energy::gravity(&self.grains, self.time.gravity_m_s2),
+            electric,
+        })
+    }
+
+    /// Number of touching contacts, of grains and with walls, at the last evaluation.
+    #[must_use]
+    pub fn contacts(&self) -> usize {
+        self.neighbours.contacts() + self.walls.as_ref().map_or(0, |walls| walls.contacts())
+    }
+
+    /// What the force limit did; `None` without a field.
+    #[must_use]
+    pub fn limited(&self) -> Option<Limited> {
+        self.field.as_ref().map(|field| field.limited)
+    }
+
+    /// Stages that run and stages that are left out.
+    #[must_use]
+    pub fn plan(&self) -> &Plan {
+        &self.plan
+    }
+
+    /// Wall-clock seconds spent in each stage of the plan.
+    #[must_use]
+    pub fn stage_seconds(&self) -> Vec<(&'static str, f64)> {
+        STAGE_NAMES
+            .into_iter()
+            .zip(self.watch.seconds)
+            .filter(|(name, _)| self.plan.has(name))
+            .collect()
+    }
+
+    /// Limits on the time step at the present speeds.
+    #[must_use]
+    pub fn guards(&self) -> Vec<Guard> {
+        self.limits.guards(self.step_s, self.speed)
+    }
+
+    /// The field; `None` without a field stage.
+    #[must_use]
+    pub fn field(&self) -> Option<&ElectricField> {
+        self.field.as_ref().map(|stage| &stage.field)
+    }
+}

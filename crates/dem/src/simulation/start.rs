@@ -1,0 +1,226 @@
+//! Starting a run, afresh or from a checkpoint.
+
+use super::Simulation;
+use crate::cells::{Cells, levels_of, shifts};
+use crate::error::DemError;
+use crate::field_stage::FieldStage;
+use crate::grains::Grains;
+use crate::guards::Limits;
+use crate::integrate::{Bounds, kick};
+use crate::material_pairs::PairTable;
+use crate::neighbours::Neighbours;
+use crate::setup::Setup;
+use crate::start_checks;
+use crate::state::State;
+use crate::timing::Stopwatch;
+use crate::walls::Walls;
+use amberfield_core::{Axis, Domain, Step, Vector3};
+
+impl Simulation {
+    /// Checks a scene, builds its stages and computes the forces at the start.
+    ///
+    /// # Errors
+    /// Values that are impossible, overlaps, a step beyond a stability guard, a field that cannot be computed.
+    pub fn new(setup: Setup) -> Result<Self, DemError> {
+        start_checks::check(&setup)?;
+        let skin = start_checks::skin(&setup);
+        start_checks::check_periods(&setup, skin)?;
+        let mut run = Self::assemble(setup, skin, None)?;
+        run.rebuild();
+        let allow = run.time.allow_overlap;
+        start_checks::check_overlaps(&run.grains, &run.neighbours, &run.particles, allow)?;
+        if let (Some(walls), false) = (&run.walls, allow)
+            && let Some(error) = walls.too_deep(&run.grains, &run.particles)
+        {
+            return Err(error);
+        }
+        run.choose_step()?;
+        run.forces(0.0)?;
+        run.settle_forces();
+        Ok(run)
+    }
+
+    /// Goes on from a checkpoint of the same scene, bit for bit.
+    ///
+    /// # Errors
+    /// As [`Self::new`], and a state that does not fit the scene.
+    pub fn resume(setup: Setup, state: State) -> Result<Self, DemError> {
+        start_checks::check(&setup)?;
+        check_state(&setup, &state)?;
+        let mut run = Self::assemble(setup, state.skin_m, Some(&state))?;
+        run.grains.reorder(&state.original);
+        let count = state.original.len();
+        // Lists are built from the centres they were built from before.
+        let place = |grains: &mut Grains, centres: &[Vector3<f64>]| {
+            for (c, x) in grains.centre.iter_mut().zip(centres) {
+                (c[0], c[1], c[2]) = (x.x, x.y, x.z);
+            }
+        };
+        place(&mut run.grains, &state.reference);
+        let order: Vec<u32> = (0..count as u32).collect();
+        run.neighbours.build(&run.domain, &run.grains, &order);
+        if let Some(walls) = &mut run.walls {
+            walls.build(&run.domain, &run.grains, run.skin, &state.walls);
+        }
+        run.neighbours.restore(&run.grains, &state.pairs).map_err(DemError::State)?;
+        place(&mut run.grains, &state.centre);
+        run.grains.velocity = state.velocity;
+        run.grains.angular = state.angular;
+        run.grains.force = state.force;
+        run.grains.torque = state.torque;
+        run.step_index = state.step_index;
+        run.step_s = state.step_s;
+        run.travel = state.travel;
+        run.speed = state.speed;
+        run.resize_scratch();
+        run.update_electric_limits();
+        Ok(run)
+    }
+
+    /// The complete state.
+    #[must_use]
+    pub fn state(&self) -> State {
+        State {
+            step_index: self.step_index,
+            step_s: self.step_s,
+            skin_m: self.skin,
+            travel: self.travel,
+            speed: self.speed,
+            original: self.grains.original.clone(),
+            centre: (0..self.grains.len()).map(|i| self.grains.position(i)).collect(),
+            velocity: self.grains.velocity.clone(),
+            angular: self.grains.angular.clone(),
+            force: self.grains.force.clone(),
+            torque: self.grains.torque.clone(),
+            reference: self.neighbours.reference.clone(),
+            pairs: self.neighbours.histories(&self.grains),
+            walls: self.walls.as_ref().map(|w| w.histories(&self.grains)).unwrap_or_default(),
+            field: self.field.as_ref().map(FieldStage::state),
+        }
+    }
+
+    fn assemble(setup: Setup, skin: f64, state: Option<&State>) -> Result<Self, DemError> {
+        let Setup { domain, materials, particles, walls, time, field } = setup;
+        let table = PairTable::new(&materials);
+        let features = table.features();
+        let (level, level_radius) = levels_of(particles.radius.iter().copied());
+        let shifts = shifts(&domain);
+        let wall_count = walls.len();
+        let walls = if walls.is_empty() { None } else { Some(Walls::new(&walls, shifts)?) };
+        let asked = field.is_some();
+        let field = match field {
+            Some(f) if (0..particles.len()).any(|i| f.member[i] && particles.charge[i] != 0.0) => {
+                let saved = state.and_then(|s| s.field.as_ref());
+                if state.is_some() && saved.is_none() {
+                    return Err(DemError::State("it holds no electric field".to_owned()));
+                }
+                Some(FieldStage::new(&domain, f, &particles, saved)?)
+            }
+            _ => None,
+        };
+        let limits = Limits::new(&particles, &materials, &table, None);
+        let neighbours = Neighbours::new(Cells::new(level_radius, skin), shifts, features);
+        let periodic = Axis::ALL.into_iter().any(|axis| domain.is_periodic(axis));
+        let plan = super::plan::plan(
+            features,
+            periodic,
+            wall_count,
+            neighbours.level_count(),
+            asked,
+            field.as_ref().map(|f| f.field.plan()),
+        );
+        let grains = Grains::new(&particles, level, features.rotation());
+        let mut run = Self {
+            bounds: bounds(&domain),
+            domain,
+            time,
+            plan,
+            table,
+            features,
+            periodic,
+            limits,
+            step_s: 0.0,
+            skin,
+            step_index: 0,
+            grains,
+            neighbours,
+            walls,
+            field,
+            travel: 0.0,
+            speed: particles.velocity.iter().map(|v| v.norm()).fold(0.0, f64::max),
+            particles,
+            new_force: Vec::new(),
+            new_torque: Vec::new(),
+            motion: Vec::new(),
+            keys: Vec::new(),
+            order: Vec::new(),
+            warned_unstable: false,
+            watch: Stopwatch::default(),
+        };
+        run.resize_scratch();
+        Ok(run)
+    }
+
+    /// Fixes the step and evaluates the field for the first time: its plasma limit needs a step and the
+    /// automatic step needs the limit.
+    fn choose_step(&mut self) -> Result<(), DemError> {
+        self.update_electric_limits();
+        self.step_s = match self.time.step {
+            Step::Seconds(step) => step,
+            Step::Auto => self.limits.auto_step(self.speed),
+        };
+        if !self.step_s.is_finite() {
+            return Err(DemError::Setup(
+                "step_s = \"auto\" needs at least one grain; give a number".to_owned(),
+            ));
+        }
+        if self.field.is_some() {
+            self.evaluate_field()?;
+            self.update_electric_limits();
+            let shorter = self.limits.auto_step(self.speed);
+            if self.time.step == Step::Auto && shorter < self.step_s {
+                self.step_s = shorter;
+                self.evaluate_field()?;
+            }
+        }
+        self.watch_guards()
+    }
+
+    /// Takes the first forces as those of the last step, without moving.
+    fn settle_forces(&mut self) {
+        let step = 0.0;
+        kick(&mut self.grains, &self.neighbours, step, &mut self.new_force, &mut self.new_torque);
+    }
+}
+
+/// Infinite along periodic axes.
+fn bounds(domain: &Domain) -> Bounds {
+    let side = |corner: Vector3<f64>, infinite: f64| {
+        std::array::from_fn(|a| if domain.is_periodic(Axis::ALL[a]) { infinite } else { corner[a] })
+    };
+    Bounds { min: side(domain.min(), f64::NEG_INFINITY), max: side(domain.max(), f64::INFINITY) }
+}
+
+fn check_state(setup: &Setup, state: &State) -> Result<(), DemError> {
+    let count = state.original.len();
+    let total = setup.particles.len();
+    let mut seen = vec![false; total];
+    for &original in &state.original {
+        let slot = seen.get_mut(original as usize);
+        if slot.is_none_or(|seen| std::mem::replace(seen, true)) {
+            return Err(DemError::State(format!("grain {original} of {total} is unknown or named twice")));
+        }
+    }
+    let lengths = [state.centre.len(), state.velocity.len(), state.angular.len(), state.force.len()];
+    if lengths.iter().any(|&n| n != count) || state.reference.len() != count {
+        return Err(DemError::State("its arrays differ in length".to_owned()));
+    }
+    let rotation = PairTable::new(&setup.materials).features().rotation();
+    if state.torque.len() != if rotation { count } else { 0 } {
+        return Err(DemError::State("its torques do not match the materials' friction".to_owned()));
+    }
+    if state.field.as_ref().is_some_and(|f| f.force.len() != count) {
+        return Err(DemError::State("its field forces differ in length".to_owned()));
+    }
+    Ok(())
+}

@@ -1,0 +1,85 @@
+//! The complete state of a run, for checkpoints.
+
+use amberfield_core::Vector3;
+use amberfield_field::Choice;
+use serde::{Deserialize, Serialize};
+
+/// History of a touching pair.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
+pub(crate) struct PairHistory {
+    /// Grain whose list holds the pair, in the sorted order.
+    pub(crate) i: u32,
+    /// Entry in that list.
+    pub(crate) entry: u32,
+    /// Partner, in the set-up's order.
+    pub(crate) partner: u32,
+    /// Tangential force [N] and contact radius [m].
+    pub(crate) spring: [f64; 4],
+    /// Rolling torque [N·m].
+    pub(crate) rolling: [f64; 3],
+}
+
+/// History of a contact with a wall.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
+pub(crate) struct WallHistory {
+    /// Grain, in the set-up's order.
+    pub(crate) grain: u32,
+    /// Wall.
+    pub(crate) wall: u32,
+    /// Direction from the grain to the wall.
+    pub(crate) normal: [f64; 3],
+    /// Overlap [m].
+    pub(crate) overlap: f64,
+    /// Tangential force [N] and contact radius [m].
+    pub(crate) spring: [f64; 4],
+    /// Rolling torque [N·m].
+    pub(crate) rolling: [f64; 3],
+}
+
+/// State of the field stage.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+pub(crate) struct FieldState {
+    pub(crate) choice: Choice,
+    /// Electric force held on each grain [N], sorted order.
+    pub(crate) force: Vec<Vector3<f64>>,
+    pub(crate) travel: f64,
+    pub(crate) steps_since: u64,
+    pub(crate) plasma_steps: u64,
+    pub(crate) plasma_limit: f64,
+    pub(crate) limited: crate::field_stage::Limited,
+}
+
+/// Everything that a run needs to go on bit for bit, given the same [`crate::Setup`]. Opaque; serialise it
+/// with serde.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+pub struct State {
+    pub(crate) step_index: u64,
+    pub(crate) step_s: f64,
+    pub(crate) skin_m: f64,
+    pub(crate) travel: f64,
+    pub(crate) speed: f64,
+    pub(crate) original: Vec<u32>,
+    pub(crate) centre: Vec<Vector3<f64>>,
+    pub(crate) velocity: Vec<Vector3<f64>>,
+    pub(crate) angular: Vec<Vector3<f64>>,
+    pub(crate) force: Vec<Vector3<f64>>,
+    pub(crate) torque: Vec<Vector3<f64>>,
+    pub(crate) reference: Vec<Vector3<f64>>,
+    pub(crate) pairs: Vec<PairHistory>,
+    pub(crate) walls: Vec<WallHistory>,
+    pub(crate) field: Option<FieldState>,
+}
+
+impl State {
+    /// Number of steps done.
+    #[must_use]
+    pub fn step_index(&self) -> u64 {
+        self.step_index
+    }
+
+    /// Parameters of the field in force; `None` without a field stage.
+    #[must_use]
+    pub fn choice(&self) -> Option<&Choice> {
+        self.field.as_ref().map(|f| &f.choice)
+    }
+}

@@ -1,0 +1,38 @@
+//! Seconds spent per stage.
+
+use std::time::Instant;
+
+/// Stages in the order in which they run in a step.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(crate) enum Stage {
+    Integrate,
+    Neighbours,
+    Contacts,
+    Walls,
+    Field,
+}
+
+/// Names as in `history.csv`'s `wall_s_<stage>`.
+pub(crate) const STAGE_NAMES: [&str; 5] = ["integrate", "neighbours", "contacts", "walls", "field"];
+
+/// A stopwatch that results never depend on.
+#[derive(Debug, Default)]
+pub(crate) struct Stopwatch {
+    pub(crate) seconds: [f64; 5],
+    last: Option<Instant>,
+}
+
+impl Stopwatch {
+    /// Starts the clock.
+    pub(crate) fn start(&mut self) {
+        self.last = Some(Instant::now());
+    }
+
+    /// Books the time since the last call for a stage.
+    pub(crate) fn lap(&mut self, stage: Stage) {
+        let now = Instant::now();
+        if let Some(last) = self.last.replace(now) {
+            self.seconds[stage as usize] += (now - last).as_secs_f64();
+        }
+    }
+}

@@ -1,0 +1,441 @@
+//! Contacts with plane and mesh walls.
+
+use crate::cells::NO_SHIFT;
+use crate::chunks::{CHUNK, chunk_count, for_each_chunk, is_parallel};
+use crate::contact_law::{Contact, respond};
+use crate::error::DemError;
+use crate::grains::Grains;
+use crate::material_pairs::{Features, PairTable};
+use crate::mesh_wall::{Candidate, Found, MOST_CONTACTS, MeshWall};
+use crate::state::WallHistory;
+use amberfield_core::{Axis, Domain, Particles, Vector3, Wall, WallShape};
+use std::ops::Range;
+
+/// Cosine of the largest turn between two steps for which a contact is still the same (60°).
+const SAME_CONTACT: f64 = 0.5;
+
+#[derive(Debug)]
+enum Shape {
+    Plane { point: Vector3<f64>, normal: Vector3<f64> },
+    Mesh(Box<MeshWall>),
+}
+
+#[derive(Debug)]
+struct Solid {
+    name: String,
+    material: u16,
+    shape: Shape,
+}
+
+/// A contact with its history.
+#[derive(Clone, Copy, Debug, Default)]
+struct WallContact {
+    normal: Vector3<f64>,
+    overlap: f64,
+    spring: [f64; 4],
+    rolling: [f64; 3],
+}
+
+/// A grain near a wall.
+#[derive(Clone, Debug)]
+struct Entry {
+    local: u32,
+    wall: u32,
+    /// Triangles near the grain, with shift codes.
+    triangles: Range<u32>,
+    /// First of the entry's contacts.
+    contacts: u32,
+    /// Contacts that touch.
+    count: u32,
+}
+
+/// Grains of one chunk that are near walls.
+#[derive(Debug, Default)]
+pub(crate) struct ChunkWalls {
+    entries: Vec<Entry>,
+    triangles: Vec<(u32, u32)>,
+    contacts: Vec<WallContact>,
+    scratch: Vec<Candidate>,
+}
+
+/// All walls and what is near them.
+#[derive(Debug)]
+pub(crate) struct Walls {
+    solids: Vec<Solid>,
+    shifts: [[f64; 3]; 32],
+    chunks: Vec<ChunkWalls>,
+}
+
+impl Walls {
+    pub(crate) fn new(walls: &[Wall], shifts: [[f64; 3]; 32]) -> Result<Self, DemError> {
+        let mut solids = Vec::new();
+        for wall in walls {
+            let shape = match &wall.shape {
+                WallShape::Plane { point, normal } => {
+                    let size = normal.norm();
+                    let good = point.iter().all(|x| x.is_finite()) && size.is_finite() && size > 0.0;
+                    if !good {
+                        return Err(DemError::Setup(format!(
+                            "wall '{}' needs a finite point and a normal that is not zero",
+                            wall.name
+                        )));
+                    }
+                    Shape::Plane { point: *point, normal: normal / size }
+                }
+                WallShape::Mesh(mesh) => {
+                    let known = mesh.triangles.iter().flatten().all(|&v| (v as usize) < mesh.vertices.len());
+                    let finite = mesh.vertices.iter().all(|v| v.iter().all(|x| x.is_finite()));
+                    if !(known && finite) {
+                        return Err(DemError::Setup(format!(
+                            "wall '{}' has a triangle with an unknown vertex or a vertex that is not finite",
+                            wall.name
+                        )));
+                    }
+                    let mesh = MeshWall::new(mesh);
+                    if mesh.is_empty() {
+                        return Err(DemError::Setup(format!(
+                            "wall '{}' has no triangle with an area; check its file and scale",
+                            wall.name
+                        )));
+                    }
+                    Shape::Mesh(Box::new(mesh))
+                }
+            };
+            solids.push(Solid { name: wall.name.clone(), material: wall.material.0, shape });
+        }
+        Ok(Self { solids, shifts, chunks: Vec::new() })
+    }
+
+    /// Finds the grains near walls; histories stay with their grain and wall.
+    pub(crate) fn build(&mut self, domain: &Domain, grains: &Grains, skin: f64, histories: &[WallHistory]) {
+        let chunks = chunk_count(grains.len());
+        self.chunks.resize_with(chunks, ChunkWalls::default);
+        let (solids, shifts, near) = (&self.solids, &self.shifts, &mut self.chunks);
+        let mut marks = vec![(); chunks];
+        for_each_chunk!(
+            is_parallel(grains.len()),
+            chunks,
+            (near / 1, marks / 1),
+            |k: usize, (near, _): (&mut [ChunkWalls], &mut [()])| {
+                near[0].fill(k, solids, shifts, domain, grains, skin, histories);
+            }
+        );
+    }
+
+    /// Histories of touching contacts, sorted by grain and wall.
+    pub(crate) fn histories(&self, grains: &Grains) -> Vec<WallHistory> {
+        let mut out = Vec::new();
+        for (k, chunk) in self.chunks.iter().enumerate() {
+            for entry in &chunk.entries {
+                let original = grains.original[k * CHUNK + entry.local as usize];
+                let first = entry.contacts as usize;
+                out.extend(chunk.contacts[first..first + entry.count as usize].iter().map(|c| WallHistory {
+                    grain: original,
+                    wall: entry.wall,
+                    normal: c.normal.into(),
+                    overlap: c.overlap,
+                    spring: c.spring,
+                    rolling: c.rolling,
+                }));
+            }
+        }
+        // Stable: several contacts of one grain with one wall keep their order.
+        out.sort_by_key(|h| (h.grain, h.wall));
+        out
+    }
+
+    /// Adds the walls' forces and torques.
+    pub(crate) fn forces(
+        &mut self,
+        grains: &Grains,
+        table: &PairTable,
+        features: Features,
+        step: f64,
+        force: &mut [Vector3<f64>],
+        torque: &mut [Vector3<f64>],
+    ) {
+        let near = &mut self.chunks;
+        let (solids, shifts) = (&self.solids[..], &self.shifts);
+        macro_rules! run {
+            ($f:literal, $r:literal, $d:literal) => {{
+                let body = |k: usize, near: &mut ChunkWalls, force: &mut [_], torque: &mut [_]| {
+                    near.forces::<$f, $r, $d>(k, solids, shifts, grains, table, step, force, torque);
+                };
+                let (parallel, chunks) = (is_parallel(grains.len()), chunk_count(grains.len()));
+                if $f || $r {
+                    for_each_chunk!(
+                        parallel,
+                        chunks,
+                        (near / 1, force / CHUNK, torque / CHUNK),
+                        |k: usize,
+                         (near, force, torque): (
+                            &mut [ChunkWalls],
+                            &mut [Vector3<f64>],
+                            &mut [Vector3<f64>]
+                        )| body(k, &mut near[0], force, torque)
+                    );
+                } else {
+                    for_each_chunk!(
+                        parallel,
+                        chunks,
+                        (near / 1, force / CHUNK),
+                        |k: usize, (near, force): (&mut [ChunkWalls], &mut [Vector3<f64>])| body(
+                            k,
+                            &mut near[0],
+                            force,
+                            &mut []
+                        )
+                    );
+                }
+            }};
+        }
+        match (features.friction, features.rolling, features.damping) {
+            (false, false, false) => run!(false, false, false),
+            (false, false, true) => run!(false, false, true),
+            (false, true, false) => run!(false, true, false),
+            (false, true, true) => run!(false, true, true),
+            (true, false, false) => run!(true, false, false),
+            (true, false, true) => run!(true, false, true),
+            (true, true, false) => run!(true, true, false),
+            (true, true, true) => run!(true, true, true),
+        }
+    }
+
+    /// Number of touching contacts.
+    pub(crate) fn contacts(&self) -> usize {
+        self.chunks.iter().flat_map(|c| &c.entries).map(|e| e.count as usize).sum()
+    }
+
+    /// Calls `each(grain index, wall material, overlap, spring, rolling)` for every touching contact.
+    pub(crate) fn each_contact(&self, mut each: impl FnMut(usize, u16, f64, &[f64; 4], &[f64; 3])) {
+        for (k, chunk) in self.chunks.iter().enumerate() {
+            for entry in &chunk.entries {
+                let first = entry.contacts as usize;
+                for c in &chunk.contacts[first..first + entry.count as usize] {
+                    let material = self.solids[entry.wall as usize].material;
+                    each(k * CHUNK + entry.local as usize, material, c.overlap, &c.spring, &c.rolling);
+                }
+            }
+        }
+    }
+
+    /// The first grain that overlaps a wall by more than half its radius.
+    pub(crate) fn too_deep(&self, grains: &Grains, particles: &Particles) -> Option<DemError> {
+        for (i, &original) in grains.original.iter().enumerate() {
+            let (centre, radius) = (grains.position(i), grains.centre[i][3]);
+            for solid in &self.solids {
+                let overlap = match &solid.shape {
+                    Shape::Plane { point, normal } => radius - (centre - point).dot(normal),
+                    Shape::Mesh(mesh) => {
+                        let mut near = Vec::new();
+                        mesh.within(centre, radius, &mut near);
+                        let mut found = [Found::default(); MOST_CONTACTS];
+                        let pairs = near.iter().map(|&t| (t, centre));
+                        let count = mesh.contacts(radius, pairs, &mut Vec::new(), &mut found);
+                        found[..count].iter().map(|f| f.overlap).fold(0.0, f64::max)
+                    }
+                };
+                let limit = 0.5 * radius;
+                if overlap > limit {
+                    return Some(DemError::WallOverlap {
+                        id: particles.id[original as usize],
+                        wall: solid.name.clone(),
+                        overlap_m: overlap,
+                        limit_m: limit,
+                    });
+                }
+            }
+        }
+        None
+    }
+}
+
+impl ChunkWalls {
+    #[expect(clippy::too_many_arguments, reason = "plain data of one scan, used once")]
+    fn fill(
+        &mut self,
+        k: usize,
+        solids: &[Solid],
+        shifts: &[[f64; 3]; 32],
+        domain: &Domain,
+        grains: &Grains,
+        skin: f64,
+        histories: &[WallHistory],
+    ) {
+        self.entries.clear();
+        self.triangles.clear();
+        self.contacts.clear();
+        let mut near = Vec::new();
+        let mut most = 0;
+        for i in k * CHUNK..grains.len().min((k + 1) * CHUNK) {
+            let (centre, reach) = (grains.position(i), grains.centre[i][3] + skin);
+            for (wall, solid) in solids.iter().enumerate() {
+                let first = self.triangles.len();
+                let room = match &solid.shape {
+                    Shape::Plane { point, normal } => usize::from((centre - point).dot(normal) < reach),
+                    Shape::Mesh(mesh) => {
+                        for (code, image) in images(domain, shifts, centre, reach) {
+                            near.clear();
+                            mesh.within(image, reach, &mut near);
+                            self.triangles.extend(near.iter().map(|&t| (t, code)));
+                        }
+                        if self.triangles.len() > first { MOST_CONTACTS } else { 0 }
+                    }
+                };
+                most = most.max(self.triangles.len() - first);
+                if room > 0 {
+                    let contacts = self.contacts.len();
+                    self.contacts.resize(contacts + room, WallContact::default());
+                    let original = grains.original[i];
+                    let from = histories.partition_point(|h| (h.grain, h.wall) < (original, wall as u32));
+                    let mut count = 0;
+                    let same = histories[from..].iter().take_while(|h| h.grain == original);
+                    for h in same.take_while(|h| h.wall == wall as u32).take(room) {
+                        self.contacts[contacts + count] = WallContact {
+                            normal: h.normal.into(),
+                            overlap: h.overlap,
+                            spring: h.spring,
+                            rolling: h.rolling,
+                        };
+                        count += 1;
+                    }
+                    self.entries.push(Entry {
+                        local: (i - k * CHUNK) as u32,
+                        wall: wall as u32,
+                        triangles: first as u32..self.triangles.len() as u32,
+                        contacts: contacts as u32,
+                        count: count as u32,
+                    });
+                }
+            }
+        }
+        self.scratch.clear();
+        self.scratch.reserve(most);
+    }
+
+    #[expect(clippy::too_many_arguments, reason = "the arrays of one chunk, split for the borrow checker")]
+    fn forces<const FRICTION: bool, const ROLLING: bool, const DAMPING: bool>(
+        &mut self,
+        k: usize,
+        solids: &[Solid],
+        shifts: &[[f64; 3]; 32],
+        grains: &Grains,
+        table: &PairTable,
+        step: f64,
+        force: &mut [Vector3<f64>],
+        torque: &mut [Vector3<f64>],
+    ) {
+        let Self { entries, triangles, contacts, scratch } = self;
+        for entry in entries {
+            let local = entry.local as usize;
+            let i = k * CHUNK + local;
+            let (centre, radius) = (grains.position(i), grains.centre[i][3]);
+            let solid = &solids[entry.wall as usize];
+            let mut found = [Found::default(); MOST_CONTACTS];
+            let count = match &solid.shape {
+                Shape::Plane { point, normal } => {
+                    let overlap = radius - (centre - point).dot(normal);
+                    found[0] = Found { normal: -normal, overlap };
+                    usize::from(overlap > 0.0)
+                }
+                Shape::Mesh(mesh) => {
+                    let range = entry.triangles.start as usize..entry.triangles.end as usize;
+                    let pairs = triangles[range]
+                        .iter()
+                        .map(|&(t, code)| (t, centre + Vector3::from(shifts[code as usize])));
+                    mesh.contacts(radius, pairs, scratch, &mut found)
+                }
+            };
+            let kept = &mut contacts[entry.contacts as usize..];
+            let old = take_old(kept, entry.count as usize);
+            let mut unused = [true; MOST_CONTACTS];
+            let inverse_mass = grains.inverse_mass[i];
+            for (n, found) in found[..count].iter().enumerate() {
+                let mut new = WallContact {
+                    normal: found.normal,
+                    overlap: found.overlap,
+                    ..WallContact::default()
+                };
+                if let Some(m) = best_match(&old[..entry.count as usize], &unused, &found.normal) {
+                    unused[m] = false;
+                    (new.spring, new.rolling) = (old[m].spring, old[m].rolling);
+                }
+                let arm = radius - found.overlap;
+                let (spin, turning) = if FRICTION || ROLLING {
+                    (grains.angular[i] * arm, grains.angular[i])
+                } else {
+                    (Vector3::zeros(), Vector3::zeros())
+                };
+                let contact = Contact {
+                    overlap: found.overlap,
+                    normal: found.normal,
+                    velocity: grains.velocity[i],
+                    spin,
+                    turning,
+                    inverse_radius: 1.0 / radius,
+                    inverse_mass,
+                    inverse_moment: inverse_mass / (radius * radius),
+                };
+                let pair = table.get(grains.material[i], solid.material);
+                let response = respond::<FRICTION, ROLLING, DAMPING>(
+                    &contact,
+                    pair,
+                    step,
+                    &mut new.spring,
+                    &mut new.rolling,
+                );
+                force[local] += response.force;
+                if FRICTION || ROLLING {
+                    torque[local] += response.twist * arm + response.rolling;
+                }
+                kept[n] = new;
+            }
+            entry.count = count as u32;
+        }
+    }
+}
+
+/// Copy of the contacts of the last step.
+fn take_old(kept: &[WallContact], count: usize) -> [WallContact; MOST_CONTACTS] {
+    let mut old = [WallContact::default(); MOST_CONTACTS];
+    old[..count].copy_from_slice(&kept[..count]);
+    old
+}
+
+/// The unused old contact whose direction is nearest.
+fn best_match(
+    old: &[WallContact],
+    unused: &[bool; MOST_CONTACTS],
+    normal: &Vector3<f64>,
+) -> Option<usize> {
+    let mut best = None;
+    let mut cosine = SAME_CONTACT;
+    for (m, contact) in old.iter().enumerate() {
+        let c = contact.normal.dot(normal);
+        if unused[m] && c > cosine {
+            (best, cosine) = (Some(m), c);
+        }
+    }
+    best
+}
+
+/// The centre and its periodic images that can reach into the domain, with their shift codes.
+fn images<'a>(
+    domain: &'a Domain,
+    shifts: &'a [[f64; 3]; 32],
+    centre: Vector3<f64>,
+    reach: f64,
+) -> impl Iterator<Item = (u32, Vector3<f64>)> + 'a {
+    let (min, max) = (domain.min(), domain.max());
+    (0..27_u32).filter_map(move |code| {
+        let digits = [code / 9, code / 3 % 3, code % 3];
+        let wanted = code == NO_SHIFT
+            || (0..3).all(|axis| match (digits[axis], domain.is_periodic(Axis::ALL[axis])) {
+                (1, _) => true,
+                (0, true) => max[axis] - centre[axis] <= reach,
+                (2, true) => centre[axis] - min[axis] <= reach,
+                _ => false,
+            });
+        wanted.then(|| (code, centre + Vector3::from(shifts[code as usize])))
+    })
+}
