@@ -1,0 +1,41 @@
+//! Madelung constant of rock salt in a periodic box.
+
+use crate::support::{COULOMB, Case};
+use amberfield_core::Vector3;
+use amberfield_oracle::{ErrorNorms, MADELUNG_NACL, field_scale};
+
+const CHARGE_C: f64 = 1e-12;
+const SPACING_M: f64 = 1e-3;
+const VOLUME_M3: f64 = 64e-9;
+/// The direct sum promises 1e-9.
+const DIRECT: f64 = 1e-9;
+/// The scene's tolerance; it speaks of E.
+const TOLERANCE: f64 = 1e-4;
+/// The potential has no tolerance of its own. Its error is that of E times about the splitting's width, which is
+/// of the order of the distance of neighbours.
+const POTENTIAL: f64 = 1e-3;
+
+#[test]
+fn direct_sum_gives_nine_digits_and_no_field() {
+    check("direct", DIRECT, DIRECT);
+}
+
+#[test]
+fn p3m_gives_it_within_its_tolerance() {
+    check("p3m", TOLERANCE, POTENTIAL);
+}
+
+fn check(method: &str, field_tolerance: f64, potential_tolerance: f64) {
+    let case = Case::new("madelung");
+    let charges = case.table("ions.csv").column("charge_C").to_vec();
+    let result = case.field(&["--method", method]);
+    let unit = COULOMB * CHARGE_C / SPACING_M;
+    for (charge, potential) in charges.iter().zip(result.column("potential_V")) {
+        let madelung = -charge / CHARGE_C * potential / unit;
+        assert!((madelung / MADELUNG_NACL - 1.0).abs() < potential_tolerance, "{method}: M = {madelung}");
+    }
+    let none = vec![Vector3::zeros(); charges.len()];
+    let scale = field_scale(&none, &charges, VOLUME_M3, COULOMB);
+    let norms = ErrorNorms::new(&result.field(), &none, scale);
+    assert!(norms.relative_rms < field_tolerance, "{method}: {norms:?}");
+}
