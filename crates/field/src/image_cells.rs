@@ -159,7 +159,7 @@ impl<T: Copy + Default> ImageCells<T> {
     /// Calls `visit` with ranges of entries that together hold every entry within the radius of `at`, and some
     /// beyond it.
     pub(crate) fn for_each_range(&self, at: &Vector3<f64>, mut visit: impl FnMut(Range<usize>)) {
-        if self.x.is_empty() {
+        if self.real.is_empty() {
             return;
         }
         // Cells are found by rounding: a sliver more than the radius makes sure of those on the edge.
@@ -184,7 +184,16 @@ impl<T: Copy + Default> ImageCells<T> {
 
     /// Number of images.
     pub(crate) fn len(&self) -> usize {
-        self.x.len()
+        self.real.len()
+    }
+
+    /// Appends `count` values that belong to no image to the coordinates and charges, so that runs can be read
+    /// in whole lanes.
+    pub(crate) fn pad(&mut self, count: usize) {
+        let len = self.len() + count;
+        for array in [&mut self.x, &mut self.y, &mut self.z, &mut self.charge] {
+            array.resize(len, 0.0);
+        }
     }
 
     /// Memory held [bytes].

@@ -6,13 +6,14 @@
 
 use amberfield_laws::gaussian_cloud::{cloud_field_over_r, cloud_potential};
 use std::f64::consts::PI;
+use std::ops::Range;
 
 /// Sources handled together.
 const LANES: usize = 8;
 /// Polynomial degrees for which the loop is unrolled.
 const DEGREES: [usize; 6] = [6, 10, 14, 18, 24, 32];
 
-/// Sources in separate arrays, as the cells sorted them.
+/// Sources in separate arrays, with [`PADDING`] more values behind the last.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Sources<'a> {
     pub(crate) x: &'a [f64],
@@ -21,11 +22,30 @@ pub(crate) struct Sources<'a> {
     pub(crate) charge: &'a [f64],
 }
 
-/// Field and potential of a target (4πε = 1).
+/// Values that arrays of sources hold behind the last one, so that the last ones can be read as whole lanes.
+pub(crate) const PADDING: usize = LANES;
+
+/// What a sum is taken at: a place, and the index of the source that is the target itself.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Target {
+    pub(crate) position: [f64; 3],
+    pub(crate) own: usize,
+}
+
+/// Field and potential of a target (4πε = 1), summed lane by lane.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub(crate) struct Sum {
-    pub(crate) field: [f64; 3],
-    pub(crate) potential: f64,
+    lanes: [[f64; LANES]; 4],
+}
+
+impl Sum {
+    pub(crate) fn field(&self) -> [f64; 3] {
+        [0, 1, 2].map(|axis| self.lanes[axis].iter().sum())
+    }
+
+    pub(crate) fn potential(&self) -> f64 {
+        self.lanes[3].iter().sum()
+    }
 }
 
 /// Polynomials of the cloud in y = 2r²/r_c² − 1, lowest degree first.
@@ -84,34 +104,41 @@ impl NearKernel {
         }
     }
 
-    /// Adds the sources in the given range to the target's sum; the target itself is not among them.
+    /// Adds the sources of a run to the target's sum, the target itself excepted.
     #[inline]
-    pub(crate) fn add<const POTENTIAL: bool>(&self, target: [f64; 3], sources: Sources<'_>, sum: &mut Sum) {
+    pub(crate) fn add<const POTENTIAL: bool>(
+        &self,
+        target: Target,
+        sources: Sources<'_>,
+        run: Range<usize>,
+        sum: &mut Sum,
+    ) {
         match self.field.len() - 1 {
-            6 => self.dispatch::<7, POTENTIAL>(target, sources, sum),
-            10 => self.dispatch::<11, POTENTIAL>(target, sources, sum),
-            14 => self.dispatch::<15, POTENTIAL>(target, sources, sum),
-            18 => self.dispatch::<19, POTENTIAL>(target, sources, sum),
-            24 => self.dispatch::<25, POTENTIAL>(target, sources, sum),
-            _ => self.dispatch::<33, POTENTIAL>(target, sources, sum),
+            6 => self.dispatch::<7, POTENTIAL>(target, sources, run, sum),
+            10 => self.dispatch::<11, POTENTIAL>(target, sources, run, sum),
+            14 => self.dispatch::<15, POTENTIAL>(target, sources, run, sum),
+            18 => self.dispatch::<19, POTENTIAL>(target, sources, run, sum),
+            24 => self.dispatch::<25, POTENTIAL>(target, sources, run, sum),
+            _ => self.dispatch::<33, POTENTIAL>(target, sources, run, sum),
         }
     }
 
     #[inline(always)]
     fn dispatch<const N: usize, const POTENTIAL: bool>(
         &self,
-        target: [f64; 3],
+        target: Target,
         sources: Sources<'_>,
+        run: Range<usize>,
         sum: &mut Sum,
     ) {
         match self.instructions {
             #[cfg(target_arch = "x86_64")]
             // SAFETY: `detect` found the instructions on this processor.
-            Instructions::Avx512 => unsafe { add_avx512::<N, POTENTIAL>(self, target, sources, sum) },
+            Instructions::Avx512 => unsafe { add_avx512::<N, POTENTIAL>(self, target, sources, run, sum) },
             #[cfg(target_arch = "x86_64")]
             // SAFETY: as above.
-            Instructions::Avx2 => unsafe { add_avx2::<N, POTENTIAL>(self, target, sources, sum) },
-            Instructions::Portable => add_lanes::<N, POTENTIAL, false>(self, target, sources, sum),
+            Instructions::Avx2 => unsafe { add_avx2::<N, POTENTIAL>(self, target, sources, run, sum) },
+            Instructions::Portable => add_lanes::<N, POTENTIAL, false>(self, target, sources, run, sum),
         }
     }
 }
@@ -120,22 +147,24 @@ impl NearKernel {
 #[target_feature(enable = "avx512f,avx512vl,avx512dq,fma")]
 fn add_avx512<const N: usize, const POTENTIAL: bool>(
     kernel: &NearKernel,
-    target: [f64; 3],
+    target: Target,
     sources: Sources<'_>,
+    run: Range<usize>,
     sum: &mut Sum,
 ) {
-    add_lanes::<N, POTENTIAL, true>(kernel, target, sources, sum);
+    add_lanes::<N, POTENTIAL, true>(kernel, target, sources, run, sum);
 }
 
 #[cfg(target_arch = "x86_64")]
 #[target_feature(enable = "avx2,fma")]
 fn add_avx2<const N: usize, const POTENTIAL: bool>(
     kernel: &NearKernel,
-    target: [f64; 3],
+    target: Target,
     sources: Sources<'_>,
+    run: Range<usize>,
     sum: &mut Sum,
 ) {
-    add_lanes::<N, POTENTIAL, true>(kernel, target, sources, sum);
+    add_lanes::<N, POTENTIAL, true>(kernel, target, sources, run, sum);
 }
 
 /// a·b + c, fused where the instructions have it (elsewhere `mul_add` would call a function).
@@ -147,41 +176,31 @@ fn fused<const FUSED: bool>(a: f64, b: f64, c: f64) -> f64 {
 #[inline(always)]
 fn add_lanes<const N: usize, const POTENTIAL: bool, const FUSED: bool>(
     kernel: &NearKernel,
-    target: [f64; 3],
+    target: Target,
     sources: Sources<'_>,
+    run: Range<usize>,
     sum: &mut Sum,
 ) {
     let field: &[f64; N] = kernel.field[..].try_into().expect("N coefficients");
     let potential: &[f64; N] = kernel.potential[..].try_into().expect("N coefficients");
-    let clouds = (field, potential);
-    let mut total = [[0.0; LANES]; 4];
-    let whole = sources.x.len() / LANES * LANES;
-    for start in (0..whole).step_by(LANES) {
-        let sources = [
-            *lanes(sources.x, start),
-            *lanes(sources.y, start),
-            *lanes(sources.z, start),
-            *lanes(sources.charge, start),
-        ];
-        add_block::<N, POTENTIAL, FUSED>(clouds, kernel.cutoff_squared, target, &sources, &mut total);
+    let mut lanes = sum.lanes;
+    for start in run.clone().step_by(LANES) {
+        let block = [sources.x, sources.y, sources.z, sources.charge].map(|array| whole_lanes(array, start));
+        // Lanes past the run's end and the target itself lie nowhere.
+        let excluded = each(|lane| {
+            let source = start + lane;
+            if source < run.end && source != target.own { 0.0 } else { f64::INFINITY }
+        });
+        add_block::<N, POTENTIAL, FUSED>(
+            (field, potential),
+            kernel.cutoff_squared,
+            target.position,
+            block,
+            excluded,
+            &mut lanes,
+        );
     }
-    if whole < sources.x.len() {
-        // Missing lanes lie beyond the cut-off.
-        let far = target[0] + 2.0 * kernel.cutoff_squared.sqrt();
-        let sources = [
-            padded(&sources.x[whole..], far),
-            padded(&sources.y[whole..], target[1]),
-            padded(&sources.z[whole..], target[2]),
-            padded(&sources.charge[whole..], 0.0),
-        ];
-        add_block::<N, POTENTIAL, FUSED>(clouds, kernel.cutoff_squared, target, &sources, &mut total);
-    }
-    for (axis, value) in sum.field.iter_mut().enumerate() {
-        *value += total[axis].iter().sum::<f64>();
-    }
-    if POTENTIAL {
-        sum.potential += total[3].iter().sum::<f64>();
-    }
+    sum.lanes = lanes;
 }
 
 /// One loop over the lanes for each operation: what the compiler turns into vectors. Always inlined, or the
@@ -191,7 +210,8 @@ fn add_block<const N: usize, const POTENTIAL: bool, const FUSED: bool>(
     (field, potential): (&[f64; N], &[f64; N]),
     cutoff_squared: f64,
     target: [f64; 3],
-    [x, y, z, q]: &[[f64; LANES]; 4],
+    [x, y, z, q]: [&[f64; LANES]; 4],
+    excluded: [f64; LANES],
     total: &mut [[f64; LANES]; 4],
 ) {
     let scale = 2.0 / cutoff_squared;
@@ -202,7 +222,7 @@ fn add_block<const N: usize, const POTENTIAL: bool, const FUSED: bool>(
     ];
     let r2 = each(|lane| {
         let yz = fused::<FUSED>(d[1][lane], d[1][lane], d[2][lane] * d[2][lane]);
-        fused::<FUSED>(d[0][lane], d[0][lane], yz)
+        fused::<FUSED>(d[0][lane], d[0][lane], yz) + excluded[lane]
     });
     let inverse = each(|lane| 1.0 / r2[lane].sqrt());
     let argument = each(|lane| fused::<FUSED>(r2[lane], scale, -1.0));
@@ -247,15 +267,8 @@ fn horner<const N: usize, const FUSED: bool>(
 }
 
 #[inline(always)]
-fn lanes(values: &[f64], start: usize) -> &[f64; LANES] {
-    values[start..start + LANES].try_into().expect("whole lanes")
-}
-
-#[inline(always)]
-fn padded(values: &[f64], fill: f64) -> [f64; LANES] {
-    let mut block = [fill; LANES];
-    block[..values.len()].copy_from_slice(values);
-    block
+fn whole_lanes(values: &[f64], start: usize) -> &[f64; LANES] {
+    values[start..start + LANES].try_into().expect("arrays of sources are padded")
 }
 
 /// Chebyshev coefficients of a function of r², in y = 2r²/cutoff² − 1, to twice the highest degree used.
@@ -301,61 +314,68 @@ mod tests {
     use super::*;
     use amberfield_laws::gaussian_cloud::{near_field_over_r, near_potential};
 
-    /// Deterministic scatter of sources around the origin, some beyond the cut-off.
+    /// Deterministic scatter of sources around the origin, some beyond the cut-off, padded with ones that must
+    /// not count; source `OWN` is the target.
     fn sources(count: usize) -> [Vec<f64>; 4] {
-        let value = |i: usize, k: f64| 1.3 * (i as f64 * k + 0.3).sin();
-        [0.917, 1.731, 2.331, 3.177].map(|k| (0..count).map(|i| value(i, k)).collect())
+        let value = |i: usize, k: f64| if i < count { 1.3 * (i as f64 * k + 0.3).sin() } else { 0.1 };
+        [0.917, 1.731, 2.331, 3.177].map(|k| (0..count + PADDING).map(|i| value(i, k)).collect())
     }
 
-    fn exact(sigma: f64, cutoff: f64, sources: &[Vec<f64>; 4]) -> Sum {
+    const COUNT: usize = 203;
+    const OWN: usize = 50;
+
+    fn sum_of(kernel: &NearKernel, arrays: &[Vec<f64>; 4]) -> Sum {
+        let view = Sources { x: &arrays[0], y: &arrays[1], z: &arrays[2], charge: &arrays[3] };
+        let target = Target { position: [0.0; 3], own: OWN };
         let mut sum = Sum::default();
-        for i in 0..sources[0].len() {
+        kernel.add::<true>(target, view, 0..31, &mut sum);
+        kernel.add::<true>(target, view, 31..COUNT, &mut sum);
+        sum
+    }
+
+    fn exact(sigma: f64, cutoff: f64, sources: &[Vec<f64>; 4]) -> ([f64; 3], f64) {
+        let (mut field, mut potential) = ([0.0; 3], 0.0);
+        for i in (0..COUNT).filter(|&i| i != OWN) {
             let d = [0, 1, 2].map(|axis| -sources[axis][i]);
             let r = d.iter().map(|c| c * c).sum::<f64>().sqrt();
             if r < cutoff {
                 for axis in 0..3 {
-                    sum.field[axis] += sources[3][i] * d[axis] * near_field_over_r(r, sigma);
+                    field[axis] += sources[3][i] * d[axis] * near_field_over_r(r, sigma);
                 }
-                sum.potential += sources[3][i] * near_potential(r, sigma);
+                potential += sources[3][i] * near_potential(r, sigma);
             }
         }
-        sum
+        (field, potential)
     }
 
     #[test]
     fn polynomials_meet_the_closed_form() {
-        let sources = sources(203);
-        let view = Sources { x: &sources[0], y: &sources[1], z: &sources[2], charge: &sources[3] };
+        let sources = sources(COUNT);
         for (sigma, cutoff, accuracy) in
             [(0.4, 1.2, 1e-4), (0.3, 1.2, 1e-7), (0.25, 1.25, 1e-10), (0.2, 1.25, 1e-12), (5.0, 1.2, 1e-13)]
         {
-            let kernel = NearKernel::new(sigma, cutoff, accuracy);
-            let mut sum = Sum::default();
-            kernel.add::<true>([0.0; 3], view, &mut sum);
-            let expected = exact(sigma, cutoff, &sources);
-            let scale = cloud_potential(0.0, sigma) * 200.0;
-            assert!((sum.potential - expected.potential).abs() < (accuracy + 1e-13) * scale);
-            let scale = cloud_field_over_r(0.0, sigma) * 200.0 * cutoff;
+            let sum = sum_of(&NearKernel::new(sigma, cutoff, accuracy), &sources);
+            let (field, potential) = exact(sigma, cutoff, &sources);
+            let scale = cloud_potential(0.0, sigma) * COUNT as f64;
+            assert!((sum.potential() - potential).abs() < (accuracy + 1e-13) * scale);
+            let scale = cloud_field_over_r(0.0, sigma) * COUNT as f64 * cutoff;
             for axis in 0..3 {
-                assert!((sum.field[axis] - expected.field[axis]).abs() < (accuracy + 1e-13) * scale);
+                assert!((sum.field()[axis] - field[axis]).abs() < (accuracy + 1e-13) * scale);
             }
         }
     }
 
     #[test]
     fn every_instruction_set_gives_the_same_sum() {
-        let sources = sources(77);
-        let view = Sources { x: &sources[0], y: &sources[1], z: &sources[2], charge: &sources[3] };
+        let sources = sources(COUNT);
         let mut kernel = NearKernel::new(0.3, 1.2, 1e-9);
-        let mut native = Sum::default();
-        kernel.add::<true>([0.01, 0.02, 0.03], view, &mut native);
+        let native = sum_of(&kernel, &sources);
         kernel.instructions = Instructions::Portable;
-        let mut portable = Sum::default();
-        kernel.add::<true>([0.01, 0.02, 0.03], view, &mut portable);
+        let portable = sum_of(&kernel, &sources);
         // Fused and unfused arithmetic differ by round-off only.
-        assert!((native.potential - portable.potential).abs() < 1e-11);
+        assert!((native.potential() - portable.potential()).abs() < 1e-11);
         for axis in 0..3 {
-            assert!((native.field[axis] - portable.field[axis]).abs() < 1e-10);
+            assert!((native.field()[axis] - portable.field()[axis]).abs() < 1e-10);
         }
     }
 }

@@ -5,11 +5,10 @@ mod kernel;
 use crate::image_cells::{IMAGE, ImageCells};
 use crate::images::ImageLattice;
 use amberfield_core::Domain;
-use kernel::{NearKernel, Sources, Sum};
+use kernel::{NearKernel, PADDING, Sources, Sum, Target};
 use nalgebra::Vector3;
 use rayon::prelude::*;
 use serde::{Deserialize, Serialize};
-use std::ops::Range;
 
 /// Targets handled by one task.
 const TASK: usize = 64;
@@ -53,6 +52,7 @@ impl NearLevel {
     /// Sorts charges and their images into cells. Positions lie inside the domain.
     pub(crate) fn sort(&mut self, positions: &[Vector3<f64>], charges: &[f64]) {
         self.sources.build(&self.lattice, positions, charges, self.parameters.cutoff_m, |_, _| ());
+        self.sources.pad(PADDING);
         self.targets.clear();
         let real = self.sources.real.iter().enumerate().filter(|(_, particle)| **particle != IMAGE);
         self.targets.extend(real.map(|(source, _)| source as u32));
@@ -64,8 +64,8 @@ impl NearLevel {
         self.evaluate(&self.targets, potential, &mut sums);
         for (&target, sum) in self.targets.iter().zip(&sums) {
             let (e, value) = &mut field[self.particle(target)];
-            *e += Vector3::from(sum.field);
-            *value += sum.potential;
+            *e += Vector3::from(sum.field());
+            *value += sum.potential();
         }
         self.sums = sums;
     }
@@ -79,7 +79,7 @@ impl NearLevel {
         let targets: Vec<u32> = particles.iter().map(|&particle| target_of[particle]).collect();
         let mut sums = Vec::new();
         self.evaluate(&targets, false, &mut sums);
-        sums.iter().map(|sum| Vector3::from(sum.field)).collect()
+        sums.iter().map(|sum| Vector3::from(sum.field())).collect()
     }
 
     /// Mean number of sources within the cut-off of a sample of targets.
@@ -109,15 +109,6 @@ impl NearLevel {
         Vector3::new(self.sources.x[source], self.sources.y[source], self.sources.z[source])
     }
 
-    fn view(&self, run: Range<usize>) -> Sources<'_> {
-        Sources {
-            x: &self.sources.x[run.clone()],
-            y: &self.sources.y[run.clone()],
-            z: &self.sources.z[run.clone()],
-            charge: &self.sources.charge[run],
-        }
-    }
-
     pub(crate) fn memory_bytes(&self) -> usize {
         self.sources.memory_bytes() + 4 * self.targets.capacity() + self.sums.capacity() * size_of::<Sum>()
     }
@@ -137,16 +128,12 @@ impl NearLevel {
     }
 
     fn sum<const POTENTIAL: bool>(&self, target: u32, sum: &mut Sum) {
-        let own = target as usize;
-        let place = self.position(own);
-        let position = place.into();
+        let place = self.position(target as usize);
+        let target = Target { position: place.into(), own: target as usize };
+        let ImageCells { x, y, z, charge, .. } = &self.sources;
+        let sources = Sources { x, y, z, charge };
         self.sources.for_each_range(&place, |run| {
-            if run.contains(&own) {
-                self.kernel.add::<POTENTIAL>(position, self.view(run.start..own), sum);
-                self.kernel.add::<POTENTIAL>(position, self.view(own + 1..run.end), sum);
-            } else {
-                self.kernel.add::<POTENTIAL>(position, self.view(run), sum);
-            }
+            self.kernel.add::<POTENTIAL>(target, sources, run, sum);
         });
     }
 }
