@@ -167,8 +167,7 @@ fn push_with_images(
                 let code = 9 * sx + 3 * sy + sz;
                 if code != NO_SHIFT {
                     let shift = shifts[code as usize];
-                    let image =
-                        [centre[0] + shift[0], centre[1] + shift[1], centre[2] + shift[2], centre[3]];
+                    let image = [centre[0] + shift[0], centre[1] + shift[1], centre[2] + shift[2], centre[3]];
                     items.push((image, index | code << INDEX_BITS));
                 }
             }

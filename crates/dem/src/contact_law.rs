@@ -53,11 +53,9 @@ pub(crate) fn respond<const FRICTION: bool, const ROLLING: bool, const DAMPING: 
     let Contact { overlap, normal, velocity, .. } = *contact;
     let contact_radius = (overlap / contact.inverse_radius).sqrt();
     let approach = velocity.dot(&normal);
-    let damping =
-        if DAMPING { pair.damping * (contact_radius / contact.inverse_mass).sqrt() } else { 0.0 };
+    let damping = if DAMPING { pair.damping * (contact_radius / contact.inverse_mass).sqrt() } else { 0.0 };
     let load = pair.hertz * contact_radius * overlap + damping * approach;
-    let mut response =
-        Response { force: normal * -load, twist: Vector3::zeros(), rolling: Vector3::zeros() };
+    let mut response = Response { force: normal * -load, twist: Vector3::zeros(), rolling: Vector3::zeros() };
     if FRICTION {
         let sliding = velocity - normal * approach + contact.spin.cross(&normal);
         let stiffness = pair.tangential * contact_radius;
@@ -79,16 +77,19 @@ pub(crate) fn respond<const FRICTION: bool, const ROLLING: bool, const DAMPING: 
         response.twist = normal.cross(&tangential);
     }
     if ROLLING {
-        let turning = contact.turning - normal * contact.turning.dot(&normal);
+        let turning = contact.turning;
         let radius = 1.0 / contact.inverse_radius;
-        let stiffness =
-            rolling_friction::stiffness(pair.normal * contact_radius, pair.rolling, radius);
+        let stiffness = rolling_friction::stiffness(pair.normal * contact_radius, pair.rolling, radius);
         let dashpot = rolling_friction::damping(CONTACT_INERTIA / contact.inverse_moment, stiffness);
         let bound = rolling_friction::largest(pair.rolling, radius, load);
-        let old = Vector3::from(*rolling);
-        let old = old - normal * old.dot(&normal);
-        let (new, torque) =
-            rolling_friction::advance(old, turning * step, turning, stiffness, dashpot, bound);
+        let (new, torque) = rolling_friction::advance(
+            Vector3::from(*rolling),
+            turning * step,
+            turning,
+            stiffness,
+            dashpot,
+            bound,
+        );
         *rolling = new.into();
         response.rolling = torque;
     }

@@ -97,8 +97,11 @@ impl Springs<'_> {
             energy += 0.5 * force2 / (self.pair.tangential * contact_radius);
         }
         if self.features.rolling && contact_radius > 0.0 && self.pair.rolling > 0.0 {
-            let stiffness =
-                rolling_friction::stiffness(self.pair.normal * contact_radius, self.pair.rolling, self.radius);
+            let stiffness = rolling_friction::stiffness(
+                self.pair.normal * contact_radius,
+                self.pair.rolling,
+                self.radius,
+            );
             energy += 0.5 * rolling.iter().map(|t| t * t).sum::<f64>() / stiffness;
         }
         energy

@@ -57,8 +57,7 @@ impl Limits {
             let (radius, material) = (particles.radius[i], &materials[particles.material[i].0 as usize]);
             let shear = hertz_mindlin::shear_modulus(material.young_pa, material.poisson);
             let density = particles.density[i];
-            rayleigh =
-                rayleigh.min(time_step_limits::rayleigh(radius, density, shear, material.poisson));
+            rayleigh = rayleigh.min(time_step_limits::rayleigh(radius, density, shear, material.poisson));
             let young = table.stiffest(particles.material[i]);
             let mass = particles.mass(i);
             hertz = hertz.min(hertz_mindlin::contact_time(young, 0.5 * radius, 0.5 * mass, 1.0));
@@ -77,10 +76,7 @@ impl Limits {
         if let Some(e) = &self.electric {
             limits.extend([("electric pair", e.pair), ("wall image", e.wall_image), ("plasma", e.plasma)]);
         }
-        limits
-            .into_iter()
-            .map(|(name, limit_s)| Guard { name, limit_s, margin: limit_s / step })
-            .collect()
+        limits.into_iter().map(|(name, limit_s)| Guard { name, limit_s, margin: limit_s / step }).collect()
     }
 
     /// The step that `auto` stands for [s].
@@ -91,8 +87,7 @@ impl Limits {
 
     /// The guard that a step breaks, if any.
     pub(crate) fn broken(&self, step: f64, speed: f64, time_s: f64) -> Option<DemError> {
-        let tightest =
-            self.guards(step, speed).into_iter().min_by(|a, b| a.limit_s.total_cmp(&b.limit_s))?;
+        let tightest = self.guards(step, speed).into_iter().min_by(|a, b| a.limit_s.total_cmp(&b.limit_s))?;
         // `!(a <= b)`: a limit that is not a number is broken too.
         let holds = step <= tightest.limit_s;
         (!holds).then_some(DemError::Unstable {

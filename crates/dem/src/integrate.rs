@@ -73,30 +73,32 @@ pub(crate) fn drift(
     let (parallel, chunks) = (is_parallel(count), chunk_count(count));
     let Grains { centre, velocity, angular, force, torque, inverse_mass, .. } = grains;
     let half = 0.5 * step;
-    for_each_chunk!(
-        parallel,
-        chunks,
-        (centre / CHUNK, velocity / CHUNK, found / 1),
-        |k: usize,
-         (centre, velocity, found): (&mut [[f64; 4]], &mut [Vector3<f64>], &mut [ChunkMotion])| {
-            let first = k * CHUNK;
-            let (mut speed2, mut inside) = (0.0_f64, true);
-            let length = centre.len();
-            let (force, inverse_mass) =
-                (&force[first..first + length], &inverse_mass[first..first + length]);
-            for (((c, v), f), &im) in centre.iter_mut().zip(velocity).zip(force).zip(inverse_mass) {
-                let kick = (f * im + gravity) * half;
-                let middle = *v + kick;
-                c[0] += middle.x * step;
-                c[1] += middle.y * step;
-                c[2] += middle.z * step;
-                *v = middle + kick;
-                speed2 = speed2.max(middle.norm_squared());
-                inside &= bounds.holds(0, c[0]) & bounds.holds(1, c[1]) & bounds.holds(2, c[2]);
-            }
-            found[0] = ChunkMotion { speed2, outside: !inside };
+    for_each_chunk!(parallel, chunks, (centre / CHUNK, velocity / CHUNK, found / 1), |k: usize,
+                                                                                      (
+        centre,
+        velocity,
+        found,
+    ): (
+        &mut [[f64; 4]],
+        &mut [Vector3<f64>],
+        &mut [ChunkMotion]
+    )| {
+        let first = k * CHUNK;
+        let (mut speed2, mut inside) = (0.0_f64, true);
+        let length = centre.len();
+        let (force, inverse_mass) = (&force[first..first + length], &inverse_mass[first..first + length]);
+        for (((c, v), f), &im) in centre.iter_mut().zip(velocity).zip(force).zip(inverse_mass) {
+            let kick = (f * im + gravity) * half;
+            let middle = *v + kick;
+            c[0] += middle.x * step;
+            c[1] += middle.y * step;
+            c[2] += middle.z * step;
+            *v = middle + kick;
+            speed2 = speed2.max(middle.norm_squared());
+            inside &= bounds.holds(0, c[0]) & bounds.holds(1, c[1]) & bounds.holds(2, c[2]);
         }
-    );
+        found[0] = ChunkMotion { speed2, outside: !inside };
+    });
     if !torque.is_empty() {
         turn(parallel, angular, |i| torque[i] * (step * inverse_inertia(inverse_mass[i], &centre[i])));
     }
@@ -113,11 +115,7 @@ fn inverse_inertia(inverse_mass: f64, centre: &[f64; 4]) -> f64 {
 }
 
 /// Adds a change to every angular velocity.
-fn turn(
-    parallel: bool,
-    angular: &mut [Vector3<f64>],
-    change: impl Fn(usize) -> Vector3<f64> + Sync,
-) {
+fn turn(parallel: bool, angular: &mut [Vector3<f64>], change: impl Fn(usize) -> Vector3<f64> + Sync) {
     if parallel {
         angular.par_chunks_mut(CHUNK).enumerate().for_each(|(k, part)| {
             part.iter_mut().enumerate().for_each(|(n, w)| *w += change(k * CHUNK + n));
@@ -143,40 +141,38 @@ pub(crate) fn kick(
     let Grains { centre, velocity, angular, force: old, torque: old_torque, inverse_mass, .. } = grains;
     {
         let (velocity, force) = (&mut velocity[..], &mut force[..]);
-        for_each_chunk!(
-            parallel,
-            chunks,
-            (velocity / CHUNK, force / CHUNK),
-            |k: usize, (velocity, force): (&mut [Vector3<f64>], &mut [Vector3<f64>])| {
-                for inbound in &neighbours.inbox[k] {
-                    force[inbound.local as usize] +=
-                        neighbours.lists[inbound.chunk as usize].outbox[inbound.slot as usize].force;
-                }
-                let first = k * CHUNK;
-                for (n, (v, f)) in velocity.iter_mut().zip(&*force).enumerate() {
-                    *v += (f - old[first + n]) * (half * inverse_mass[first + n]);
-                }
+        for_each_chunk!(parallel, chunks, (velocity / CHUNK, force / CHUNK), |k: usize,
+                                                                              (velocity, force): (
+            &mut [Vector3<f64>],
+            &mut [Vector3<f64>]
+        )| {
+            for inbound in &neighbours.inbox[k] {
+                force[inbound.local as usize] +=
+                    neighbours.lists[inbound.chunk as usize].outbox[inbound.slot as usize].force;
             }
-        );
+            let first = k * CHUNK;
+            for (n, (v, f)) in velocity.iter_mut().zip(&*force).enumerate() {
+                *v += (f - old[first + n]) * (half * inverse_mass[first + n]);
+            }
+        });
     }
     if rotation {
         let (angular, torque) = (&mut angular[..], &mut torque[..]);
-        for_each_chunk!(
-            parallel,
-            chunks,
-            (angular / CHUNK, torque / CHUNK),
-            |k: usize, (angular, torque): (&mut [Vector3<f64>], &mut [Vector3<f64>])| {
-                for inbound in &neighbours.inbox[k] {
-                    torque[inbound.local as usize] +=
-                        neighbours.lists[inbound.chunk as usize].outbox[inbound.slot as usize].torque;
-                }
-                let first = k * CHUNK;
-                for (n, (w, t)) in angular.iter_mut().zip(&*torque).enumerate() {
-                    let i = first + n;
-                    *w += (t - old_torque[i]) * (half * inverse_inertia(inverse_mass[i], &centre[i]));
-                }
+        for_each_chunk!(parallel, chunks, (angular / CHUNK, torque / CHUNK), |k: usize,
+                                                                              (angular, torque): (
+            &mut [Vector3<f64>],
+            &mut [Vector3<f64>]
+        )| {
+            for inbound in &neighbours.inbox[k] {
+                torque[inbound.local as usize] +=
+                    neighbours.lists[inbound.chunk as usize].outbox[inbound.slot as usize].torque;
             }
-        );
+            let first = k * CHUNK;
+            for (n, (w, t)) in angular.iter_mut().zip(&*torque).enumerate() {
+                let i = first + n;
+                *w += (t - old_torque[i]) * (half * inverse_inertia(inverse_mass[i], &centre[i]));
+            }
+        });
     }
     std::mem::swap(&mut grains.force, force);
     if rotation {

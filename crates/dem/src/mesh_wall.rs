@@ -119,8 +119,7 @@ impl MeshWall {
                 scratch.push(Candidate { distance, triangle, direction });
             }
         }
-        scratch
-            .sort_unstable_by(|a, b| a.distance.total_cmp(&b.distance).then(a.triangle.cmp(&b.triangle)));
+        scratch.sort_unstable_by(|a, b| a.distance.total_cmp(&b.distance).then(a.triangle.cmp(&b.triangle)));
         let mut count = 0;
         for candidate in &*scratch {
             let covered = found[..count].iter().any(|contact| {
@@ -154,8 +153,7 @@ mod tests {
     /// Unit cells of two triangles each in the plane z = 0.
     fn floor(cells: u32) -> TriangleMesh {
         let n = cells + 1;
-        let vertices =
-            (0..n * n).map(|k| Vector3::new(f64::from(k % n), f64::from(k / n), 0.0)).collect();
+        let vertices = (0..n * n).map(|k| Vector3::new(f64::from(k % n), f64::from(k / n), 0.0)).collect();
         let triangles = (0..cells * cells)
             .flat_map(|k| {
                 let v = k / cells * n + k % cells;

@@ -24,7 +24,8 @@ pub(crate) struct Push {
 }
 
 /// No push.
-pub(crate) const NO_PUSH: Push = Push { force: Vector3::new(0.0, 0.0, 0.0), torque: Vector3::new(0.0, 0.0, 0.0) };
+pub(crate) const NO_PUSH: Push =
+    Push { force: Vector3::new(0.0, 0.0, 0.0), torque: Vector3::new(0.0, 0.0, 0.0) };
 
 /// Lists of the grains of one chunk: each pair is in one list only.
 #[derive(Debug, Default)]
@@ -97,18 +98,17 @@ impl Neighbours {
         let (cells, features, shifts, previous) = (&self.cells, self.features, &self.shifts, &self.previous);
         let lists = &mut self.lists;
         let mut marks = vec![(); chunks];
-        for_each_chunk!(
-            is_parallel(grains.len()),
-            chunks,
-            (lists / 1, marks / 1),
-            |k: usize, (list, _): (&mut [ChunkList], &mut [()])| {
-                let list = &mut list[0];
-                list.fill(k, cells, grains, features);
-                if features.rotation() && !previous.is_empty() {
-                    list.inherit(k, grains, shifts, previous, order, features);
-                }
+        for_each_chunk!(is_parallel(grains.len()), chunks, (lists / 1, marks / 1), |k: usize,
+                                                                                    (list, _): (
+            &mut [ChunkList],
+            &mut [()]
+        )| {
+            let list = &mut list[0];
+            list.fill(k, cells, grains, features);
+            if features.rotation() && !previous.is_empty() {
+                list.inherit(k, grains, shifts, previous, order, features);
             }
-        );
+        });
         self.connect(grains.len());
     }
 

@@ -61,24 +61,26 @@ fn run<const FRICTION: bool, const ROLLING: bool, const DAMPING: bool, const PER
     let count = scene.grains.len();
     let (parallel, chunks) = (is_parallel(count), chunk_count(count));
     if FRICTION || ROLLING {
-        for_each_chunk!(
-            parallel,
-            chunks,
-            (lists / 1, force / CHUNK, torque / CHUNK),
-            |k: usize,
-             (list, force, torque): (&mut [ChunkList], &mut [Vector3<f64>], &mut [Vector3<f64>])| {
-                chunk::<FRICTION, ROLLING, DAMPING, PERIODIC>(scene, k, &mut list[0], force, torque);
-            }
-        );
+        for_each_chunk!(parallel, chunks, (lists / 1, force / CHUNK, torque / CHUNK), |k: usize,
+                                                                                       (
+            list,
+            force,
+            torque,
+        ): (
+            &mut [ChunkList],
+            &mut [Vector3<f64>],
+            &mut [Vector3<f64>]
+        )| {
+            chunk::<FRICTION, ROLLING, DAMPING, PERIODIC>(scene, k, &mut list[0], force, torque);
+        });
     } else {
-        for_each_chunk!(
-            parallel,
-            chunks,
-            (lists / 1, force / CHUNK),
-            |k: usize, (list, force): (&mut [ChunkList], &mut [Vector3<f64>])| {
-                chunk::<FRICTION, ROLLING, DAMPING, PERIODIC>(scene, k, &mut list[0], force, &mut []);
-            }
-        );
+        for_each_chunk!(parallel, chunks, (lists / 1, force / CHUNK), |k: usize,
+                                                                       (list, force): (
+            &mut [ChunkList],
+            &mut [Vector3<f64>]
+        )| {
+            chunk::<FRICTION, ROLLING, DAMPING, PERIODIC>(scene, k, &mut list[0], force, &mut []);
+        });
     }
 }
 
@@ -93,9 +95,7 @@ fn find_hits<const PERIODIC: bool>(scene: &Scene<'_>, first: usize, list: &mut C
         let a = centre[first + local];
         let range = start[local] as usize..start[local + 1] as usize;
         let offset = range.start;
-        for (n, (&code, touching)) in
-            partner[range.clone()].iter().zip(&mut touching[range]).enumerate()
-        {
+        for (n, (&code, touching)) in partner[range.clone()].iter().zip(&mut touching[range]).enumerate() {
             let j = (code & INDEX_MASK) as usize;
             let d = offset_of::<PERIODIC>(scene, &a, &centre[j], code);
             let reach = a[3] + centre[j][3];

@@ -63,13 +63,8 @@ impl Simulation {
     pub fn step(&mut self) -> Result<(), DemError> {
         self.watch.start();
         self.step_index += 1;
-        let motion = drift(
-            &mut self.grains,
-            self.time.gravity_m_s2,
-            self.step_s,
-            &self.bounds,
-            &mut self.motion,
-        );
+        let motion =
+            drift(&mut self.grains, self.time.gravity_m_s2, self.step_s, &self.bounds, &mut self.motion);
         self.speed = motion.speed;
         let left = motion.outside && self.handle_exits()?;
         self.watch.lap(Stage::Integrate);
@@ -161,8 +156,9 @@ impl Simulation {
 
     /// Handles grains outside; whether any was removed.
     fn handle_exits(&mut self) -> Result<bool, DemError> {
-        let outside: Vec<usize> =
-            (0..self.grains.len()).filter(|&i| self.bounds.beyond(&self.grains.centre[i]).is_some()).collect();
+        let outside: Vec<usize> = (0..self.grains.len())
+            .filter(|&i| self.bounds.beyond(&self.grains.centre[i]).is_some())
+            .collect();
         let id = |i: usize| self.particles.id[self.grains.original[i] as usize];
         let time_s = self.time_s();
         if let Some(&i) = outside.iter().filter(|&&i| !self.is_finite(i)).min_by_key(|&&i| id(i)) {

@@ -67,7 +67,10 @@ fn check_particles(particles: &Particles, setup: &Setup) -> Result<(), DemError>
             return Err(bad(format!("grain id {id} is used twice; give every grain its own id")));
         }
         if !(grain.radius.is_finite() && grain.radius > 0.0) {
-            return Err(bad(format!("grain {id}: radius must be positive and finite, got {} m", grain.radius)));
+            return Err(bad(format!(
+                "grain {id}: radius must be positive and finite, got {} m",
+                grain.radius
+            )));
         }
         if !(grain.density.is_finite() && grain.density > 0.0) {
             return Err(bad(format!(

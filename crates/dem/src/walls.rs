@@ -112,14 +112,13 @@ impl Walls {
         self.chunks.resize_with(chunks, ChunkWalls::default);
         let (solids, shifts, near) = (&self.solids, &self.shifts, &mut self.chunks);
         let mut marks = vec![(); chunks];
-        for_each_chunk!(
-            is_parallel(grains.len()),
-            chunks,
-            (near / 1, marks / 1),
-            |k: usize, (near, _): (&mut [ChunkWalls], &mut [()])| {
-                near[0].fill(k, solids, shifts, domain, grains, skin, histories);
-            }
-        );
+        for_each_chunk!(is_parallel(grains.len()), chunks, (near / 1, marks / 1), |k: usize,
+                                                                                   (near, _): (
+            &mut [ChunkWalls],
+            &mut [()]
+        )| {
+            near[0].fill(k, solids, shifts, domain, grains, skin, histories);
+        });
     }
 
     /// Histories of touching contacts, sorted by grain and wall.
@@ -175,17 +174,16 @@ impl Walls {
                         )| body(k, &mut near[0], force, torque)
                     );
                 } else {
-                    for_each_chunk!(
-                        parallel,
-                        chunks,
-                        (near / 1, force / CHUNK),
-                        |k: usize, (near, force): (&mut [ChunkWalls], &mut [Vector3<f64>])| body(
-                            k,
-                            &mut near[0],
-                            force,
-                            &mut []
-                        )
-                    );
+                    for_each_chunk!(parallel, chunks, (near / 1, force / CHUNK), |k: usize,
+                                                                                  (near, force): (
+                        &mut [ChunkWalls],
+                        &mut [Vector3<f64>]
+                    )| body(
+                        k,
+                        &mut near[0],
+                        force,
+                        &mut []
+                    ));
                 }
             }};
         }
@@ -351,11 +349,8 @@ impl ChunkWalls {
             let mut unused = [true; MOST_CONTACTS];
             let inverse_mass = grains.inverse_mass[i];
             for (n, found) in found[..count].iter().enumerate() {
-                let mut new = WallContact {
-                    normal: found.normal,
-                    overlap: found.overlap,
-                    ..WallContact::default()
-                };
+                let mut new =
+                    WallContact { normal: found.normal, overlap: found.overlap, ..WallContact::default() };
                 if let Some(m) = best_match(&old[..entry.count as usize], &unused, &found.normal) {
                     unused[m] = false;
                     (new.spring, new.rolling) = (old[m].spring, old[m].rolling);
@@ -403,11 +398,7 @@ fn take_old(kept: &[WallContact], count: usize) -> [WallContact; MOST_CONTACTS] 
 }
 
 /// The unused old contact whose direction is nearest.
-fn best_match(
-    old: &[WallContact],
-    unused: &[bool; MOST_CONTACTS],
-    normal: &Vector3<f64>,
-) -> Option<usize> {
+fn best_match(old: &[WallContact], unused: &[bool; MOST_CONTACTS], normal: &Vector3<f64>) -> Option<usize> {
     let mut best = None;
     let mut cosine = SAME_CONTACT;
     for (m, contact) in old.iter().enumerate() {

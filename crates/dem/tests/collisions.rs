@@ -125,7 +125,8 @@ fn elastic_energy_drift_is_bounded_and_of_second_order() {
         let x = RADIUS * 1.001;
         let grains =
             vec![grain(1, [-x, 0.0, 0.0], [0.1, 0.0, 0.0]), grain(2, [x, 0.0, 0.0], [-0.1, 0.0, 0.0])];
-        let mut simulation = Simulation::new(setup(grains, material(1.0, 0.0, 0.0), duration / steps)).unwrap();
+        let mut simulation =
+            Simulation::new(setup(grains, material(1.0, 0.0, 0.0), duration / steps)).unwrap();
         let start = simulation.energies(false).unwrap().kinetic;
         let mut worst = 0.0_f64;
         for _ in 0..(1.2 * steps) as u64 {
@@ -143,8 +144,11 @@ fn elastic_energy_drift_is_bounded_and_of_second_order() {
 
 /// A ball that hits the floor with normal speed `down` and tangential speed `along`; velocity, spin after.
 fn oblique(e: f64, friction: f64, down: f64, along: f64) -> (Vector3<f64>, Vector3<f64>) {
-    let mut scene =
-        setup(vec![grain(1, [0.0, 0.0, RADIUS * 1.0001], [along, 0.0, -down])], material(e, friction, 0.0), 1e-7);
+    let mut scene = setup(
+        vec![grain(1, [0.0, 0.0, RADIUS * 1.0001], [along, 0.0, -down])],
+        material(e, friction, 0.0),
+        1e-7,
+    );
     scene.walls = vec![floor()];
     let mut simulation = Simulation::new(scene).unwrap();
     let mut touched = false;

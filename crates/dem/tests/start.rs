@@ -63,7 +63,7 @@ fn automatic_step_is_a_fifth_of_the_tightest_guard() {
 
 #[test]
 fn speeding_grain_breaks_the_guard_while_running() {
-    let mut scene = setup(vec![grain(1, [0.0; 3], [0.0; 3])], material(0.9, 0.0, 0.0), 1e-4);
+    let mut scene = setup(vec![grain(1, [0.0; 3], [0.0; 3])], material(0.9, 0.0, 0.0), 5e-5);
     scene.domain = domain(1e6, Boundary::Open);
     scene.time.gravity_m_s2 = Vector3::new(1e7, 0.0, 0.0);
     let mut simulation = Simulation::new(scene).unwrap();

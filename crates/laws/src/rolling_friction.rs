@@ -1,8 +1,8 @@
 //! Rolling friction, elastic–plastic spring and dashpot: M_k ← M_k − k_r ω_r Δt, |M_k| ≤ μ_r R* F_n,
 //! M_d = −C_r ω_r.
 //!
-//! M \[N·m\] torque on i, −M on j; ω_r relative rolling velocity ω_i − ω_j without its part along the normal
-//! \[rad/s\]; k_r = 2.25 S_n (μ_r R*)² rolling stiffness \[N·m/rad\]; S_n normal stiffness \[N/m\]; R* effective
+//! M \[N·m\] torque on i, −M on j; ω_r relative angular velocity ω_i − ω_j \[rad/s\], rolling and twist about the
+//! normal alike, else a grain could spin like a top forever; k_r = 2.25 S_n (μ_r R*)² rolling stiffness \[N·m/rad\]; S_n normal stiffness \[N/m\]; R* effective
 //! radius \[m\]; μ_r rolling friction coefficient; F_n normal force \[N\]; C_r = 2 η √(I_r k_r) \[N·m·s\],
 //! I_r reduced moment of inertia about the contact \[kg·m²\], η = 0.3. The dashpot acts only while the spring
 //! is below its limit. A constant directional torque (type A) would chatter about zero in a heap at rest; the

@@ -21,7 +21,12 @@ pub(super) fn plan(
     entry(true, "neighbours", grids, "");
     entry(true, "contacts", "Hertz contacts of grains".to_owned(), "");
     entry(walls > 0, "walls", format!("{walls} wall(s)"), "no wall");
-    entry(features.damping, "contact damping", "a restitution is below 1".to_owned(), "every restitution is 1");
+    entry(
+        features.damping,
+        "contact damping",
+        "a restitution is below 1".to_owned(),
+        "every restitution is 1",
+    );
     entry(
         features.friction,
         "tangential history",

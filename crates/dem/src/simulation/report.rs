@@ -118,11 +118,7 @@ impl Simulation {
     /// Wall-clock seconds spent in each stage of the plan.
     #[must_use]
     pub fn stage_seconds(&self) -> Vec<(&'static str, f64)> {
-        STAGE_NAMES
-            .into_iter()
-            .zip(self.watch.seconds)
-            .filter(|(name, _)| self.plan.has(name))
-            .collect()
+        STAGE_NAMES.into_iter().zip(self.watch.seconds).filter(|(name, _)| self.plan.has(name)).collect()
     }
 
     /// Limits on the time step at the present speeds.

@@ -1,5 +1,11 @@
 //! Scenes that several tests share.
-#![allow(dead_code, missing_docs, unreachable_pub, clippy::allow_attributes, reason = "not every test uses every helper")]
+#![allow(
+    dead_code,
+    missing_docs,
+    unreachable_pub,
+    clippy::allow_attributes,
+    reason = "not every test uses every helper"
+)]
 
 use amberfield_core::{
     Boundary, Domain, Grain, GroupId, Material, MaterialId, OnExit, Particles, Skin, Step, TimeSettings,
