@@ -29,13 +29,13 @@ pub struct Cutoff {
 
 /// Coulomb's sum over k_e at one particle.
 #[derive(Clone, Copy, Debug, Default)]
-pub(crate) struct CoulombSum {
+struct CoulombSum {
     /// Potential [C/m].
-    pub(crate) potential: f64,
+    potential: f64,
     /// Field [C/m²].
-    pub(crate) e: Vector3<f64>,
+    e: Vector3<f64>,
     /// Number of partners.
-    pub(crate) partners: usize,
+    partners: usize,
 }
 
 impl Cutoff {
@@ -76,21 +76,17 @@ impl Cutoff {
         self.cells.build(&self.lattice, &self.wrapped, charges, self.radius, |_, _| ());
         coulomb_sums(&self.cells, &self.wrapped, self.radius, &mut self.sums);
         let k = coulomb_constant(self.relative_permittivity);
-        out.e.clear();
+        out.clear();
         out.e.extend(self.sums.iter().map(|sum| sum.e * k));
         if wanted.potential {
-            out.potential.clear();
             out.potential.extend(self.sums.iter().map(|sum| sum.potential * k));
         }
         if wanted.components {
-            out.components.near.clone_from(&out.e);
-            let components = &mut out.components;
-            for part in [&mut components.middle, &mut components.far, &mut components.correction] {
-                part.clear();
-                part.resize(positions.len(), Vector3::zeros());
-            }
+            out.components.near.extend_from_slice(&out.e);
         }
-        self.pairs_per_particle = mean_partners(&self.sums);
+        out.complete(positions.len(), wanted);
+        let partners: usize = self.sums.iter().map(|sum| sum.partners).sum();
+        self.pairs_per_particle = partners as f64 / self.sums.len().max(1) as f64;
         self.seconds[0].1 = start.elapsed().as_secs_f64();
         check_result(&out.e)
     }
@@ -126,18 +122,8 @@ pub(crate) fn check_radius(radius_m: f64) -> Result<(), FieldError> {
     )))
 }
 
-/// Mean number of partners.
-pub(crate) fn mean_partners(sums: &[CoulombSum]) -> f64 {
-    sums.iter().map(|sum| sum.partners).sum::<usize>() as f64 / sums.len().max(1) as f64
-}
-
 /// Σ q/r within the radius at every particle, itself left out.
-pub(crate) fn coulomb_sums<T: Copy + Default + Send + Sync>(
-    cells: &ImageCells<T>,
-    positions: &[Vector3<f64>],
-    radius: f64,
-    sums: &mut Vec<CoulombSum>,
-) {
+fn coulomb_sums(cells: &ImageCells<()>, positions: &[Vector3<f64>], radius: f64, sums: &mut Vec<CoulombSum>) {
     sums.resize(positions.len(), CoulombSum::default());
     let limit = radius * radius;
     sums.par_iter_mut().zip(positions).enumerate().for_each(|(index, (sum, at))| {

@@ -29,7 +29,7 @@ fn brute_force(
     let copies = |axis: usize| {
         let periodic = domain.faces()[axis][0] == Boundary::Periodic;
         let most = if periodic { 6 } else { 0 };
-        (-most..=most).map(move |n| f64::from(n))
+        (-most..=most).map(f64::from)
     };
     for (index, (x, q)) in positions.iter().zip(charges).enumerate() {
         for a in copies(0) {

@@ -85,28 +85,16 @@ impl Direct {
     ) -> Result<(), FieldError> {
         let parts = self.sum(positions, charges)?;
         let k = coulomb_constant(self.relative_permittivity);
-        out.e.clear();
+        out.clear();
         out.e.extend(parts.iter().map(|part| (part.near + part.far) * k));
         if wanted.potential {
-            out.potential.clear();
             out.potential.extend(parts.iter().map(|part| part.potential * k));
         }
         if wanted.components {
-            let components = &mut out.components;
-            for part in [
-                &mut components.near,
-                &mut components.middle,
-                &mut components.far,
-                &mut components.correction,
-            ] {
-                part.clear();
-                part.resize(positions.len(), Vector3::zeros());
-            }
-            for (index, part) in parts.iter().enumerate() {
-                components.near[index] = part.near * k;
-                components.far[index] = part.far * k;
-            }
+            out.components.near.extend(parts.iter().map(|part| part.near * k));
+            out.components.far.extend(parts.iter().map(|part| part.far * k));
         }
+        out.complete(parts.len(), wanted);
         let partners: usize = parts.iter().map(|part| part.partners).sum();
         self.pairs_per_particle = partners as f64 / parts.len().max(1) as f64;
         check_result(&out.e)

@@ -1,0 +1,247 @@
+//! The published hybrid of mesh and pairs, reproduced for comparison.
+
+mod lattice;
+mod mesh;
+
+use crate::cutoff::check_radius;
+use crate::image_cells::ImageCells;
+use crate::images::ImageLattice;
+use crate::inputs::{check_finite, check_in_box, check_net_charge, check_result};
+use crate::{FieldError, FieldValues, Wanted};
+use amberfield_core::Domain;
+use amberfield_core::constants::{VACUUM_PERMITTIVITY, coulomb_constant};
+use mesh::Mesh;
+use nalgebra::Vector3;
+use rayon::prelude::*;
+use std::time::Instant;
+
+/// Cells per cut-off radius when the scene leaves them open: just above √3, the diagonal of a cube.
+const CELLS_PER_RADIUS: f64 = 1.75;
+/// Cells at most; beyond it the cut-off radius is a mistake.
+const MOST_CELLS: f64 = 2e8;
+
+/// The hybrid of Kolehmainen, Ozel, Boyce and Sundaresan (2016): every charge goes to its cell, Poisson's equation
+/// on the mesh gives a field constant in each cell, the plain sum over pairs within a cut-off radius is added, and
+/// for those pairs that lie in different cells Coulomb's field between the cells' centres is taken off again.
+///
+/// It does not converge: the mesh made its own field of each charge, not Coulomb's between centres. Its error
+/// stays at 20 to 40 % for charges of both signs however large the radius. Walls have no images in the near sum.
+///
+/// The mesh is that of the box: seven-point finite volumes, walls at cell faces, gradient by Gauss' theorem with
+/// linear interpolation, and the faces' potentials and normal fields in its boundary conditions. In free space the
+/// mesh goes on for ever. The potential holds the mesh's potential of the particle's own charge, one cell wide.
+#[derive(Debug)]
+pub struct Kolehmainen {
+    domain: Domain,
+    lattice: ImageLattice,
+    relative_permittivity: f64,
+    neutralising_background: bool,
+    radius: f64,
+    mesh: Mesh,
+    images: ImageCells<[i32; 3]>,
+    wrapped: Vec<Vector3<f64>>,
+    cells: Vec<[usize; 3]>,
+    sums: Vec<PairSums>,
+    pairs_per_particle: f64,
+    seconds: [(&'static str, f64); 2],
+}
+
+/// Sums over the partners of one particle, over k_e.
+#[derive(Clone, Copy, Debug, Default)]
+struct PairSums {
+    near: Vector3<f64>,
+    near_potential: f64,
+    correction: Vector3<f64>,
+    correction_potential: f64,
+    partners: usize,
+}
+
+impl Kolehmainen {
+    /// The hybrid with cut-off radius `radius_m` [m]; `cells` per axis, or cubes of nearly `radius_m`/1.75.
+    ///
+    /// # Errors
+    /// A radius below the cells' diagonal, no cells or too many, open faces beside others.
+    pub fn new(
+        domain: &Domain,
+        relative_permittivity: f64,
+        neutralising_background: bool,
+        radius_m: f64,
+        cells: Option<[usize; 3]>,
+    ) -> Result<Self, FieldError> {
+        check_radius(radius_m)?;
+        let cells = choose_cells(domain, radius_m, cells)?;
+        Ok(Self {
+            domain: domain.clone(),
+            lattice: ImageLattice::periodic_only(domain),
+            relative_permittivity,
+            neutralising_background,
+            radius: radius_m,
+            mesh: Mesh::new(domain, cells)?,
+            images: ImageCells::default(),
+            wrapped: Vec::new(),
+            cells: Vec::new(),
+            sums: Vec::new(),
+            pairs_per_particle: 0.0,
+            seconds: [("mesh", 0.0), ("pairs", 0.0)],
+        })
+    }
+
+    /// E [V/m] (and what else is wanted) at every particle, positions in m, charges in C. Components: pairs are
+    /// near, the mesh far, the sum over cells' centres correction.
+    ///
+    /// # Errors
+    /// Values that are not finite, grains outside the box, two charges in one place, a net charge that no face
+    /// takes.
+    pub fn evaluate(
+        &mut self,
+        positions: &[Vector3<f64>],
+        charges: &[f64],
+        wanted: Wanted,
+        out: &mut FieldValues,
+    ) -> Result<(), FieldError> {
+        check_finite(positions, charges)?;
+        check_in_box(&self.domain, positions)?;
+        let permittivity = VACUUM_PERMITTIVITY * self.relative_permittivity;
+        check_net_charge(&self.domain, permittivity, self.neutralising_background, charges)?;
+        let start = Instant::now();
+        self.wrapped.clear();
+        self.wrapped.extend(positions.iter().map(|position| self.domain.wrap(*position)));
+        self.cells.clear();
+        let min = self.domain.min();
+        self.cells.extend(self.wrapped.iter().map(|position| self.mesh.cell_of(&(position - min))));
+        self.mesh.solve(&self.cells, charges, permittivity);
+        self.seconds[0].1 = start.elapsed().as_secs_f64();
+        let start = Instant::now();
+        self.sum_pairs(charges);
+        self.seconds[1].1 = start.elapsed().as_secs_f64();
+        self.fill(wanted, out);
+        check_result(&out.e)
+    }
+
+    /// Sums over pairs within the radius, and over the centres of their cells where these differ.
+    fn sum_pairs(&mut self, charges: &[f64]) {
+        let cells = &self.cells;
+        let count = self.mesh.cells.map(signed);
+        self.images.build(&self.lattice, &self.wrapped, charges, self.radius, |index, image| {
+            std::array::from_fn(|axis| signed(cells[index][axis]) + image.periods[axis] * count[axis])
+        });
+        let (images, spacing, limit) = (&self.images, self.mesh.spacing, self.radius * self.radius);
+        self.sums.resize(self.wrapped.len(), PairSums::default());
+        self.sums.par_iter_mut().zip(&self.wrapped).zip(cells).enumerate().for_each(
+            |(index, ((sums, at), cell))| {
+                let own = cell.map(signed);
+                let mut total = PairSums::default();
+                images.for_each_range(at, |range| {
+                    for k in range {
+                        let d = Vector3::new(at.x - images.x[k], at.y - images.y[k], at.z - images.z[k]);
+                        if d.norm_squared() >= limit || images.real[k] as usize == index {
+                            continue;
+                        }
+                        total.partners += 1;
+                        let (potential, e) = coulomb(images.charge[k], &d);
+                        total.near_potential += potential;
+                        total.near += e;
+                        let other = images.extra[k];
+                        if other != own {
+                            let d = Vector3::from_fn(|axis, _| {
+                                f64::from(own[axis] - other[axis]) * spacing[axis]
+                            });
+                            let (potential, e) = coulomb(images.charge[k], &d);
+                            total.correction_potential -= potential;
+                            total.correction -= e;
+                        }
+                    }
+                });
+                *sums = total;
+            },
+        );
+        let partners: usize = self.sums.iter().map(|sums| sums.partners).sum();
+        self.pairs_per_particle = partners as f64 / self.sums.len().max(1) as f64;
+    }
+
+    fn fill(&self, wanted: Wanted, out: &mut FieldValues) {
+        let k = coulomb_constant(self.relative_permittivity);
+        let mesh = &self.mesh;
+        let particles = || self.sums.iter().zip(&self.cells);
+        out.clear();
+        out.e.extend(particles().map(|(sums, cell)| mesh.field(*cell) + (sums.near + sums.correction) * k));
+        if wanted.potential {
+            out.potential.extend(particles().map(|(sums, cell)| {
+                mesh.potential(*cell) + (sums.near_potential + sums.correction_potential) * k
+            }));
+        }
+        if wanted.components {
+            out.components.near.extend(self.sums.iter().map(|sums| sums.near * k));
+            out.components.far.extend(self.cells.iter().map(|cell| mesh.field(*cell)));
+            out.components.correction.extend(self.sums.iter().map(|sums| sums.correction * k));
+        }
+        out.complete(self.sums.len(), wanted);
+    }
+
+    /// Cells of the mesh per axis.
+    #[must_use]
+    pub fn grid_cells(&self) -> [usize; 3] {
+        self.mesh.cells
+    }
+
+    /// Mean number of partners within the radius in the last evaluation, periodic copies included.
+    #[must_use]
+    pub fn pairs_per_particle(&self) -> f64 {
+        self.pairs_per_particle
+    }
+
+    /// Stages of the last evaluation and their time [s].
+    #[must_use]
+    pub fn seconds(&self) -> &[(&'static str, f64)] {
+        &self.seconds
+    }
+
+    /// Memory held [bytes].
+    #[must_use]
+    pub fn memory_bytes(&self) -> usize {
+        self.mesh.memory_bytes()
+            + self.images.memory_bytes()
+            + self.wrapped.capacity() * size_of::<Vector3<f64>>()
+            + self.cells.capacity() * size_of::<[usize; 3]>()
+            + self.sums.capacity() * size_of::<PairSums>()
+    }
+}
+
+/// Potential and field over k_e at distance `d` from a charge.
+fn coulomb(charge: f64, d: &Vector3<f64>) -> (f64, Vector3<f64>) {
+    let inverse = 1.0 / d.norm();
+    let potential = charge * inverse;
+    (potential, d * (potential * inverse * inverse))
+}
+
+#[expect(clippy::cast_possible_truncation, clippy::cast_possible_wrap, reason = "cells per axis, checked")]
+fn signed(cells: usize) -> i32 {
+    cells as i32
+}
+
+/// Cells per axis, given or by the radius, whose diagonal is at most the radius.
+fn choose_cells(domain: &Domain, radius: f64, cells: Option<[usize; 3]>) -> Result<[usize; 3], FieldError> {
+    let extent = domain.extent();
+    let wanted: [f64; 3] = match cells {
+        Some(cells) => cells.map(|count| count as f64),
+        None => std::array::from_fn(|axis| (CELLS_PER_RADIUS * extent[axis] / radius).ceil()),
+    };
+    let total: f64 = wanted.iter().product();
+    if !(1.0..=MOST_CELLS).contains(&total) {
+        return Err(FieldError::Settings(format!(
+            "{} x {} x {} cells for a cut-off radius of {radius:e} m; give electric_field.grid.cells or a radius that make between 1 and {MOST_CELLS:e} cells",
+            wanted[0], wanted[1], wanted[2]
+        )));
+    }
+    #[expect(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "between 1 and 2e8")]
+    let cells = wanted.map(|count| count as usize);
+    let diagonal = Vector3::from_fn(|axis, _| extent[axis] / wanted[axis]).norm();
+    // A radius equal to the diagonal is allowed, to the last digit written.
+    if radius < diagonal * (1.0 - 1e-9) {
+        return Err(FieldError::Settings(format!(
+            "cut-off radius {radius:e} m is below the largest cell diagonal {diagonal:e} m of {} x {} x {} cells; raise electric_field.field_cutoff_radius or give more cells",
+            cells[0], cells[1], cells[2]
+        )));
+    }
+    Ok(cells)
+}
