@@ -12,6 +12,7 @@ mod grid;
 mod image_cells;
 mod images;
 mod inputs;
+mod kolehmainen;
 mod near;
 mod p3m;
 mod plan;
@@ -20,8 +21,10 @@ mod tuning;
 mod values;
 
 pub use boundary_field::BoundaryField;
+pub use cutoff::Cutoff;
 pub use direct::Direct;
 pub use electric_field::{Choice, ElectricField, Measured, Statistics};
 pub use error::FieldError;
+pub use kolehmainen::Kolehmainen;
 pub use p3m::P3mParameters;
 pub use values::{Components, FieldValues, Wanted};
