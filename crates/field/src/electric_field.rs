@@ -5,6 +5,7 @@ use crate::cutoff::Cutoff;
 use crate::direct::Direct;
 use crate::images::{Geometry, ImageLattice};
 use crate::inputs::{check_finite, check_in_box, check_net_charge, check_result};
+use crate::kolehmainen::Kolehmainen;
 use crate::p3m::{P3m, P3mParameters};
 use crate::tuning::Tuner;
 use crate::{FieldError, FieldValues, Wanted};
@@ -27,6 +28,11 @@ pub enum Choice {
     },
     /// The direct sum.
     Direct,
+    /// The published hybrid.
+    Kolehmainen {
+        /// Cut-off radius r_c [m].
+        cutoff_m: f64,
+    },
     /// p3m in open space with so few grains that every pair is summed: no grid is built.
     AllPairs,
     /// p3m on the internal grid.
@@ -58,6 +64,7 @@ pub struct Statistics {
 enum Levels {
     Cutoff(Box<Cutoff>),
     Direct(Box<Direct>),
+    Kolehmainen(Box<Kolehmainen>),
     P3m(Box<P3m>),
 }
 
@@ -88,6 +95,8 @@ impl Outside {
         /// The quadrature of the faces' field costs little: it takes no part of the tolerance worth naming.
         const SHARE: f64 = 1e-3;
         let boundary = match settings.method {
+            // Its mesh has the faces' values in its own boundary conditions.
+            Method::Kolehmainen => None,
             Method::P3m => BoundaryField::with_tolerance(domain, SHARE * settings.tolerance)?,
             _ => BoundaryField::new(domain)?,
         };
@@ -128,6 +137,7 @@ impl ElectricField {
         let choice = match settings.method {
             Method::Cutoff => Choice::Cutoff { cutoff_m: cutoff_radius(settings)? },
             Method::Direct => Choice::Direct,
+            Method::Kolehmainen => Choice::Kolehmainen { cutoff_m: cutoff_radius(settings)? },
             Method::P3m => {
                 check_charges(domain, settings, positions, charges)?;
                 let tuner = Tuner::new(domain, settings, positions, charges);
@@ -139,7 +149,9 @@ impl ElectricField {
                     Choice::P3m(chosen.parameters)
                 }
             }
-            method => return Err(FieldError::Settings(format!("method {method} is not known here"))),
+            method => {
+                return Err(FieldError::Settings(format!("method {method} is newer than this field crate")));
+            }
         };
         let field = Self::with_choice(domain, settings, &choice)?;
         Ok(Self { error_estimated, error_measured, ..field })
@@ -154,7 +166,6 @@ impl ElectricField {
         settings: &FieldSettings,
         choice: &Choice,
     ) -> Result<Self, FieldError> {
-        Geometry::of(domain)?;
         let permittivity = settings.relative_permittivity;
         let levels = match choice {
             Choice::Cutoff { cutoff_m } => {
@@ -164,7 +175,17 @@ impl ElectricField {
                 let direct = Direct::new(domain, permittivity, settings.neutralising_background)?;
                 Levels::Direct(Box::new(direct))
             }
-            Choice::P3m(parameters) => Levels::P3m(Box::new(P3m::new(domain, permittivity, *parameters))),
+            Choice::Kolehmainen { cutoff_m } => Levels::Kolehmainen(Box::new(Kolehmainen::new(
+                domain,
+                permittivity,
+                settings.neutralising_background,
+                *cutoff_m,
+                settings.grid_cells,
+            )?)),
+            Choice::P3m(parameters) => {
+                Geometry::of(domain)?;
+                Levels::P3m(Box::new(P3m::new(domain, permittivity, *parameters)))
+            }
         };
         Ok(Self {
             domain: domain.clone(),
@@ -198,6 +219,7 @@ impl ElectricField {
         match &mut self.levels {
             Levels::Cutoff(cutoff) => cutoff.evaluate(positions, charges, wanted, out)?,
             Levels::Direct(direct) => direct.evaluate(positions, charges, wanted, out)?,
+            Levels::Kolehmainen(hybrid) => hybrid.evaluate(positions, charges, wanted, out)?,
             Levels::P3m(p3m) => {
                 check_charges(&self.domain, &self.settings, positions, charges)?;
                 p3m.evaluate(positions, charges, wanted, out);
@@ -271,6 +293,11 @@ impl ElectricField {
                 grid_cells: None,
                 seconds: direct.seconds().to_vec(),
             },
+            Levels::Kolehmainen(hybrid) => Statistics {
+                pairs_per_particle: hybrid.pairs_per_particle(),
+                grid_cells: Some(hybrid.grid_cells()),
+                seconds: hybrid.seconds().to_vec(),
+            },
             Levels::P3m(p3m) => Statistics {
                 pairs_per_particle: p3m.pairs_per_particle(),
                 grid_cells: Some(p3m.cells()),
@@ -285,6 +312,7 @@ impl ElectricField {
         match &self.levels {
             Levels::Cutoff(cutoff) => cutoff.memory_bytes(),
             Levels::Direct(direct) => direct.memory_bytes(),
+            Levels::Kolehmainen(hybrid) => hybrid.memory_bytes(),
             Levels::P3m(p3m) => p3m.memory_bytes(),
         }
     }

@@ -12,6 +12,10 @@ pub(crate) fn plan(domain: &Domain, settings: &FieldSettings, choice: &Choice) -
             plan.leave_out("grid", "method cutoff has no far level");
         }
         Choice::Direct => plan.build("pairs", "method direct: every pair and every image"),
+        Choice::Kolehmainen { cutoff_m } => {
+            plan.build("mesh", "method kolehmainen: nearest-cell charge, field constant in a cell");
+            plan.build("pairs", format!("near sum and correction within r_c = {cutoff_m:.4e} m"));
+        }
         Choice::AllPairs => {
             plan.build("near", "open space and few grains: every pair costs less than a grid");
             plan.leave_out("grid", "the near level covers the domain");

@@ -178,3 +178,52 @@ impl Direct {
         self.cells.memory_bytes() + self.wrapped.capacity() * size_of::<Vector3<f64>>()
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use amberfield_core::Boundary;
+    use proptest::prelude::*;
+
+    /// Terms left out, over the largest term.
+    const LEFT_OUT: f64 = 1e-12;
+
+    fn axis_faces() -> impl Strategy<Value = [Boundary; 2]> {
+        let insulating = Boundary::Insulating { normal_field_v_m: 0.0 };
+        let faces = [Boundary::Grounded, insulating, Boundary::Open];
+        let walls = (0..3_usize, 0..3_usize).prop_map(move |(low, high)| [faces[low], faces[high]]);
+        prop_oneof![1 => Just([Boundary::Periodic; 2]), 2 => walls]
+    }
+
+    proptest! {
+        #![proptest_config(ProptestConfig { cases: 64, failure_persistence: None, ..ProptestConfig::default() })]
+
+        /// The sum is the same wherever it is split: images, modes and cut-offs fit together, in boxes of any shape.
+        #[test]
+        fn the_splitting_does_not_matter(
+            faces in [axis_faces(), axis_faces(), axis_faces()],
+            extent in [0.2..2.0_f64, 0.2..2.0_f64, 0.2..2.0_f64],
+            places in prop::collection::vec(([0.02..0.98_f64, 0.02..0.98_f64, 0.02..0.98_f64], -1.0..1.0_f64), 1..8),
+            factor in 0.6..1.6_f64,
+        ) {
+            let extent = Vector3::from(extent);
+            let domain = Domain::new(Vector3::zeros(), extent, faces).unwrap();
+            let geometry = Geometry::of(&domain);
+            prop_assume!(matches!(geometry, Ok(Geometry::Closed | Geometry::Slab(_))));
+            let mut direct = Direct::new(&domain, 1.0, true).unwrap();
+            let (positions, charges): (Vec<_>, Vec<_>) =
+                places.into_iter().map(|(place, charge)| (Vector3::from(place).component_mul(&extent), charge)).unzip();
+            direct.wrapped = positions;
+            let particles = BoundingBox::around(&direct.wrapped).unwrap();
+            let best = Splitting::cheapest(&domain, direct.geometry, &particles, charges.len());
+            let other = Splitting::new(&domain, direct.geometry, &particles, best.alpha * factor);
+            let (one, two) = (direct.ewald(&charges, &best), direct.ewald(&charges, &other));
+            for (one, two) in one.iter().zip(&two) {
+                let (e, potential) = (one.near + one.far, one.potential);
+                let (field, value) = (one.near.norm() + two.near.norm() + 1.0, one.potential.abs() + 10.0 * best.alpha);
+                prop_assert!((e - two.near - two.far).norm() < LEFT_OUT * field * best.alpha.powi(2).max(1.0));
+                prop_assert!((potential - two.potential).abs() < LEFT_OUT * value);
+            }
+        }
+    }
+}

@@ -2,11 +2,11 @@
 //!
 //! Walls are cell faces: a conductor lies half a cell from the cell's centre, an insulator gives its flux.
 
-use super::lattice::green_function;
-use crate::FieldError;
+use super::inverse::Inverse;
 use crate::grid::axis::smooth_even;
 use crate::grid::transform::{LineScratch, LineTransform, Symmetry};
 use crate::images::{AxisKind, FaceKind, Geometry, axis_kinds};
+use crate::{BoundaryField, FieldError};
 use amberfield_core::{Axis, Boundary, Domain, Side};
 use nalgebra::Vector3;
 use rayon::prelude::*;
@@ -25,13 +25,75 @@ enum Beyond {
     Slope(f64),
 }
 
-/// The inverse of −∇²_h.
+impl Beyond {
+    fn without_value(self) -> Self {
+        match self {
+            Self::Cell => Self::Cell,
+            Self::Potential(_) => Self::Potential(0.0),
+            Self::Slope(_) => Self::Slope(0.0),
+        }
+    }
+}
+
+/// One axis of the mesh.
 #[derive(Debug)]
-enum Inverse {
-    /// Eigenvalues of each axis [1/m²] by coefficient; their sum's inverse, 0 for the constant mode.
-    Eigenvalues([Vec<f64>; 3]),
-    /// Transform of the unbounded grid's Green function [m²] by wave index.
-    Kernel { values: Vec<f64>, waves: [usize; 3] },
+pub(super) struct MeshAxis {
+    /// Cells of the box.
+    pub(super) cells: usize,
+    /// Cell size [m].
+    pub(super) spacing: f64,
+    /// Where the box's cells begin in the transform.
+    offset: usize,
+    /// Transform over the cells, and over free space beside them where a face is open.
+    pub(super) transform: LineTransform,
+    /// Cells after which an open axis repeats itself; `None` for a closed axis.
+    pub(super) period: Option<usize>,
+    beyond: [Beyond; 2],
+}
+
+impl MeshAxis {
+    fn new(domain: &Domain, axis: Axis, kind: AxisKind, cells: usize) -> Self {
+        use FaceKind::{Conductor, Insulator, Open};
+        let spacing = domain.extent()[axis.index()] / cells as f64;
+        // Room for all distances between a cell of the box, or the next one, and a cell or its mirror image.
+        let (symmetry, length, period, at_end) = match kind {
+            AxisKind::Periodic => (Symmetry::Periodic, cells, None, false),
+            AxisKind::Faces(Conductor, Conductor) => (Symmetry::OddOdd, cells, None, false),
+            AxisKind::Faces(Insulator, Insulator) => (Symmetry::EvenEven, cells, None, false),
+            AxisKind::Faces(Conductor, Insulator) => (Symmetry::OddEven, cells, None, false),
+            AxisKind::Faces(Insulator, Conductor) => (Symmetry::EvenOdd, cells, None, false),
+            AxisKind::Faces(Open, Open) => {
+                let length = smooth_even(2 * cells + 2);
+                (Symmetry::Periodic, length, Some(length), false)
+            }
+            AxisKind::Faces(lower, upper) => {
+                let length = smooth_even(2 * cells + 2);
+                let wall = if lower == Open { upper } else { lower };
+                let symmetry = if wall == Conductor { Symmetry::OddOdd } else { Symmetry::EvenEven };
+                (symmetry, length, Some(2 * length), lower == Open)
+            }
+        };
+        Self {
+            cells,
+            spacing,
+            offset: if at_end { length - cells } else { 0 },
+            transform: LineTransform::new(symmetry, length),
+            period,
+            beyond: [Side::Min, Side::Max].map(|side| beyond(domain.face(axis, side))),
+        }
+    }
+
+    /// Order of the wave of a coefficient on an open axis: it has so many wavelengths in the period.
+    pub(super) fn order(&self, coefficient: usize) -> usize {
+        let first = usize::from(self.transform.symmetry() == Symmetry::OddOdd);
+        self.transform.wave_index(coefficient) + first
+    }
+
+    /// Eigenvalue (2 sin(kh/2)/h)² of the axis' part of −∇²_h [1/m²].
+    pub(super) fn eigenvalue(&self, coefficient: usize) -> f64 {
+        let angle = self.transform.wave_number(self.transform.wave_index(coefficient));
+        (2.0 * (0.5 * angle).sin() / self.spacing).powi(2)
+    }
 }
 
 #[derive(Debug)]
@@ -43,11 +105,9 @@ struct Share {
 /// Cells of a box with their potential.
 #[derive(Debug)]
 pub(super) struct Mesh {
-    pub(super) cells: [usize; 3],
-    pub(super) spacing: Vector3<f64>,
-    beyond: [[Beyond; 2]; 3],
-    transforms: [LineTransform; 3],
-    /// Lengths of the transforms: the cells, or more than twice as many in free space.
+    axes: [MeshAxis; 3],
+    origin: Vector3<f64>,
+    /// Lengths of the transforms.
     lengths: [usize; 3],
     inverse: Inverse,
     /// Right-hand side, then potential [V], index [x][y][z].
@@ -57,56 +117,67 @@ pub(super) struct Mesh {
     shares: Vec<Share>,
     /// Face values' part of the right-hand side [V/m²], absent when they are zero.
     walls: Option<Vec<f64>>,
+    /// Field of the faces' values where a face is open: they reach beyond the box, so that cells cannot hold them.
+    faces: Option<BoundaryField>,
 }
 
 impl Mesh {
     /// A mesh of so many cells along each axis.
     ///
     /// # Errors
-    /// Open faces beside others.
+    /// Open faces on two axes and none on the third; face values beside open faces whose field is not linear.
     pub(super) fn new(domain: &Domain, cells: [usize; 3]) -> Result<Self, FieldError> {
-        let kinds = axis_kinds(domain);
-        let spacing = Vector3::from_fn(|axis, _| domain.extent()[axis] / cells[axis] as f64);
-        let is_free = kinds.iter().all(|kind| *kind == AxisKind::Faces(FaceKind::Open, FaceKind::Open));
-        if !is_free && Geometry::of(domain)? != Geometry::Closed {
-            return Err(FieldError::Settings(
-                "method kolehmainen on the internal grid needs all faces open or none; close the open faces, or choose method p3m".into(),
-            ));
+        let (geometry, kinds) = (Geometry::of(domain)?, axis_kinds(domain));
+        let mut axes =
+            Axis::ALL.map(|axis| MeshAxis::new(domain, axis, kinds[axis.index()], cells[axis.index()]));
+        let mut faces = None;
+        if geometry != Geometry::Closed {
+            faces = BoundaryField::new(domain)?;
+            if faces.as_ref().is_some_and(|field| !field.is_closed_form()) {
+                return Err(FieldError::Settings(
+                    "method kolehmainen cannot have potentials or normal fields on faces of several axes beside open faces on the internal grid; close the open faces, ground the others, or choose method p3m".into(),
+                ));
+            }
+            for beyond in axes.iter_mut().flat_map(|axis| &mut axis.beyond) {
+                *beyond = beyond.without_value();
+            }
         }
-        let transforms = [0, 1, 2].map(|axis| {
-            let length = if is_free { smooth_even(2 * cells[axis] + 2) } else { cells[axis] };
-            LineTransform::new(symmetry(kinds[axis]), length)
-        });
-        let lengths = transforms.each_ref().map(LineTransform::len);
+        let lengths = axes.each_ref().map(|axis| axis.transform.len());
         let size: usize = lengths.iter().product();
         let share = || Share {
-            scratch: transforms.each_ref().map(LineTransform::scratch),
+            scratch: axes.each_ref().map(|axis| axis.transform.scratch()),
             line: vec![0.0; lengths[1]],
         };
         let mut mesh = Self {
-            cells,
-            spacing,
-            beyond: Axis::ALL.map(|axis| [Side::Min, Side::Max].map(|side| beyond(domain.face(axis, side)))),
+            origin: domain.min(),
             lengths,
-            inverse: Inverse::Eigenvalues([0, 1, 2].map(|a| eigenvalues(&transforms[a], spacing[a]))),
+            inverse: Inverse::new(&axes, geometry),
             potential: vec![0.0; size],
             lines: vec![0.0; size],
             shares: (0..SHARES).map(|_| share()).collect(),
-            transforms,
+            axes,
             walls: None,
+            faces,
         };
-        if is_free {
-            mesh.inverse = mesh.free_space();
-        }
         mesh.walls = mesh.wall_source();
         Ok(mesh)
     }
 
-    /// The cell that holds a point of the box at the given distance from its lower corner [m].
-    pub(super) fn cell_of(&self, offset: &Vector3<f64>) -> [usize; 3] {
+    /// Cells of the box per axis.
+    pub(super) fn cells(&self) -> [usize; 3] {
+        self.axes.each_ref().map(|axis| axis.cells)
+    }
+
+    /// Cell size [m].
+    pub(super) fn spacing(&self) -> Vector3<f64> {
+        Vector3::from_fn(|axis, _| self.axes[axis].spacing)
+    }
+
+    /// The cell that holds a point of the box [m].
+    pub(super) fn cell_of(&self, point: &Vector3<f64>) -> [usize; 3] {
+        let offset = point - self.origin;
         #[expect(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "clamped to the cells")]
-        [0, 1, 2]
-            .map(|axis| ((offset[axis] / self.spacing[axis]).max(0.0) as usize).min(self.cells[axis] - 1))
+        [0, 1, 2].map(|a| ((offset[a] / self.axes[a].spacing).max(0.0) as usize).min(self.axes[a].cells - 1))
     }
 
     /// Solves −∇²φ = Σ charge/(permittivity · cell volume) with the faces' conditions.
@@ -115,54 +186,69 @@ impl Mesh {
             Some(walls) => self.potential.copy_from_slice(walls),
             None => self.potential.fill(0.0),
         }
-        let factor = 1.0 / (permittivity * self.spacing.product());
+        let factor = 1.0 / (permittivity * self.spacing().product());
         for (cell, charge) in cells.iter().zip(charges) {
             let index = self.index(*cell);
             self.potential[index] += charge * factor;
         }
         self.forward();
-        self.invert();
+        self.inverse.apply(&self.axes, &mut self.lines);
         self.backward();
     }
 
     /// Potential of a cell [V].
     pub(super) fn potential(&self, cell: [usize; 3]) -> f64 {
-        self.potential[self.index(cell)]
+        self.solved(cell) + self.faces.as_ref().map_or(0.0, |faces| faces.evaluate(&self.centre(cell)).1)
     }
 
     /// E = −∇φ of a cell [V/m], by Gauss' theorem with linear interpolation to the faces.
     pub(super) fn field(&self, cell: [usize; 3]) -> Vector3<f64> {
-        Vector3::from_fn(|axis, _| {
-            (self.face(cell, axis, Side::Min) - self.face(cell, axis, Side::Max)) / self.spacing[axis]
-        })
+        let solved = Vector3::from_fn(|axis, _| {
+            (self.face(cell, axis, Side::Min) - self.face(cell, axis, Side::Max)) / self.axes[axis].spacing
+        });
+        match &self.faces {
+            None => solved,
+            Some(faces) => solved + faces.evaluate(&self.centre(cell)).0,
+        }
     }
 
-    fn face(&self, cell: [usize; 3], axis: usize, side: Side) -> f64 {
-        let (at, here) = (cell[axis], self.potential(cell));
-        let is_last = if side == Side::Min { at == 0 } else { at + 1 == self.cells[axis] };
-        match self.beyond[axis][side as usize] {
+    fn centre(&self, cell: [usize; 3]) -> Vector3<f64> {
+        self.origin + Vector3::from_fn(|axis, _| (cell[axis] as f64 + 0.5) * self.axes[axis].spacing)
+    }
+
+    fn face(&self, cell: [usize; 3], index: usize, side: Side) -> f64 {
+        let axis = &self.axes[index];
+        let (at, here) = (cell[index], self.solved(cell));
+        let is_last = if side == Side::Min { at == 0 } else { at + 1 == axis.cells };
+        match axis.beyond[side as usize] {
             Beyond::Potential(volts) if is_last => volts,
-            Beyond::Slope(slope) if is_last => here + slope * 0.5 * self.spacing[axis],
+            Beyond::Slope(slope) if is_last => here + slope * 0.5 * axis.spacing,
             _ => {
                 let mut next = cell;
-                let step = if side == Side::Min { self.lengths[axis] - 1 } else { 1 };
-                next[axis] = (at + step) % self.lengths[axis];
-                0.5 * (here + self.potential(next))
+                let step = if side == Side::Min { self.lengths[index] - 1 } else { 1 };
+                next[index] = (at + step) % self.lengths[index];
+                0.5 * (here + self.solved(next))
             }
         }
     }
 
+    /// Potential that the charges and the walls' cells make [V].
+    fn solved(&self, cell: [usize; 3]) -> f64 {
+        self.potential[self.index(cell)]
+    }
+
     fn index(&self, cell: [usize; 3]) -> usize {
-        (cell[0] * self.lengths[1] + cell[1]) * self.lengths[2] + cell[2]
+        let [x, y, z] = [0, 1, 2].map(|axis| (cell[axis] + self.axes[axis].offset) % self.lengths[axis]);
+        (x * self.lengths[1] + y) * self.lengths[2] + z
     }
 
     /// What the faces' values add to the right-hand side of the cells beside them.
     fn wall_source(&self) -> Option<Vec<f64>> {
         let mut walls = vec![0.0; self.potential.len()];
         for axis in 0..3 {
-            let h = self.spacing[axis];
+            let h = self.axes[axis].spacing;
             for side in [0, 1] {
-                let value = match self.beyond[axis][side] {
+                let value = match self.axes[axis].beyond[side] {
                     Beyond::Cell => 0.0,
                     Beyond::Potential(volts) => 2.0 * volts / (h * h),
                     Beyond::Slope(slope) => slope / h,
@@ -171,10 +257,10 @@ impl Mesh {
                     continue;
                 }
                 let [b, c] = [(axis + 1) % 3, (axis + 2) % 3];
-                for i in 0..self.cells[b] {
-                    for j in 0..self.cells[c] {
+                for i in 0..self.axes[b].cells {
+                    for j in 0..self.axes[c].cells {
                         let mut cell = [0; 3];
-                        cell[axis] = if side == 0 { 0 } else { self.cells[axis] - 1 };
+                        cell[axis] = if side == 0 { 0 } else { self.axes[axis].cells - 1 };
                         (cell[b], cell[c]) = (i, j);
                         walls[self.index(cell)] += value;
                     }
@@ -187,7 +273,7 @@ impl Mesh {
     /// Values to coefficients, left in `lines`.
     fn forward(&mut self) {
         let [nx, ny, nz] = self.lengths;
-        let [along_x, along_y, along_z] = &self.transforms;
+        let [along_x, along_y, along_z] = self.axes.each_ref().map(|axis| &axis.transform);
         let planes = nx.div_ceil(SHARES);
         self.potential.par_chunks_mut(planes * ny * nz).zip(&mut self.shares).for_each(|(planes, share)| {
             for plane in planes.chunks_mut(ny * nz) {
@@ -212,35 +298,10 @@ impl Mesh {
         );
     }
 
-    /// Coefficients of the right-hand side to those of the potential, with the transforms' scale.
-    fn invert(&mut self) {
-        let [nx, _, nz] = self.lengths;
-        let scale = 1.0 / self.transforms.iter().map(LineTransform::scale).product::<f64>();
-        let (inverse, transforms) = (&self.inverse, &self.transforms);
-        self.lines.par_chunks_mut(nx).enumerate().for_each(|(place, line)| {
-            let (y, z) = (place / nz, place % nz);
-            match inverse {
-                Inverse::Eigenvalues([of_x, of_y, of_z]) => {
-                    for (value, of_x) in line.iter_mut().zip(of_x) {
-                        let sum = of_x + of_y[y] + of_z[z];
-                        *value *= if sum > 0.0 { scale / sum } else { 0.0 };
-                    }
-                }
-                Inverse::Kernel { values, waves } => {
-                    let (wave_y, wave_z) = (transforms[1].wave_index(y), transforms[2].wave_index(z));
-                    for (x, value) in line.iter_mut().enumerate() {
-                        let wave_x = transforms[0].wave_index(x);
-                        *value *= scale * values[(wave_y * waves[2] + wave_z) * waves[0] + wave_x];
-                    }
-                }
-            }
-        });
-    }
-
     /// Coefficients in `lines` to values.
     fn backward(&mut self) {
         let [nx, ny, nz] = self.lengths;
-        let [along_x, along_y, along_z] = &self.transforms;
+        let [along_x, along_y, along_z] = self.axes.each_ref().map(|axis| &axis.transform);
         let planes = ny.div_ceil(SHARES);
         self.lines.par_chunks_mut(planes * nz * nx).zip(&mut self.shares).for_each(|(lines, share)| {
             for line in lines.chunks_mut(nx) {
@@ -267,37 +328,10 @@ impl Mesh {
         );
     }
 
-    /// Transform of the unbounded grid's Green function, repeated beyond all distances between cells.
-    fn free_space(&mut self) -> Inverse {
-        let most = self.lengths.map(|length| length / 2);
-        let green = green_function(most, self.spacing);
-        let [_, ny, nz] = self.lengths;
-        for (index, value) in self.potential.iter_mut().enumerate() {
-            let [x, y, z] = [index / (ny * nz), index / nz % ny, index % nz];
-            let distance = |at: usize, axis: usize| at.min(self.lengths[axis] - at);
-            let row = distance(x, 0) * (most[1] + 1) + distance(y, 1);
-            *value = green[row * (most[2] + 1) + distance(z, 2)];
-        }
-        self.forward();
-        // Even functions have real coefficients alone, the first of each pair.
-        let real = |wave: usize| (2 * wave).saturating_sub(1);
-        let waves = self.transforms.each_ref().map(LineTransform::wave_count);
-        let mut values = vec![0.0; waves.iter().product()];
-        for (index, value) in values.iter_mut().enumerate() {
-            let [y, z, x] = [index / (waves[0] * waves[2]), index / waves[0] % waves[2], index % waves[0]];
-            *value = self.lines[(real(y) * nz + real(z)) * self.lengths[0] + real(x)];
-        }
-        Inverse::Kernel { values, waves }
-    }
-
     /// Memory held [bytes].
     pub(super) fn memory_bytes(&self) -> usize {
-        let inverse = match &self.inverse {
-            Inverse::Eigenvalues(_) => 0,
-            Inverse::Kernel { values, .. } => values.len(),
-        };
         let walls = self.walls.as_ref().map_or(0, Vec::len);
-        (self.potential.len() + self.lines.len() + inverse + walls) * size_of::<f64>()
+        (self.potential.len() + self.lines.len() + self.inverse.len() + walls) * size_of::<f64>()
     }
 }
 
@@ -320,25 +354,4 @@ fn beyond(face: Boundary) -> Beyond {
         Boundary::Insulating { normal_field_v_m } => Beyond::Slope(-normal_field_v_m),
         face => face.potential().map_or(Beyond::Cell, Beyond::Potential),
     }
-}
-
-fn symmetry(kind: AxisKind) -> Symmetry {
-    use FaceKind::{Conductor, Insulator};
-    match kind {
-        AxisKind::Faces(Conductor, Conductor) => Symmetry::OddOdd,
-        AxisKind::Faces(Insulator, Insulator) => Symmetry::EvenEven,
-        AxisKind::Faces(Conductor, Insulator) => Symmetry::OddEven,
-        AxisKind::Faces(Insulator, Conductor) => Symmetry::EvenOdd,
-        _ => Symmetry::Periodic,
-    }
-}
-
-/// Eigenvalues (2 sin(kh/2)/h)² of the axis' part of −∇²_h [1/m²] by coefficient.
-fn eigenvalues(transform: &LineTransform, spacing: f64) -> Vec<f64> {
-    (0..transform.len())
-        .map(|coefficient| {
-            let angle = transform.wave_number(transform.wave_index(coefficient));
-            (2.0 * (0.5 * angle).sin() / spacing).powi(2)
-        })
-        .collect()
 }

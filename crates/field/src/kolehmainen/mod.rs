@@ -1,5 +1,6 @@
 //! The published hybrid of mesh and pairs, reproduced for comparison.
 
+mod inverse;
 mod lattice;
 mod mesh;
 
@@ -28,7 +29,7 @@ const MOST_CELLS: f64 = 2e8;
 /// stays at 20 to 40 % for charges of both signs however large the radius. Walls have no images in the near sum.
 ///
 /// The mesh is that of the box: seven-point finite volumes, walls at cell faces, gradient by Gauss' theorem with
-/// linear interpolation, and the faces' potentials and normal fields in its boundary conditions. In free space the
+/// linear interpolation, and the faces' potentials and normal fields in its boundary conditions. Beyond open faces the
 /// mesh goes on for ever. The potential holds the mesh's potential of the particle's own charge, one cell wide.
 #[derive(Debug)]
 pub struct Kolehmainen {
@@ -60,7 +61,8 @@ impl Kolehmainen {
     /// The hybrid with cut-off radius `radius_m` [m]; `cells` per axis, or cubes of nearly `radius_m`/1.75.
     ///
     /// # Errors
-    /// A radius below the cells' diagonal, no cells or too many, open faces beside others.
+    /// A radius below the cells' diagonal, no cells or too many, one closed axis between open ones, values on faces
+    /// of several axes beside open faces.
     pub fn new(
         domain: &Domain,
         relative_permittivity: f64,
@@ -107,8 +109,7 @@ impl Kolehmainen {
         self.wrapped.clear();
         self.wrapped.extend(positions.iter().map(|position| self.domain.wrap(*position)));
         self.cells.clear();
-        let min = self.domain.min();
-        self.cells.extend(self.wrapped.iter().map(|position| self.mesh.cell_of(&(position - min))));
+        self.cells.extend(self.wrapped.iter().map(|position| self.mesh.cell_of(position)));
         self.mesh.solve(&self.cells, charges, permittivity);
         self.seconds[0].1 = start.elapsed().as_secs_f64();
         let start = Instant::now();
@@ -121,11 +122,11 @@ impl Kolehmainen {
     /// Sums over pairs within the radius, and over the centres of their cells where these differ.
     fn sum_pairs(&mut self, charges: &[f64]) {
         let cells = &self.cells;
-        let count = self.mesh.cells.map(signed);
+        let count = self.mesh.cells().map(signed);
         self.images.build(&self.lattice, &self.wrapped, charges, self.radius, |index, image| {
             std::array::from_fn(|axis| signed(cells[index][axis]) + image.periods[axis] * count[axis])
         });
-        let (images, spacing, limit) = (&self.images, self.mesh.spacing, self.radius * self.radius);
+        let (images, spacing, limit) = (&self.images, self.mesh.spacing(), self.radius * self.radius);
         self.sums.resize(self.wrapped.len(), PairSums::default());
         self.sums.par_iter_mut().zip(&self.wrapped).zip(cells).enumerate().for_each(
             |(index, ((sums, at), cell))| {
@@ -181,7 +182,7 @@ impl Kolehmainen {
     /// Cells of the mesh per axis.
     #[must_use]
     pub fn grid_cells(&self) -> [usize; 3] {
-        self.mesh.cells
+        self.mesh.cells()
     }
 
     /// Mean number of partners within the radius in the last evaluation, periodic copies included.

@@ -339,8 +339,8 @@ mod tests {
             let d = [0, 1, 2].map(|axis| -sources[axis][i]);
             let r = d.iter().map(|c| c * c).sum::<f64>().sqrt();
             if r < cutoff {
-                for axis in 0..3 {
-                    field[axis] += sources[3][i] * d[axis] * near_field_over_r(r, sigma);
+                for (sum, d) in field.iter_mut().zip(d) {
+                    *sum += sources[3][i] * d * near_field_over_r(r, sigma);
                 }
                 potential += sources[3][i] * near_potential(r, sigma);
             }
@@ -359,8 +359,8 @@ mod tests {
             let scale = cloud_potential(0.0, sigma) * COUNT as f64;
             assert!((sum.potential() - potential).abs() < (accuracy + 1e-13) * scale);
             let scale = cloud_field_over_r(0.0, sigma) * COUNT as f64 * cutoff;
-            for axis in 0..3 {
-                assert!((sum.field()[axis] - field[axis]).abs() < (accuracy + 1e-13) * scale);
+            for (computed, expected) in sum.field().into_iter().zip(field) {
+                assert!((computed - expected).abs() < (accuracy + 1e-13) * scale);
             }
         }
     }
@@ -374,8 +374,8 @@ mod tests {
         let portable = sum_of(&kernel, &sources);
         // Fused and unfused arithmetic differ by round-off only.
         assert!((native.potential() - portable.potential()).abs() < 1e-11);
-        for axis in 0..3 {
-            assert!((native.field()[axis] - portable.field()[axis]).abs() < 1e-10);
+        for (native, portable) in native.field().into_iter().zip(portable.field()) {
+            assert!((native - portable).abs() < 1e-10);
         }
     }
 }
