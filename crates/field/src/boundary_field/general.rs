@@ -3,7 +3,9 @@
 //! A harmonic function is the mean of its boundary values over where a diffusing point leaves. In a box the
 //! three coordinates diffuse independently, hence
 //!
-//!     φ(x) = V_0 + Σ_faces w ∫₀^∞ dt B(x_a, t) U(x_b, t) U(x_c, t)
+//! ```text
+//! φ(x) = V_0 + Σ_faces w ∫₀^∞ dt B(x_a, t) U(x_b, t) U(x_c, t)
+//! ```
 //!
 //! with w = V − V_0 and B the rate of first passage for a conductor on axis a, w = −E·n and B the kernel at the
 //! face for an insulator, and U what survives along the other axes. V_0 is the potential of the nearest
