@@ -20,9 +20,10 @@ fn bed_settles_to_a_random_packing() {
         // The same bed, a quarter as wide and half as high.
         edge = 1.5e-3;
         case.replace("scene.toml", "max_m = [0.006, 0.006, 0.01]", "max_m = [0.0015, 0.0015, 0.005]");
+        case.replace("scene.toml", "max_m = [0.006, 0.006, 0.0075]", "max_m = [0.0015, 0.0015, 0.0036]");
         case.replace("scene.toml", "point_m = [0, 0, 0.01]", "point_m = [0, 0, 0.005]");
         case.replace("scene.toml", "count = 20000", "count = 600");
-        case.replace("scene.toml", "end_s = 0.06", "end_s = 0.045");
+        case.replace("scene.toml", "end_s = 0.05", "end_s = 0.04");
     }
     let run = case.run(&[]);
     let grains = run.last_particles();

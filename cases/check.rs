@@ -1,0 +1,21 @@
+//! Every case, run by the binary at smoke size and compared with its README's number.
+//! `AMBERFIELD_CASES=full cargo test -p amberfield-cli --test cases` runs them at full size.
+
+mod support;
+
+#[path = "capacitor/check.rs"]
+mod capacitor;
+#[path = "charged-ball/check.rs"]
+mod charged_ball;
+#[path = "grounded-plane/check.rs"]
+mod grounded_plane;
+#[path = "heap/check.rs"]
+mod heap;
+#[path = "impact/check.rs"]
+mod impact;
+#[path = "madelung/check.rs"]
+mod madelung;
+#[path = "settling-charged-bed/check.rs"]
+mod settling_charged_bed;
+#[path = "two-grains/check.rs"]
+mod two_grains;

@@ -1,0 +1,154 @@
+//! Running the binary on a copy of a case, and reading what it writes.
+
+use amberfield_core::Vector3;
+use std::fs;
+use std::path::{Path, PathBuf};
+use std::process::Command;
+use tempfile::TempDir;
+
+/// 1/(4πε₀) [V·m/C], CODATA 2018; not taken from the code under test.
+pub(crate) const COULOMB: f64 = 8.987_551_792_3e9;
+
+/// Whether cases run at full size: `AMBERFIELD_CASES=full`. Else at smoke size.
+pub(crate) fn full_size() -> bool {
+    std::env::var("AMBERFIELD_CASES").is_ok_and(|size| size == "full")
+}
+
+/// A copy of a case's folder that may be changed and run.
+pub(crate) struct Case {
+    folder: TempDir,
+}
+
+impl Case {
+    /// Copies the files of `cases/<name>`.
+    pub(crate) fn new(name: &str) -> Self {
+        let source = Path::new(env!("CARGO_MANIFEST_DIR")).join("../../cases").join(name);
+        let folder = tempfile::tempdir().expect("a temporary folder");
+        for entry in fs::read_dir(&source).unwrap_or_else(|error| panic!("{}: {error}", source.display())) {
+            let path = entry.expect("an entry").path();
+            if path.is_file() {
+                fs::copy(&path, folder.path().join(path.file_name().expect("a file has a name")))
+                    .expect("a copy");
+            }
+        }
+        Self { folder }
+    }
+
+    fn path(&self, file: &str) -> PathBuf {
+        self.folder.path().join(file)
+    }
+
+    /// Writes a file of the copy.
+    pub(crate) fn write(&self, file: &str, text: &str) {
+        fs::write(self.path(file), text).expect("a file is written");
+    }
+
+    /// Replaces text in a file of the copy; it must be there.
+    pub(crate) fn replace(&self, file: &str, from: &str, to: &str) {
+        let text = fs::read_to_string(self.path(file)).expect("a file");
+        assert!(text.contains(from), "{file} does not contain {from:?}");
+        self.write(file, &text.replace(from, to));
+    }
+
+    /// A CSV file of the copy.
+    pub(crate) fn table(&self, file: &str) -> Table {
+        Table::read(&self.path(file))
+    }
+
+    /// `amberfield field scene.toml` with more arguments: the field CSV.
+    pub(crate) fn field(&self, arguments: &[&str]) -> Table {
+        let out = self.path("field.csv");
+        let out = out.to_str().expect("a readable path");
+        self.execute(&[&["field", "scene.toml", "--out", out], arguments].concat());
+        Table::read(Path::new(out))
+    }
+
+    /// `amberfield run scene.toml` with more arguments: the run folder.
+    pub(crate) fn run(&self, arguments: &[&str]) -> Run<'_> {
+        self.execute(&[&["run", "scene.toml", "--out", "run"], arguments].concat());
+        Run { case: self }
+    }
+
+    fn execute(&self, arguments: &[&str]) {
+        let output = Command::new(env!("CARGO_BIN_EXE_amberfield"))
+            .args(arguments)
+            .args(["--no-progress", "--threads", "2"])
+            .current_dir(self.folder.path())
+            .output()
+            .expect("the binary starts");
+        let messages = String::from_utf8_lossy(&output.stderr);
+        assert!(output.status.success(), "amberfield {}: {}\n{messages}", arguments.join(" "), output.status);
+    }
+}
+
+/// A run folder.
+pub(crate) struct Run<'a> {
+    case: &'a Case,
+}
+
+impl Run<'_> {
+    /// A path in the run folder.
+    pub(crate) fn path(&self, file: &str) -> PathBuf {
+        self.case.path("run").join(file)
+    }
+
+    /// `history.csv`.
+    pub(crate) fn history(&self) -> Table {
+        Table::read(&self.path("history.csv"))
+    }
+
+    /// The last particles CSV.
+    pub(crate) fn last_particles(&self) -> Table {
+        let folder = self.path("particles");
+        let files = fs::read_dir(&folder).unwrap_or_else(|error| panic!("{}: {error}", folder.display()));
+        let last = files
+            .map(|entry| entry.expect("an entry").path())
+            .filter(|path| path.extension().is_some_and(|ending| ending == "csv"))
+            .max()
+            .expect("a particles CSV");
+        Table::read(&last)
+    }
+}
+
+/// Numbers of a CSV file by column; cells that are no numbers are NaN.
+pub(crate) struct Table {
+    path: PathBuf,
+    columns: Vec<(String, Vec<f64>)>,
+}
+
+impl Table {
+    fn read(path: &Path) -> Self {
+        let text = fs::read_to_string(path).unwrap_or_else(|error| panic!("{}: {error}", path.display()));
+        let mut lines = text.lines();
+        let header = lines.next().expect("a header");
+        let mut columns: Vec<(String, Vec<f64>)> =
+            header.split(',').map(|name| (name.trim().to_owned(), Vec::new())).collect();
+        for line in lines {
+            for ((_, column), cell) in columns.iter_mut().zip(line.split(',')) {
+                column.push(cell.trim().parse().unwrap_or(f64::NAN));
+            }
+        }
+        Self { path: path.to_owned(), columns }
+    }
+
+    /// A column by name.
+    pub(crate) fn column(&self, name: &str) -> &[f64] {
+        let column = self.columns.iter().find(|(known, _)| known == name);
+        &column.unwrap_or_else(|| panic!("{} has no column {name}", self.path.display())).1
+    }
+
+    fn vectors(&self, names: [&str; 3]) -> Vec<Vector3<f64>> {
+        let [x, y, z] = names.map(|name| self.column(name));
+        (0..x.len()).map(|row| Vector3::new(x[row], y[row], z[row])).collect()
+    }
+
+    /// Positions [m].
+    pub(crate) fn positions(&self) -> Vec<Vector3<f64>> {
+        self.vectors(["x_m", "y_m", "z_m"])
+    }
+
+    /// Fields [V/m].
+    pub(crate) fn field(&self) -> Vec<Vector3<f64>> {
+        self.vectors(["ex_V_per_m", "ey_V_per_m", "ez_V_per_m"])
+    }
+}
