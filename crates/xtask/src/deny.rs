@@ -8,7 +8,8 @@ use std::path::Path;
 pub(crate) fn run(root: &Path) -> Result<()> {
     if !works(&mut cargo(root, &["deny", "--version"])) {
         println!("cargo-deny is missing: installing it (a few minutes, once)");
-        execute(&mut cargo(root, &["install", "--locked", "cargo-deny"]))?;
+        // Unoptimised: it compiles twice as fast and has little to do.
+        execute(&mut cargo(root, &["install", "--locked", "--debug", "cargo-deny"]))?;
     }
     execute(&mut cargo(root, &["deny", "check", "bans", "licenses", "sources"]))?;
     if works(&mut cargo(root, &["deny", "fetch", "db"])) {
