@@ -18,7 +18,7 @@ use serde::{Deserialize, Serialize};
 /// Parameters chosen for a scene. Written to the run folder and reused on resume, so that results never
 /// depend on a stopwatch.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
-#[serde(tag = "method", rename_all = "snake_case")]
+#[serde(rename_all = "snake_case")]
 #[non_exhaustive]
 pub enum Choice {
     /// The truncated sum.

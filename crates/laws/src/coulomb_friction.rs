@@ -1,6 +1,6 @@
 //! Coulomb friction: |F_t| ≤ μ F_n.
 //!
-//! F_t tangential force \[N\]; F_n normal force \[N\], positive when it pushes the bodies apart; a contact that
+//! F_t tangential force [N]; F_n normal force [N], positive when it pushes the bodies apart; a contact that
 //! pulls (F_n < 0) carries no friction; μ friction coefficient, ≥ 0. Static and sliding friction are equal.
 //! Source: Cundall & Strack, Géotechnique 29, 47 (1979).
 //!
@@ -14,14 +14,14 @@
 
 use nalgebra::Vector3;
 
-/// Largest tangential force \[N\]: μ max(F_n, 0).
+/// Largest tangential force [N]: μ max(F_n, 0).
 #[inline]
 #[must_use]
 pub fn largest(friction: f64, normal_force: f64) -> f64 {
     friction * normal_force.max(0.0)
 }
 
-/// The trial tangential force \[N\], shortened to the largest that friction can carry.
+/// The trial tangential force [N], shortened to the largest that friction can carry.
 #[inline]
 #[must_use]
 pub fn limited(trial: Vector3<f64>, friction: f64, normal_force: f64) -> Vector3<f64> {

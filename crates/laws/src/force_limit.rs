@@ -1,6 +1,6 @@
 //! Bound on the electric force: |F_E| ≤ f · m · skin/Δt².
 //!
-//! F_E electric force \[N\]; f factor in [0, 1]; m mass \[kg\]; skin of the neighbour list \[m\]; Δt step \[s\].
+//! F_E electric force [N]; f factor in [0, 1]; m mass [kg]; skin of the neighbour list [m]; Δt step [s].
 //! A force at the bound moves a grain from rest by f·skin/2 in one step, so that no pair is missed by the
 //! list. Longer forces are shortened, their direction kept. Source: the `limit_field_force` option of the
 //! scene contract.
@@ -16,14 +16,14 @@
 
 use nalgebra::Vector3;
 
-/// Largest electric force \[N\] for factor, mass \[kg\], skin \[m\] and step \[s\].
+/// Largest electric force [N] for factor, mass [kg], skin [m] and step [s].
 #[inline]
 #[must_use]
 pub fn largest(factor: f64, mass: f64, skin: f64, step: f64) -> f64 {
     factor * mass * skin / (step * step)
 }
 
-/// The force \[N\] shortened to the bound \[N\], and whether it was.
+/// The force [N] shortened to the bound [N], and whether it was.
 #[inline]
 #[must_use]
 pub fn limited(force: Vector3<f64>, bound: f64) -> (Vector3<f64>, bool) {

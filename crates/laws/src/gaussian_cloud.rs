@@ -2,13 +2,13 @@
 //!
 //! The cloud has the density q (2πσ²)^{-3/2} exp(−r²/2σ²). Fields along r̂ (from the charge to the point):
 //!
-//! E_near = q/(4πεr²) \[erfc u + (2/√π) u e^{−u²}\],  E_cloud = q/(4πεr²) \[erf u − (2/√π) u e^{−u²}\];
+//! E_near = q/(4πεr²) [erfc u + (2/√π) u e^{−u²}],  E_cloud = q/(4πεr²) [erf u − (2/√π) u e^{−u²}];
 //! their sum is the point charge's field. For r ≪ σ the cloud's field is
-//! q r/(4πε) √(2/π)/(3σ³) \[1 − 3u²/5 + 3u⁴/14 − u⁶/18 + …\] and its potential at the centre is
+//! q r/(4πε) √(2/π)/(3σ³) [1 − 3u²/5 + 3u⁴/14 − u⁶/18 + …] and its potential at the centre is
 //! q √(2/π)/(4πεσ).
 //!
-//! q charge \[C\]; r distance \[m\]; σ width \[m\]; ε \[F/m\]. The functions are for q/(4πε) = 1: fields are
-//! given **over r** (E/r, \[1/m³\]), ready to multiply an offset vector; potentials in \[1/m\].
+//! q charge [C]; r distance [m]; σ width [m]; ε [F/m]. The functions are for q/(4πε) = 1: fields are
+//! given **over r** (E/r, [1/m³]), ready to multiply an offset vector; potentials in [1/m].
 //! Range: near part r > 0; cloud r ≥ 0. Source: Hockney & Eastwood, *Computer Simulation Using Particles*,
 //! ch. 8; Essmann et al., J. Chem. Phys. 103, 8577 (1995).
 //!
@@ -29,7 +29,7 @@ const SERIES_BELOW_U: f64 = 0.5;
 /// Terms of the series.
 const SERIES_TERMS: u32 = 12;
 
-/// E_near/r \[1/m³\] of a unit q/(4πε) at distance r > 0 \[m\], width σ \[m\].
+/// E_near/r [1/m³] of a unit q/(4πε) at distance r > 0 [m], width σ [m].
 #[inline]
 #[must_use]
 pub fn near_field_over_r(distance: f64, sigma: f64) -> f64 {
@@ -37,14 +37,14 @@ pub fn near_field_over_r(distance: f64, sigma: f64) -> f64 {
     (erfc(u) + FRAC_2_SQRT_PI * u * (-u * u).exp()) / (distance * distance * distance)
 }
 
-/// V_near \[1/m\] of a unit q/(4πε) at distance r > 0 \[m\], width σ \[m\].
+/// V_near [1/m] of a unit q/(4πε) at distance r > 0 [m], width σ [m].
 #[inline]
 #[must_use]
 pub fn near_potential(distance: f64, sigma: f64) -> f64 {
     erfc(distance / (SQRT_2 * sigma)) / distance
 }
 
-/// E_cloud/r \[1/m³\] of a unit q/(4πε) at distance r ≥ 0 \[m\], width σ \[m\]; series for small r.
+/// E_cloud/r [1/m³] of a unit q/(4πε) at distance r ≥ 0 [m], width σ [m]; series for small r.
 #[must_use]
 pub fn cloud_field_over_r(distance: f64, sigma: f64) -> f64 {
     let u = distance / (SQRT_2 * sigma);
@@ -63,7 +63,7 @@ pub fn cloud_field_over_r(distance: f64, sigma: f64) -> f64 {
     (erf(u) - FRAC_2_SQRT_PI * u * (-u * u).exp()) / (distance * distance * distance)
 }
 
-/// V_cloud \[1/m\] of a unit q/(4πε) at distance r ≥ 0 \[m\], width σ \[m\].
+/// V_cloud [1/m] of a unit q/(4πε) at distance r ≥ 0 [m], width σ [m].
 #[must_use]
 pub fn cloud_potential(distance: f64, sigma: f64) -> f64 {
     let u = distance / (SQRT_2 * sigma);

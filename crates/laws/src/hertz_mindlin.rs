@@ -1,10 +1,10 @@
 //! Hertz–Mindlin contact: F_n = (4/3) Y* √R* δ^{3/2} − γ_n v_n, dF_t = −S_t v_t dt, γ = 2√(5/6) β √(S m*).
 //!
-//! δ overlap \[m\]; Y* effective Young's modulus \[Pa\], 1/Y* = (1−ν_i²)/Y_i + (1−ν_j²)/Y_j; G* effective shear
-//! modulus \[Pa\], 1/G* = (2−ν_i)/G_i + (2−ν_j)/G_j, G = Y/2(1+ν); R* effective radius \[m\],
-//! 1/R* = 1/r_i + 1/r_j (wall: R* = r); m* effective mass \[kg\], likewise; S_n = 2Y*√(R*δ) and
-//! S_t = 8G*√(R*δ) stiffnesses \[N/m\]; β damping ratio (see `restitution`); γ damping coefficient \[N·s/m\];
-//! v_n, v_t relative velocity of the surfaces \[m/s\]. F_n > 0 pushes the bodies apart.
+//! δ overlap [m]; Y* effective Young's modulus [Pa], 1/Y* = (1−ν_i²)/Y_i + (1−ν_j²)/Y_j; G* effective shear
+//! modulus [Pa], 1/G* = (2−ν_i)/G_i + (2−ν_j)/G_j, G = Y/2(1+ν); R* effective radius [m],
+//! 1/R* = 1/r_i + 1/r_j (wall: R* = r); m* effective mass [kg], likewise; S_n = 2Y*√(R*δ) and
+//! S_t = 8G*√(R*δ) stiffnesses [N/m]; β damping ratio (see `restitution`); γ damping coefficient [N·s/m];
+//! v_n, v_t relative velocity of the surfaces [m/s]. F_n > 0 pushes the bodies apart.
 //! Range: δ ≪ r, smooth, elastic. The contact ends at δ = 0, where the damped force pulls slightly.
 //! Sources: Johnson, *Contact Mechanics* (1985), ch. 4 and 7; Tsuji, Tanaka & Ishida, Powder Technol. 71, 239
 //! (1992); Antypov & Elliott, EPL 94, 50004 (2011).
@@ -30,73 +30,73 @@ pub fn effective(a: f64, b: f64) -> f64 {
     a * b / (a + b)
 }
 
-/// Y* \[Pa\] of Young's moduli \[Pa\] and Poisson ratios.
+/// Y* [Pa] of Young's moduli [Pa] and Poisson ratios.
 #[must_use]
 pub fn effective_young(young_i: f64, poisson_i: f64, young_j: f64, poisson_j: f64) -> f64 {
     1.0 / ((1.0 - poisson_i * poisson_i) / young_i + (1.0 - poisson_j * poisson_j) / young_j)
 }
 
-/// G = Y/(2(1 + ν)) \[Pa\].
+/// G = Y/(2(1 + ν)) [Pa].
 #[must_use]
 pub fn shear_modulus(young: f64, poisson: f64) -> f64 {
     young / (2.0 * (1.0 + poisson))
 }
 
-/// G* \[Pa\] of Young's moduli \[Pa\] and Poisson ratios.
+/// G* [Pa] of Young's moduli [Pa] and Poisson ratios.
 #[must_use]
 pub fn effective_shear(young_i: f64, poisson_i: f64, young_j: f64, poisson_j: f64) -> f64 {
     let (g_i, g_j) = (shear_modulus(young_i, poisson_i), shear_modulus(young_j, poisson_j));
     1.0 / ((2.0 - poisson_i) / g_i + (2.0 - poisson_j) / g_j)
 }
 
-/// S_n = 2Y*√(R*δ) \[N/m\].
+/// S_n = 2Y*√(R*δ) [N/m].
 #[inline]
 #[must_use]
 pub fn normal_stiffness(young: f64, radius: f64, overlap: f64) -> f64 {
     2.0 * young * (radius * overlap).sqrt()
 }
 
-/// S_t = 8G*√(R*δ) \[N/m\].
+/// S_t = 8G*√(R*δ) [N/m].
 #[inline]
 #[must_use]
 pub fn tangential_stiffness(shear: f64, radius: f64, overlap: f64) -> f64 {
     8.0 * shear * (radius * overlap).sqrt()
 }
 
-/// Elastic normal force (4/3)Y*√R* δ^{3/2} \[N\].
+/// Elastic normal force (4/3)Y*√R* δ^{3/2} [N].
 #[inline]
 #[must_use]
 pub fn normal_force(young: f64, radius: f64, overlap: f64) -> f64 {
     4.0 / 3.0 * young * (radius * overlap).sqrt() * overlap
 }
 
-/// Elastic energy of the normal spring (8/15)Y*√R* δ^{5/2} \[J\].
+/// Elastic energy of the normal spring (8/15)Y*√R* δ^{5/2} [J].
 #[inline]
 #[must_use]
 pub fn normal_energy(young: f64, radius: f64, overlap: f64) -> f64 {
     8.0 / 15.0 * young * (radius * overlap).sqrt() * overlap * overlap
 }
 
-/// γ = 2√(5/6) β √(S m*) \[N·s/m\].
+/// γ = 2√(5/6) β √(S m*) [N·s/m].
 #[inline]
 #[must_use]
 pub fn damping(damping_ratio: f64, stiffness: f64, mass: f64) -> f64 {
     DAMPING_FACTOR * damping_ratio * (stiffness * mass).sqrt()
 }
 
-/// Duration \[s\] of an elastic head-on collision: 2.868 (m*²/(R* Y*² v))^{1/5}, v approach speed \[m/s\].
+/// Duration [s] of an elastic head-on collision: 2.868 (m*²/(R* Y*² v))^{1/5}, v approach speed [m/s].
 #[must_use]
 pub fn contact_time(young: f64, radius: f64, mass: f64, speed: f64) -> f64 {
     CONTACT_TIME_FACTOR * (mass * mass / (radius * young * young * speed)).powf(0.2)
 }
 
-/// Largest overlap \[m\] of an elastic head-on collision: (15 m* v²/(16 Y* √R*))^{2/5}.
+/// Largest overlap [m] of an elastic head-on collision: (15 m* v²/(16 Y* √R*))^{2/5}.
 #[must_use]
 pub fn largest_overlap(young: f64, radius: f64, mass: f64, speed: f64) -> f64 {
     (15.0 * mass * speed * speed / (16.0 * young * radius.sqrt())).powf(0.4)
 }
 
-/// Largest overlap \[m\] of a damped head-on collision, 0 ≤ β < 1:
+/// Largest overlap [m] of a damped head-on collision, 0 ≤ β < 1:
 /// δ_max^{5/4} = (v/ω) exp(−(β/√(1−β²)) acos β), ω = √(4k/(5m*)), k = (4/3)Y*√R*
 /// (Antypov & Elliott map the contact on a damped linear oscillator).
 #[must_use]

@@ -1,7 +1,7 @@
 //! Charge before a plane wall: grounded F = −q²/(16πεd²), towards the wall; insulating (E·n = 0) the opposite.
 //!
 //! The wall is replaced by an image charge at the mirror point: −q behind a grounded conductor, +q behind an
-//! ideal insulator. q charge \[C\]; d distance of the charge from the wall \[m\], d > 0; ε \[F/m\]. The
+//! ideal insulator. q charge [C]; d distance of the charge from the wall [m], d > 0; ε [F/m]. The
 //! force's sign is along the normal that points from the wall to the charge. Range: infinite plane.
 //! Source: Jackson, *Classical Electrodynamics*, 3rd ed., §2.1.
 //!
@@ -34,19 +34,19 @@ impl PlaneWall {
     }
 }
 
-/// Mirror point \[m\] of `position` in the plane through `point` with the unit `normal`.
+/// Mirror point [m] of `position` in the plane through `point` with the unit `normal`.
 #[must_use]
 pub fn mirror_point(position: Vector3<f64>, point: Vector3<f64>, normal: Vector3<f64>) -> Vector3<f64> {
     position - normal * (2.0 * (position - point).dot(&normal))
 }
 
-/// Normal field \[V/m\] that the image makes at its charge, distance d \[m\], k = 1/(4πε) \[V·m/C\].
+/// Normal field [V/m] that the image makes at its charge, distance d [m], k = 1/(4πε) [V·m/C].
 #[must_use]
 pub fn field_at_charge(coulomb_constant: f64, charge: f64, distance: f64, wall: PlaneWall) -> f64 {
     wall.image_factor() * coulomb_constant * charge / (4.0 * distance * distance)
 }
 
-/// Normal force \[N\] on the charge, distance d \[m\], k = 1/(4πε) \[V·m/C\]; negative pulls to the wall.
+/// Normal force [N] on the charge, distance d [m], k = 1/(4πε) [V·m/C]; negative pulls to the wall.
 #[must_use]
 pub fn force_on_charge(coulomb_constant: f64, charge: f64, distance: f64, wall: PlaneWall) -> f64 {
     charge * field_at_charge(coulomb_constant, charge, distance, wall)

@@ -1,7 +1,7 @@
 //! Field of a point charge: E = q r̂/(4πεr²), V = q/(4πεr).
 //!
-//! q charge \[C\]; r distance \[m\], r > 0; r̂ unit vector from the charge to the point; ε = ε₀εr \[F/m\].
-//! E \[V/m\] points away from positive charge. Functions take k = 1/(4πε) \[V·m/C\]
+//! q charge [C]; r distance [m], r > 0; r̂ unit vector from the charge to the point; ε = ε₀εr [F/m].
+//! E [V/m] points away from positive charge. Functions take k = 1/(4πε) [V·m/C]
 //! (`amberfield_core::constants::coulomb_constant`) so that a sum multiplies by it once.
 //! Range: any r > 0; the caller skips the charge itself by index.
 //! Source: Jackson, *Classical Electrodynamics*, 3rd ed., §1.2.
@@ -17,7 +17,7 @@
 
 use nalgebra::Vector3;
 
-/// E \[V/m\] at the point `offset` = point − charge \[m\], k = 1/(4πε) \[V·m/C\].
+/// E [V/m] at the point `offset` = point − charge [m], k = 1/(4πε) [V·m/C].
 #[inline]
 #[must_use]
 pub fn field(coulomb_constant: f64, charge: f64, offset: Vector3<f64>) -> Vector3<f64> {
@@ -25,7 +25,7 @@ pub fn field(coulomb_constant: f64, charge: f64, offset: Vector3<f64>) -> Vector
     offset * (coulomb_constant * charge / (r2 * r2.sqrt()))
 }
 
-/// V \[V\] at distance r \[m\], k = 1/(4πε) \[V·m/C\].
+/// V [V] at distance r [m], k = 1/(4πε) [V·m/C].
 #[inline]
 #[must_use]
 pub fn potential(coulomb_constant: f64, charge: f64, distance: f64) -> f64 {

@@ -1,10 +1,10 @@
 //! Rolling friction, elastic–plastic spring and dashpot: M_k ← M_k − k_r ω_r Δt, |M_k| ≤ μ_r R* F_n,
 //! M_d = −C_r ω_r.
 //!
-//! M \[N·m\] torque on i, −M on j; ω_r relative angular velocity ω_i − ω_j \[rad/s\], rolling and twist about the
-//! normal alike, else a grain could spin like a top forever; k_r = 2.25 S_n (μ_r R*)² rolling stiffness \[N·m/rad\]; S_n normal stiffness \[N/m\]; R* effective
-//! radius \[m\]; μ_r rolling friction coefficient; F_n normal force \[N\]; C_r = 2 η √(I_r k_r) \[N·m·s\],
-//! I_r reduced moment of inertia about the contact \[kg·m²\], η = 0.3. The dashpot acts only while the spring
+//! M [N·m] torque on i, −M on j; ω_r relative angular velocity ω_i − ω_j [rad/s], rolling and twist about the
+//! normal alike, else a grain could spin like a top forever; k_r = 2.25 S_n (μ_r R*)² rolling stiffness [N·m/rad]; S_n normal stiffness [N/m]; R* effective
+//! radius [m]; μ_r rolling friction coefficient; F_n normal force [N]; C_r = 2 η √(I_r k_r) [N·m·s],
+//! I_r reduced moment of inertia about the contact [kg·m²], η = 0.3. The dashpot acts only while the spring
 //! is below its limit. A constant directional torque (type A) would chatter about zero in a heap at rest; the
 //! spring gives rest without creeping energy. Source: Ai, Chen, Rotter & Ooi, Powder Technol. 206, 269 (2011),
 //! type C; Iwashita & Oda, J. Eng. Mech. 124, 285 (1998).
@@ -20,7 +20,7 @@ use nalgebra::Vector3;
 /// Damping ratio η of the rolling dashpot, the value that Ai et al. recommend.
 pub const ROLLING_DAMPING_RATIO: f64 = 0.3;
 
-/// k_r \[N·m/rad\] for S_n \[N/m\], μ_r and R* \[m\].
+/// k_r [N·m/rad] for S_n [N/m], μ_r and R* [m].
 #[inline]
 #[must_use]
 pub fn stiffness(normal_stiffness: f64, rolling_friction: f64, effective_radius: f64) -> f64 {
@@ -28,22 +28,22 @@ pub fn stiffness(normal_stiffness: f64, rolling_friction: f64, effective_radius:
     2.25 * normal_stiffness * arm * arm
 }
 
-/// Largest rolling torque \[N·m\]: μ_r R* max(F_n, 0).
+/// Largest rolling torque [N·m]: μ_r R* max(F_n, 0).
 #[inline]
 #[must_use]
 pub fn largest(rolling_friction: f64, effective_radius: f64, normal_force: f64) -> f64 {
     rolling_friction * effective_radius * normal_force.max(0.0)
 }
 
-/// C_r \[N·m·s/rad\] for the reduced inertia \[kg·m²\] and k_r \[N·m/rad\].
+/// C_r [N·m·s/rad] for the reduced inertia [kg·m²] and k_r [N·m/rad].
 #[inline]
 #[must_use]
 pub fn damping(reduced_inertia: f64, stiffness: f64) -> f64 {
     2.0 * ROLLING_DAMPING_RATIO * (reduced_inertia * stiffness).sqrt()
 }
 
-/// One step of the spring: new spring torque and total torque on i \[N·m\]. `turn` = ω_r Δt \[rad\],
-/// `rolling_velocity` = ω_r \[rad/s\], `bound` as [`largest`] gives it.
+/// One step of the spring: new spring torque and total torque on i [N·m]. `turn` = ω_r Δt [rad],
+/// `rolling_velocity` = ω_r [rad/s], `bound` as [`largest`] gives it.
 #[inline]
 #[must_use]
 pub fn advance(

@@ -1,13 +1,13 @@
 //! Limits on the time step: Rayleigh, Hertz, electric pair, wall image, plasma.
 //!
-//! * Rayleigh Δt = π r √(ρ/G)/(0.1631 ν + 0.8766): a surface wave crosses a grain. r \[m\], ρ \[kg/m³\], G \[Pa\].
+//! * Rayleigh Δt = π r √(ρ/G)/(0.1631 ν + 0.8766): a surface wave crosses a grain. r [m], ρ [kg/m³], G [Pa].
 //! * Hertz: duration of the elastic contact at the largest relative speed (`hertz_mindlin::contact_time`).
 //! * Stiffness: Δt = 2√(m*/k), stability limit of velocity Verlet; electric pair k = |q_i q_j|/(2πεr³),
-//!   wall image k = q²/(8πεd³) \[N/m\].
+//!   wall image k = q²/(8πεd³) [N/m].
 //! * Plasma: ω_p = √(n q²/(m ε)) of the cloud; the interval between field evaluations Δt_c < 0.2/ω_p is
-//!   accurate, < 2/ω_p stable. n number density \[1/m³\].
+//!   accurate, < 2/ω_p stable. n number density [1/m³].
 //!
-//! All limits in \[s\], positive; `f64::INFINITY` where there is no charge. Sources: Ning & Ghadiri, Chem. Eng.
+//! All limits in [s], positive; `f64::INFINITY` where there is no charge. Sources: Ning & Ghadiri, Chem. Eng.
 //! Sci. 61, 5991 (2006); Hairer, Lubich & Wanner, *Geometric Numerical Integration*, §I.1.4; Birdsall &
 //! Langdon, *Plasma Physics via Computer Simulation*, ch. 4.
 //!
@@ -24,32 +24,32 @@ pub const PLASMA_ACCURATE: f64 = 0.2;
 /// Δt_c ω_p below which the held field is stable.
 pub const PLASMA_STABLE: f64 = 2.0;
 
-/// Rayleigh time \[s\] of radius \[m\], density \[kg/m³\], shear modulus \[Pa\] and Poisson ratio.
+/// Rayleigh time [s] of radius [m], density [kg/m³], shear modulus [Pa] and Poisson ratio.
 #[must_use]
 pub fn rayleigh(radius: f64, density: f64, shear_modulus: f64, poisson: f64) -> f64 {
     PI * radius * (density / shear_modulus).sqrt() / (0.1631 * poisson + 0.8766)
 }
 
-/// 2√(m/k) \[s\] for mass \[kg\] and stiffness \[N/m\].
+/// 2√(m/k) [s] for mass [kg] and stiffness [N/m].
 #[must_use]
 pub fn stiffness_limit(mass: f64, stiffness: f64) -> f64 {
     2.0 * (mass / stiffness).sqrt()
 }
 
-/// k = |q_i q_j|/(2πεr³) \[N/m\]: derivative of Coulomb's force at distance r \[m\].
+/// k = |q_i q_j|/(2πεr³) [N/m]: derivative of Coulomb's force at distance r [m].
 #[must_use]
 pub fn pair_stiffness(charge_i: f64, charge_j: f64, permittivity: f64, distance: f64) -> f64 {
     (charge_i * charge_j).abs() / (2.0 * PI * permittivity * distance.powi(3))
 }
 
-/// k = q²/(8πεd³) \[N/m\]: derivative of the image force at distance d \[m\] from a plane conductor.
+/// k = q²/(8πεd³) [N/m]: derivative of the image force at distance d [m] from a plane conductor.
 #[must_use]
 pub fn wall_image_stiffness(charge: f64, permittivity: f64, distance: f64) -> f64 {
     charge * charge / (8.0 * PI * permittivity * distance.powi(3))
 }
 
-/// ω_p = √(Σ(q²/m)/(V ε)) \[rad/s\]: `charge_squared_over_mass` = Σ q²/m \[C²/kg\] over the grains in the volume
-/// \[m³\]; for equal grains this is √(n q²/(mε)).
+/// ω_p = √(Σ(q²/m)/(V ε)) [rad/s]: `charge_squared_over_mass` = Σ q²/m [C²/kg] over the grains in the volume
+/// [m³]; for equal grains this is √(n q²/(mε)).
 #[must_use]
 pub fn plasma_frequency(charge_squared_over_mass: f64, volume: f64, permittivity: f64) -> f64 {
     (charge_squared_over_mass / (volume * permittivity)).sqrt()
