@@ -61,7 +61,7 @@ pub(crate) struct Inbound {
 pub(crate) struct Neighbours {
     cells: Cells,
     pub(crate) shifts: [[f64; 3]; 32],
-    features: Features,
+    pub(crate) features: Features,
     pub(crate) lists: Vec<ChunkList>,
     previous: Vec<ChunkList>,
     pub(crate) inbox: Vec<Vec<Inbound>>,

@@ -4,7 +4,7 @@ use crate::cells::{INDEX_BITS, INDEX_MASK};
 use crate::chunks::{CHUNK, chunk_count, for_each_chunk, is_parallel};
 use crate::contact_law::{Contact, respond};
 use crate::grains::Grains;
-use crate::material_pairs::{Features, PairTable};
+use crate::material_pairs::PairTable;
 use crate::neighbours::{ChunkList, Hit, NO_PUSH, Neighbours, Push};
 use amberfield_core::Vector3;
 
@@ -22,12 +22,12 @@ pub(crate) fn pair_forces(
     grains: &Grains,
     neighbours: &mut Neighbours,
     table: &PairTable,
-    features: Features,
     periodic: bool,
     step: f64,
     force: &mut [Vector3<f64>],
     torque: &mut [Vector3<f64>],
 ) {
+    let features = neighbours.features;
     let scene = Scene { grains, shifts: &neighbours.shifts, table, step };
     let lists = &mut neighbours.lists;
     macro_rules! run {
@@ -116,6 +116,41 @@ fn offset_of<const PERIODIC: bool>(scene: &Scene<'_>, a: &[f64; 4], b: &[f64; 4]
     if PERIODIC { d + Vector3::from(scene.shifts[(code >> INDEX_BITS) as usize]) } else { d }
 }
 
+/// Geometry and motion of the contact of i and j, and the distances of their centres from it.
+#[inline(always)]
+fn contact_of<const FRICTION: bool, const ROLLING: bool, const PERIODIC: bool>(
+    scene: &Scene<'_>,
+    i: usize,
+    j: usize,
+    code: u32,
+) -> (Contact, f64, f64) {
+    let grains = scene.grains;
+    let (a, b) = (&grains.centre[i], &grains.centre[j]);
+    let offset = offset_of::<PERIODIC>(scene, a, b, code);
+    let distance = offset.norm();
+    let overlap = a[3] + b[3] - distance;
+    let (arm_i, arm_j) = (a[3] - 0.5 * overlap, b[3] - 0.5 * overlap);
+    let (inverse_i, inverse_j) = (grains.inverse_mass[i], grains.inverse_mass[j]);
+    let mut contact = Contact {
+        overlap,
+        normal: offset / distance,
+        velocity: grains.velocity[i] - grains.velocity[j],
+        spin: Vector3::zeros(),
+        turning: Vector3::zeros(),
+        inverse_radius: (a[3] + b[3]) / (a[3] * b[3]),
+        inverse_mass: inverse_i + inverse_j,
+        inverse_moment: 0.0,
+    };
+    if FRICTION {
+        contact.spin = grains.angular[i] * arm_i + grains.angular[j] * arm_j;
+    }
+    if ROLLING {
+        contact.turning = grains.angular[i] - grains.angular[j];
+        contact.inverse_moment = inverse_i / (a[3] * a[3]) + inverse_j / (b[3] * b[3]);
+    }
+    (contact, arm_i, arm_j)
+}
+
 fn chunk<const FRICTION: bool, const ROLLING: bool, const DAMPING: bool, const PERIODIC: bool>(
     scene: &Scene<'_>,
     k: usize,
@@ -136,30 +171,7 @@ fn chunk<const FRICTION: bool, const ROLLING: bool, const DAMPING: bool, const P
         let i = first + local;
         let code = list.partner[entry];
         let j = (code & INDEX_MASK) as usize;
-        let (a, b) = (&grains.centre[i], &grains.centre[j]);
-        let offset = offset_of::<PERIODIC>(scene, a, b, code);
-        let distance = offset.norm();
-        let overlap = a[3] + b[3] - distance;
-        let normal = offset / distance;
-        let (arm_i, arm_j) = (a[3] - 0.5 * overlap, b[3] - 0.5 * overlap);
-        let (inverse_i, inverse_j) = (grains.inverse_mass[i], grains.inverse_mass[j]);
-        let mut contact = Contact {
-            overlap,
-            normal,
-            velocity: grains.velocity[i] - grains.velocity[j],
-            spin: Vector3::zeros(),
-            turning: Vector3::zeros(),
-            inverse_radius: (a[3] + b[3]) / (a[3] * b[3]),
-            inverse_mass: inverse_i + inverse_j,
-            inverse_moment: 0.0,
-        };
-        if FRICTION {
-            contact.spin = grains.angular[i] * arm_i + grains.angular[j] * arm_j;
-        }
-        if ROLLING {
-            contact.turning = grains.angular[i] - grains.angular[j];
-            contact.inverse_moment = inverse_i / (a[3] * a[3]) + inverse_j / (b[3] * b[3]);
-        }
+        let (contact, arm_i, arm_j) = contact_of::<FRICTION, ROLLING, PERIODIC>(scene, i, j, code);
         let (mut spring, mut rolling) = ([0.0; 4], [0.0; 3]);
         if (FRICTION || ROLLING) && list.touching[entry] {
             if FRICTION {

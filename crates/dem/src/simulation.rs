@@ -87,7 +87,6 @@ impl Simulation {
             &self.grains,
             &mut self.neighbours,
             &self.table,
-            self.features,
             self.periodic,
             step,
             &mut self.new_force,

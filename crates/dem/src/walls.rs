@@ -1,6 +1,7 @@
 //! Contacts with plane and mesh walls.
 
-use crate::cells::NO_SHIFT;
+mod near;
+
 use crate::chunks::{CHUNK, chunk_count, for_each_chunk, is_parallel};
 use crate::contact_law::{Contact, respond};
 use crate::error::DemError;
@@ -8,7 +9,7 @@ use crate::grains::Grains;
 use crate::material_pairs::{Features, PairTable};
 use crate::mesh_wall::{Candidate, Found, MOST_CONTACTS, MeshWall};
 use crate::state::WallHistory;
-use amberfield_core::{Axis, Domain, Particles, Vector3, Wall, WallShape};
+use amberfield_core::{Domain, Particles, Vector3, Wall, WallShape};
 use std::ops::Range;
 
 /// Cosine of the largest turn between two steps for which a contact is still the same (60°).
@@ -249,68 +250,6 @@ impl Walls {
 }
 
 impl ChunkWalls {
-    #[expect(clippy::too_many_arguments, reason = "plain data of one scan, used once")]
-    fn fill(
-        &mut self,
-        k: usize,
-        solids: &[Solid],
-        shifts: &[[f64; 3]; 32],
-        domain: &Domain,
-        grains: &Grains,
-        skin: f64,
-        histories: &[WallHistory],
-    ) {
-        self.entries.clear();
-        self.triangles.clear();
-        self.contacts.clear();
-        let mut near = Vec::new();
-        let mut most = 0;
-        for i in k * CHUNK..grains.len().min((k + 1) * CHUNK) {
-            let (centre, reach) = (grains.position(i), grains.centre[i][3] + skin);
-            for (wall, solid) in solids.iter().enumerate() {
-                let first = self.triangles.len();
-                let room = match &solid.shape {
-                    Shape::Plane { point, normal } => usize::from((centre - point).dot(normal) < reach),
-                    Shape::Mesh(mesh) => {
-                        for (code, image) in images(domain, shifts, centre, reach) {
-                            near.clear();
-                            mesh.within(image, reach, &mut near);
-                            self.triangles.extend(near.iter().map(|&t| (t, code)));
-                        }
-                        if self.triangles.len() > first { MOST_CONTACTS } else { 0 }
-                    }
-                };
-                most = most.max(self.triangles.len() - first);
-                if room > 0 {
-                    let contacts = self.contacts.len();
-                    self.contacts.resize(contacts + room, WallContact::default());
-                    let original = grains.original[i];
-                    let from = histories.partition_point(|h| (h.grain, h.wall) < (original, wall as u32));
-                    let mut count = 0;
-                    let same = histories[from..].iter().take_while(|h| h.grain == original);
-                    for h in same.take_while(|h| h.wall == wall as u32).take(room) {
-                        self.contacts[contacts + count] = WallContact {
-                            normal: h.normal.into(),
-                            overlap: h.overlap,
-                            spring: h.spring,
-                            rolling: h.rolling,
-                        };
-                        count += 1;
-                    }
-                    self.entries.push(Entry {
-                        local: (i - k * CHUNK) as u32,
-                        wall: wall as u32,
-                        triangles: first as u32..self.triangles.len() as u32,
-                        contacts: contacts as u32,
-                        count: count as u32,
-                    });
-                }
-            }
-        }
-        self.scratch.clear();
-        self.scratch.reserve(most);
-    }
-
     #[expect(clippy::too_many_arguments, reason = "the arrays of one chunk, split for the borrow checker")]
     fn forces<const FRICTION: bool, const ROLLING: bool, const DAMPING: bool>(
         &mut self,
@@ -345,56 +284,57 @@ impl ChunkWalls {
                 }
             };
             let kept = &mut contacts[entry.contacts as usize..];
-            let old = take_old(kept, entry.count as usize);
-            let mut unused = [true; MOST_CONTACTS];
-            let inverse_mass = grains.inverse_mass[i];
-            for (n, found) in found[..count].iter().enumerate() {
-                let mut new =
-                    WallContact { normal: found.normal, overlap: found.overlap, ..WallContact::default() };
-                if let Some(m) = best_match(&old[..entry.count as usize], &unused, &found.normal) {
-                    unused[m] = false;
-                    (new.spring, new.rolling) = (old[m].spring, old[m].rolling);
-                }
-                let arm = radius - found.overlap;
-                let (spin, turning) = if FRICTION || ROLLING {
-                    (grains.angular[i] * arm, grains.angular[i])
-                } else {
-                    (Vector3::zeros(), Vector3::zeros())
-                };
-                let contact = Contact {
-                    overlap: found.overlap,
-                    normal: found.normal,
-                    velocity: grains.velocity[i],
-                    spin,
-                    turning,
-                    inverse_radius: 1.0 / radius,
-                    inverse_mass,
-                    inverse_moment: inverse_mass / (radius * radius),
-                };
-                let pair = table.get(grains.material[i], solid.material);
-                let response = respond::<FRICTION, ROLLING, DAMPING>(
-                    &contact,
-                    pair,
-                    step,
-                    &mut new.spring,
-                    &mut new.rolling,
-                );
+            renew(kept, entry.count as usize, &found[..count]);
+            entry.count = count as u32;
+            let pair = table.get(grains.material[i], solid.material);
+            for wall_contact in &mut kept[..count] {
+                let (contact, arm) = contact_of::<FRICTION, ROLLING>(grains, i, wall_contact);
+                let WallContact { spring, rolling, .. } = wall_contact;
+                let response = respond::<FRICTION, ROLLING, DAMPING>(&contact, pair, step, spring, rolling);
                 force[local] += response.force;
                 if FRICTION || ROLLING {
                     torque[local] += response.twist * arm + response.rolling;
                 }
-                kept[n] = new;
             }
-            entry.count = count as u32;
         }
     }
 }
 
-/// Copy of the contacts of the last step.
-fn take_old(kept: &[WallContact], count: usize) -> [WallContact; MOST_CONTACTS] {
+/// Geometry and motion of a grain's contact with a wall at rest, and the centre's distance from it.
+#[inline(always)]
+fn contact_of<const FRICTION: bool, const ROLLING: bool>(
+    grains: &Grains,
+    i: usize,
+    found: &WallContact,
+) -> (Contact, f64) {
+    let (radius, inverse_mass) = (grains.centre[i][3], grains.inverse_mass[i]);
+    let arm = radius - found.overlap;
+    let turning = if FRICTION || ROLLING { grains.angular[i] } else { Vector3::zeros() };
+    let contact = Contact {
+        overlap: found.overlap,
+        normal: found.normal,
+        velocity: grains.velocity[i],
+        spin: turning * arm,
+        turning,
+        inverse_radius: 1.0 / radius,
+        inverse_mass,
+        inverse_moment: inverse_mass / (radius * radius),
+    };
+    (contact, arm)
+}
+
+/// Replaces the contacts of the last step by those found now; springs go to the nearest direction.
+fn renew(kept: &mut [WallContact], old_count: usize, found: &[Found]) {
     let mut old = [WallContact::default(); MOST_CONTACTS];
-    old[..count].copy_from_slice(&kept[..count]);
-    old
+    old[..old_count].copy_from_slice(&kept[..old_count]);
+    let mut unused = [true; MOST_CONTACTS];
+    for (kept, found) in kept.iter_mut().zip(found) {
+        *kept = WallContact { normal: found.normal, overlap: found.overlap, ..WallContact::default() };
+        if let Some(m) = best_match(&old[..old_count], &unused, &found.normal) {
+            unused[m] = false;
+            (kept.spring, kept.rolling) = (old[m].spring, old[m].rolling);
+        }
+    }
 }
 
 /// The unused old contact whose direction is nearest.
@@ -408,25 +348,4 @@ fn best_match(old: &[WallContact], unused: &[bool; MOST_CONTACTS], normal: &Vect
         }
     }
     best
-}
-
-/// The centre and its periodic images that can reach into the domain, with their shift codes.
-fn images<'a>(
-    domain: &'a Domain,
-    shifts: &'a [[f64; 3]; 32],
-    centre: Vector3<f64>,
-    reach: f64,
-) -> impl Iterator<Item = (u32, Vector3<f64>)> + 'a {
-    let (min, max) = (domain.min(), domain.max());
-    (0..27_u32).filter_map(move |code| {
-        let digits = [code / 9, code / 3 % 3, code % 3];
-        let wanted = code == NO_SHIFT
-            || (0..3).all(|axis| match (digits[axis], domain.is_periodic(Axis::ALL[axis])) {
-                (1, _) => true,
-                (0, true) => max[axis] - centre[axis] <= reach,
-                (2, true) => centre[axis] - min[axis] <= reach,
-                _ => false,
-            });
-        wanted.then(|| (code, centre + Vector3::from(shifts[code as usize])))
-    })
 }

@@ -36,7 +36,7 @@ fn collide(e: f64, speed: f64, step: f64) -> Collision {
         grain(1, [-x, 0.0, 0.0], [0.5 * speed, 0.0, 0.0]),
         grain(2, [x, 0.0, 0.0], [-0.5 * speed, 0.0, 0.0]),
     ];
-    let mut simulation = Simulation::new(setup(grains, material(e, 0.0, 0.0), step)).unwrap();
+    let mut simulation = Simulation::new(setup(grains, material(e, 0.0, 0.0), step)).expect("a good scene");
     let (mut last, mut peak) = ((0.0, -1.0), 0.0_f64);
     let (mut begin, mut touched) = (0.0, false);
     loop {
@@ -150,7 +150,7 @@ fn oblique(e: f64, friction: f64, down: f64, along: f64) -> (Vector3<f64>, Vecto
         1e-7,
     );
     scene.walls = vec![floor()];
-    let mut simulation = Simulation::new(scene).unwrap();
+    let mut simulation = Simulation::new(scene).expect("a good scene");
     let mut touched = false;
     loop {
         run(&mut simulation, 1);

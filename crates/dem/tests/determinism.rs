@@ -16,8 +16,8 @@ fn bed() -> Setup {
     let mut scene = setup(grains, material(0.7, 0.4, 0.05), 5e-6);
     let mut faces = [[Boundary::Periodic; 2]; 3];
     faces[2] = [Boundary::Open; 2];
-    scene.domain =
-        Domain::new(Vector3::new(-half, -half, -RADIUS), Vector3::new(half, half, top), faces).unwrap();
+    scene.domain = Domain::new(Vector3::new(-half, -half, -RADIUS), Vector3::new(half, half, top), faces)
+        .expect("a good scene");
     scene.walls = vec![mesh_floor(20.0 * RADIUS, 9)];
     scene.time.gravity_m_s2 = Vector3::new(0.5, 0.0, -9.81);
     scene
@@ -34,9 +34,9 @@ fn bits(particles: &Particles) -> Vec<u64> {
 }
 
 fn run_with(threads: usize, steps: u64) -> Vec<u64> {
-    let pool = rayon::ThreadPoolBuilder::new().num_threads(threads).build().unwrap();
+    let pool = rayon::ThreadPoolBuilder::new().num_threads(threads).build().expect("a good scene");
     pool.install(|| {
-        let mut simulation = Simulation::new(bed()).unwrap();
+        let mut simulation = Simulation::new(bed()).expect("a good scene");
         run(&mut simulation, steps);
         bits(&simulation.particles())
     })

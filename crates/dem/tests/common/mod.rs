@@ -1,22 +1,16 @@
 //! Scenes that several tests share.
-#![allow(
-    dead_code,
-    missing_docs,
-    unreachable_pub,
-    clippy::allow_attributes,
-    reason = "not every test uses every helper"
-)]
+#![expect(dead_code, reason = "no test uses every helper")]
 
 use amberfield_core::{
-    Boundary, Domain, Grain, GroupId, Material, MaterialId, OnExit, Particles, Skin, Step, TimeSettings,
-    TriangleMesh, Vector3, Wall, WallCharging, WallShape,
+    Boundary, Domain, Grain, GroupId, Material, MaterialId, OnExit, Skin, Step, TimeSettings, TriangleMesh,
+    Vector3, Wall, WallCharging, WallShape,
 };
 use amberfield_dem::{Setup, Simulation};
 
-pub const RADIUS: f64 = 1e-3;
-pub const DENSITY: f64 = 2500.0;
+pub(crate) const RADIUS: f64 = 1e-3;
+pub(crate) const DENSITY: f64 = 2500.0;
 
-pub fn material(restitution: f64, friction: f64, rolling_friction: f64) -> Material {
+pub(crate) fn material(restitution: f64, friction: f64, rolling_friction: f64) -> Material {
     Material {
         name: "glass".into(),
         density_kg_m3: DENSITY,
@@ -30,7 +24,7 @@ pub fn material(restitution: f64, friction: f64, rolling_friction: f64) -> Mater
     }
 }
 
-pub fn grain(id: u64, position: [f64; 3], velocity: [f64; 3]) -> Grain {
+pub(crate) fn grain(id: u64, position: [f64; 3], velocity: [f64; 3]) -> Grain {
     Grain {
         id,
         position: position.into(),
@@ -44,15 +38,15 @@ pub fn grain(id: u64, position: [f64; 3], velocity: [f64; 3]) -> Grain {
     }
 }
 
-pub fn mass(radius: f64) -> f64 {
+pub(crate) fn mass(radius: f64) -> f64 {
     4.0 / 3.0 * std::f64::consts::PI * radius.powi(3) * DENSITY
 }
 
-pub fn domain(half: f64, boundary: Boundary) -> Domain {
-    Domain::new(Vector3::repeat(-half), Vector3::repeat(half), [[boundary; 2]; 3]).unwrap()
+pub(crate) fn domain(half: f64, boundary: Boundary) -> Domain {
+    Domain::new(Vector3::repeat(-half), Vector3::repeat(half), [[boundary; 2]; 3]).expect("a good box")
 }
 
-pub fn time(step_s: f64) -> TimeSettings {
+pub(crate) fn time(step_s: f64) -> TimeSettings {
     TimeSettings {
         step: Step::Seconds(step_s),
         end_s: 1.0,
@@ -64,7 +58,7 @@ pub fn time(step_s: f64) -> TimeSettings {
     }
 }
 
-pub fn setup(grains: Vec<Grain>, material: Material, step_s: f64) -> Setup {
+pub(crate) fn setup(grains: Vec<Grain>, material: Material, step_s: f64) -> Setup {
     Setup {
         domain: domain(1.0, Boundary::Open),
         materials: vec![material],
@@ -75,17 +69,17 @@ pub fn setup(grains: Vec<Grain>, material: Material, step_s: f64) -> Setup {
     }
 }
 
-pub fn wall(shape: WallShape) -> Wall {
+pub(crate) fn wall(shape: WallShape) -> Wall {
     Wall { name: "wall".into(), shape, material: MaterialId(0), charging: WallCharging::None }
 }
 
 /// z = 0, grains above.
-pub fn floor() -> Wall {
+pub(crate) fn floor() -> Wall {
     wall(WallShape::Plane { point: Vector3::zeros(), normal: Vector3::z() })
 }
 
 /// z = 0 from −`half` to `half`, in `cells`² squares of two triangles.
-pub fn mesh_floor(half: f64, cells: u32) -> Wall {
+pub(crate) fn mesh_floor(half: f64, cells: u32) -> Wall {
     let n = cells + 1;
     let at = |k: u32| 2.0 * half * f64::from(k) / f64::from(cells) - half;
     let vertices = (0..n * n).map(|k| Vector3::new(at(k % n), at(k / n), 0.0)).collect();
@@ -98,14 +92,14 @@ pub fn mesh_floor(half: f64, cells: u32) -> Wall {
     wall(WallShape::Mesh(TriangleMesh { vertices, triangles }))
 }
 
-pub fn run(simulation: &mut Simulation, steps: u64) {
+pub(crate) fn run(simulation: &mut Simulation, steps: u64) {
     for _ in 0..steps {
-        simulation.step().unwrap();
+        simulation.step().expect("a good step");
     }
 }
 
 /// Grains on a jittered lattice that fills the box from `min` to `max`.
-pub fn lattice(min: [f64; 3], max: [f64; 3], spacing: f64, speed: f64, seed: u64) -> Vec<Grain> {
+pub(crate) fn lattice(min: [f64; 3], max: [f64; 3], spacing: f64, speed: f64, seed: u64) -> Vec<Grain> {
     use rand::{RngExt, SeedableRng};
     let mut random = rand_chacha::ChaCha8Rng::seed_from_u64(seed);
     let counts: Vec<usize> = (0..3).map(|a| ((max[a] - min[a]) / spacing) as usize).collect();
@@ -124,8 +118,4 @@ pub fn lattice(min: [f64; 3], max: [f64; 3], spacing: f64, speed: f64, seed: u64
         }
     }
     grains
-}
-
-pub fn speeds(particles: &Particles) -> Vec<f64> {
-    particles.velocity.iter().map(|v| v.norm()).collect()
 }

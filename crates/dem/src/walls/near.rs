@@ -1,0 +1,94 @@
+//! Which grains are near which walls, and the histories that they keep.
+
+use super::{ChunkWalls, Entry, Shape, Solid, WallContact};
+use crate::cells::NO_SHIFT;
+use crate::chunks::CHUNK;
+use crate::grains::Grains;
+use crate::mesh_wall::MOST_CONTACTS;
+use crate::state::WallHistory;
+use amberfield_core::{Axis, Domain, Vector3};
+
+impl ChunkWalls {
+    #[expect(clippy::too_many_arguments, reason = "plain data of one scan, used once")]
+    pub(super) fn fill(
+        &mut self,
+        k: usize,
+        solids: &[Solid],
+        shifts: &[[f64; 3]; 32],
+        domain: &Domain,
+        grains: &Grains,
+        skin: f64,
+        histories: &[WallHistory],
+    ) {
+        self.entries.clear();
+        self.triangles.clear();
+        self.contacts.clear();
+        let mut near = Vec::new();
+        let mut most = 0;
+        for i in k * CHUNK..grains.len().min((k + 1) * CHUNK) {
+            let (centre, reach) = (grains.position(i), grains.centre[i][3] + skin);
+            for (wall, solid) in solids.iter().enumerate() {
+                let first = self.triangles.len();
+                let room = match &solid.shape {
+                    Shape::Plane { point, normal } => usize::from((centre - point).dot(normal) < reach),
+                    Shape::Mesh(mesh) => {
+                        for (code, image) in images(domain, shifts, centre, reach) {
+                            near.clear();
+                            mesh.within(image, reach, &mut near);
+                            self.triangles.extend(near.iter().map(|&t| (t, code)));
+                        }
+                        if self.triangles.len() > first { MOST_CONTACTS } else { 0 }
+                    }
+                };
+                most = most.max(self.triangles.len() - first);
+                if room > 0 {
+                    let contacts = self.contacts.len();
+                    self.contacts.resize(contacts + room, WallContact::default());
+                    let original = grains.original[i];
+                    let from = histories.partition_point(|h| (h.grain, h.wall) < (original, wall as u32));
+                    let mut count = 0;
+                    let same = histories[from..].iter().take_while(|h| h.grain == original);
+                    for h in same.take_while(|h| h.wall == wall as u32).take(room) {
+                        self.contacts[contacts + count] = WallContact {
+                            normal: h.normal.into(),
+                            overlap: h.overlap,
+                            spring: h.spring,
+                            rolling: h.rolling,
+                        };
+                        count += 1;
+                    }
+                    self.entries.push(Entry {
+                        local: (i - k * CHUNK) as u32,
+                        wall: wall as u32,
+                        triangles: first as u32..self.triangles.len() as u32,
+                        contacts: contacts as u32,
+                        count: count as u32,
+                    });
+                }
+            }
+        }
+        self.scratch.clear();
+        self.scratch.reserve(most);
+    }
+}
+
+/// The centre and its periodic images that can reach into the domain, with their shift codes.
+fn images<'a>(
+    domain: &'a Domain,
+    shifts: &'a [[f64; 3]; 32],
+    centre: Vector3<f64>,
+    reach: f64,
+) -> impl Iterator<Item = (u32, Vector3<f64>)> + 'a {
+    let (min, max) = (domain.min(), domain.max());
+    (0..27_u32).filter_map(move |code| {
+        let digits = [code / 9, code / 3 % 3, code % 3];
+        let wanted = code == NO_SHIFT
+            || (0..3).all(|axis| match (digits[axis], domain.is_periodic(Axis::ALL[axis])) {
+                (1, _) => true,
+                (0, true) => max[axis] - centre[axis] <= reach,
+                (2, true) => centre[axis] - min[axis] <= reach,
+                _ => false,
+            });
+        wanted.then(|| (code, centre + Vector3::from(shifts[code as usize])))
+    })
+}
