@@ -15,8 +15,7 @@ use std::time::Instant;
 const RADIUS: f64 = 1e-3;
 const DENSITY: f64 = 2500.0;
 
-/// Grains at random places in a periodic box of the volume fraction that `count` grains will have, small at
-/// first and grown to size by the run itself: overlaps relax under heavy damping.
+/// Grains at jittered lattice places in a periodic box of the given volume fraction; dense ones overlap.
 fn setup(count: usize, fraction: f64) -> Setup {
     let volume = count as f64 * 4.0 / 3.0 * std::f64::consts::PI * RADIUS.powi(3) / fraction;
     let length = volume.cbrt();
