@@ -42,6 +42,7 @@ pub(crate) struct ImageCells<T> {
     start: Vec<u32>,
     low: Vector3<f64>,
     width: Vector3<f64>,
+    cells_per_length: Vector3<f64>,
     counts: [usize; 3],
     radius: f64,
 }
@@ -97,6 +98,7 @@ impl<T: Copy + Default> ImageCells<T> {
             divisor *= 1.2;
         }
         self.width = Vector3::from_fn(|axis, _| size[axis] / self.counts[axis] as f64);
+        self.cells_per_length = self.width.map(f64::recip);
     }
 
     /// Stable counting sort: the order depends on the particles' order alone.
@@ -137,10 +139,11 @@ impl<T: Copy + Default> ImageCells<T> {
         self.start[0] = 0;
     }
 
+    #[inline(always)]
     fn index(&self, axis: usize, at: f64) -> usize {
         let last = self.counts[axis] - 1;
         #[expect(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "clamped to the cells")]
-        let index = (((at - self.low[axis]) / self.width[axis]).max(0.0) as usize).min(last);
+        let index = (((at - self.low[axis]) * self.cells_per_length[axis]).max(0.0) as usize).min(last);
         index
     }
 
@@ -158,6 +161,7 @@ impl<T: Copy + Default> ImageCells<T> {
 
     /// Calls `visit` with ranges of entries that together hold every entry within the radius of `at`, and some
     /// beyond it.
+    #[inline]
     pub(crate) fn for_each_range(&self, at: &Vector3<f64>, mut visit: impl FnMut(Range<usize>)) {
         if self.real.is_empty() {
             return;

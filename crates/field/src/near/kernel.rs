@@ -3,34 +3,16 @@
 //! E = Σ q r⃗ [1/r³ − S(r²)],  V = Σ q [1/r − P(r²)], with the cloud's S and P (see
 //! `amberfield_laws::gaussian_cloud`). Both are entire functions of r², so one polynomial each covers
 //! [0, r_c²] to any accuracy, with no table and no trouble at r ≪ r_c.
+//!
+//! Partners are gathered first (see [`super::partners`]): the arithmetic then runs on full vectors.
 
+use super::instructions::Instructions;
+use super::partners::{LANES, Partners};
 use amberfield_laws::gaussian_cloud::{cloud_field_over_r, cloud_potential};
 use std::f64::consts::PI;
-use std::ops::Range;
 
-/// Sources handled together.
-const LANES: usize = 8;
 /// Polynomial degrees for which the loop is unrolled.
 const DEGREES: [usize; 6] = [6, 10, 14, 18, 24, 32];
-
-/// Sources in separate arrays, with [`PADDING`] more values behind the last.
-#[derive(Clone, Copy, Debug)]
-pub(crate) struct Sources<'a> {
-    pub(crate) x: &'a [f64],
-    pub(crate) y: &'a [f64],
-    pub(crate) z: &'a [f64],
-    pub(crate) charge: &'a [f64],
-}
-
-/// Values that arrays of sources hold behind the last one, so that the last ones can be read as whole lanes.
-pub(crate) const PADDING: usize = LANES;
-
-/// What a sum is taken at: a place, and the index of the source that is the target itself.
-#[derive(Clone, Copy, Debug)]
-pub(crate) struct Target {
-    pub(crate) position: [f64; 3],
-    pub(crate) own: usize,
-}
 
 /// Field and potential of a target (4πε = 1), summed lane by lane.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
@@ -57,31 +39,6 @@ pub(crate) struct NearKernel {
     instructions: Instructions,
 }
 
-/// Vector instructions found when the kernel was made.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-enum Instructions {
-    #[cfg(target_arch = "x86_64")]
-    Avx512,
-    #[cfg(target_arch = "x86_64")]
-    Avx2,
-    Portable,
-}
-
-impl Instructions {
-    fn detect() -> Self {
-        #[cfg(target_arch = "x86_64")]
-        {
-            if std::arch::is_x86_feature_detected!("avx512f") && std::arch::is_x86_feature_detected!("fma") {
-                return Self::Avx512;
-            }
-            if std::arch::is_x86_feature_detected!("avx2") && std::arch::is_x86_feature_detected!("fma") {
-                return Self::Avx2;
-            }
-        }
-        Self::Portable
-    }
-}
-
 impl NearKernel {
     /// Kernel for clouds of width `sigma` and cut-off `cutoff` [m], the polynomials good to `accuracy` of
     /// the cloud's value at its centre.
@@ -104,67 +61,54 @@ impl NearKernel {
         }
     }
 
-    /// Adds the sources of a run to the target's sum, the target itself excepted.
+    /// Squared cut-off radius [m²].
+    pub(crate) fn cutoff_squared(&self) -> f64 {
+        self.cutoff_squared
+    }
+
+    /// Adds the gathered partners to a sum and forgets them.
     #[inline]
-    pub(crate) fn add<const POTENTIAL: bool>(
-        &self,
-        target: Target,
-        sources: Sources<'_>,
-        run: Range<usize>,
-        sum: &mut Sum,
-    ) {
+    pub(crate) fn add<const POTENTIAL: bool>(&self, partners: &mut Partners, sum: &mut Sum) {
+        partners.fill_last_lanes(self.cutoff_squared.sqrt());
         match self.field.len() - 1 {
-            6 => self.dispatch::<7, POTENTIAL>(target, sources, run, sum),
-            10 => self.dispatch::<11, POTENTIAL>(target, sources, run, sum),
-            14 => self.dispatch::<15, POTENTIAL>(target, sources, run, sum),
-            18 => self.dispatch::<19, POTENTIAL>(target, sources, run, sum),
-            24 => self.dispatch::<25, POTENTIAL>(target, sources, run, sum),
-            _ => self.dispatch::<33, POTENTIAL>(target, sources, run, sum),
+            6 => self.dispatch::<7, POTENTIAL>(partners, sum),
+            10 => self.dispatch::<11, POTENTIAL>(partners, sum),
+            14 => self.dispatch::<15, POTENTIAL>(partners, sum),
+            18 => self.dispatch::<19, POTENTIAL>(partners, sum),
+            24 => self.dispatch::<25, POTENTIAL>(partners, sum),
+            _ => self.dispatch::<33, POTENTIAL>(partners, sum),
         }
+        partners.clear();
     }
 
     #[inline(always)]
-    fn dispatch<const N: usize, const POTENTIAL: bool>(
-        &self,
-        target: Target,
-        sources: Sources<'_>,
-        run: Range<usize>,
-        sum: &mut Sum,
-    ) {
+    fn dispatch<const N: usize, const POTENTIAL: bool>(&self, partners: &Partners, sum: &mut Sum) {
         match self.instructions {
             #[cfg(target_arch = "x86_64")]
             // SAFETY: `detect` found the instructions on this processor.
-            Instructions::Avx512 => unsafe { add_avx512::<N, POTENTIAL>(self, target, sources, run, sum) },
+            Instructions::Avx512 => unsafe { add_avx512::<N, POTENTIAL>(self, partners, sum) },
             #[cfg(target_arch = "x86_64")]
             // SAFETY: as above.
-            Instructions::Avx2 => unsafe { add_avx2::<N, POTENTIAL>(self, target, sources, run, sum) },
-            Instructions::Portable => add_lanes::<N, POTENTIAL, false>(self, target, sources, run, sum),
+            Instructions::Avx2 => unsafe { add_avx2::<N, POTENTIAL>(self, partners, sum) },
+            Instructions::Portable => add_lanes::<N, POTENTIAL, false>(self, partners, sum),
         }
     }
 }
 
 #[cfg(target_arch = "x86_64")]
-#[target_feature(enable = "avx512f,avx512vl,avx512dq,fma")]
+#[target_feature(enable = "avx512f,fma")]
 fn add_avx512<const N: usize, const POTENTIAL: bool>(
     kernel: &NearKernel,
-    target: Target,
-    sources: Sources<'_>,
-    run: Range<usize>,
+    partners: &Partners,
     sum: &mut Sum,
 ) {
-    add_lanes::<N, POTENTIAL, true>(kernel, target, sources, run, sum);
+    add_lanes::<N, POTENTIAL, true>(kernel, partners, sum);
 }
 
 #[cfg(target_arch = "x86_64")]
 #[target_feature(enable = "avx2,fma")]
-fn add_avx2<const N: usize, const POTENTIAL: bool>(
-    kernel: &NearKernel,
-    target: Target,
-    sources: Sources<'_>,
-    run: Range<usize>,
-    sum: &mut Sum,
-) {
-    add_lanes::<N, POTENTIAL, true>(kernel, target, sources, run, sum);
+fn add_avx2<const N: usize, const POTENTIAL: bool>(kernel: &NearKernel, partners: &Partners, sum: &mut Sum) {
+    add_lanes::<N, POTENTIAL, true>(kernel, partners, sum);
 }
 
 /// a·b + c, fused where the instructions have it (elsewhere `mul_add` would call a function).
@@ -176,71 +120,33 @@ fn fused<const FUSED: bool>(a: f64, b: f64, c: f64) -> f64 {
 #[inline(always)]
 fn add_lanes<const N: usize, const POTENTIAL: bool, const FUSED: bool>(
     kernel: &NearKernel,
-    target: Target,
-    sources: Sources<'_>,
-    run: Range<usize>,
+    partners: &Partners,
     sum: &mut Sum,
 ) {
     let field: &[f64; N] = kernel.field[..].try_into().expect("N coefficients");
     let potential: &[f64; N] = kernel.potential[..].try_into().expect("N coefficients");
-    let mut lanes = sum.lanes;
-    for start in run.clone().step_by(LANES) {
-        let block = [sources.x, sources.y, sources.z, sources.charge].map(|array| whole_lanes(array, start));
-        // Lanes past the run's end and the target itself lie nowhere.
-        let excluded = each(|lane| {
-            let source = start + lane;
-            if source < run.end && source != target.own { 0.0 } else { f64::INFINITY }
+    let scale = 2.0 / kernel.cutoff_squared;
+    let mut total = sum.lanes;
+    for block in partners.blocks() {
+        // One loop over the lanes for each operation: what the compiler turns into vectors.
+        let [x, y, z, q] = block;
+        let r2 = each(|lane| {
+            let yz = fused::<FUSED>(y[lane], y[lane], z[lane] * z[lane]);
+            fused::<FUSED>(x[lane], x[lane], yz)
         });
-        add_block::<N, POTENTIAL, FUSED>(
-            (field, potential),
-            kernel.cutoff_squared,
-            target.position,
-            block,
-            excluded,
-            &mut lanes,
-        );
+        let inverse = each(|lane| 1.0 / r2[lane].sqrt());
+        let argument = each(|lane| fused::<FUSED>(r2[lane], scale, -1.0));
+        let cloud = horner::<N, FUSED>(field, &argument);
+        let weight = each(|lane| q[lane] * (inverse[lane] * inverse[lane] * inverse[lane] - cloud[lane]));
+        for (total, d) in total.iter_mut().zip([x, y, z]) {
+            *total = each(|lane| fused::<FUSED>(weight[lane], d[lane], total[lane]));
+        }
+        if POTENTIAL {
+            let cloud = horner::<N, FUSED>(potential, &argument);
+            total[3] = each(|lane| fused::<FUSED>(q[lane], inverse[lane] - cloud[lane], total[3][lane]));
+        }
     }
-    sum.lanes = lanes;
-}
-
-/// One loop over the lanes for each operation: what the compiler turns into vectors. Always inlined, or the
-/// caller's instructions would not reach it.
-#[inline(always)]
-fn add_block<const N: usize, const POTENTIAL: bool, const FUSED: bool>(
-    (field, potential): (&[f64; N], &[f64; N]),
-    cutoff_squared: f64,
-    target: [f64; 3],
-    [x, y, z, q]: [&[f64; LANES]; 4],
-    excluded: [f64; LANES],
-    total: &mut [[f64; LANES]; 4],
-) {
-    let scale = 2.0 / cutoff_squared;
-    let d = [
-        each(|lane| target[0] - x[lane]),
-        each(|lane| target[1] - y[lane]),
-        each(|lane| target[2] - z[lane]),
-    ];
-    let r2 = each(|lane| {
-        let yz = fused::<FUSED>(d[1][lane], d[1][lane], d[2][lane] * d[2][lane]);
-        fused::<FUSED>(d[0][lane], d[0][lane], yz) + excluded[lane]
-    });
-    let inverse = each(|lane| 1.0 / r2[lane].sqrt());
-    let argument = each(|lane| fused::<FUSED>(r2[lane], scale, -1.0));
-    let cloud = horner::<N, FUSED>(field, &argument);
-    let weight = each(|lane| {
-        let over_r = inverse[lane] * inverse[lane] * inverse[lane] - cloud[lane];
-        if r2[lane] < cutoff_squared { q[lane] * over_r } else { 0.0 }
-    });
-    for axis in 0..3 {
-        total[axis] = each(|lane| fused::<FUSED>(weight[lane], d[axis][lane], total[axis][lane]));
-    }
-    if POTENTIAL {
-        let cloud = horner::<N, FUSED>(potential, &argument);
-        total[3] = each(|lane| {
-            let value = q[lane] * (inverse[lane] - cloud[lane]);
-            total[3][lane] + if r2[lane] < cutoff_squared { value } else { 0.0 }
-        });
-    }
+    sum.lanes = total;
 }
 
 /// One value per lane.
@@ -264,11 +170,6 @@ fn horner<const N: usize, const FUSED: bool>(
         value = each(|lane| fused::<FUSED>(value[lane], argument[lane], coefficients[power]));
     }
     value
-}
-
-#[inline(always)]
-fn whole_lanes(values: &[f64], start: usize) -> &[f64; LANES] {
-    values[start..start + LANES].try_into().expect("arrays of sources are padded")
 }
 
 /// Chebyshev coefficients of a function of r², in y = 2r²/cutoff² − 1, to twice the highest degree used.
@@ -312,6 +213,7 @@ fn monomials(series: &[f64]) -> Vec<f64> {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::near::partners::{Gather, PADDING, Sources, Target};
     use amberfield_laws::gaussian_cloud::{near_field_over_r, near_potential};
 
     /// Deterministic scatter of sources around the origin, some beyond the cut-off, padded with ones that must
@@ -327,9 +229,13 @@ mod tests {
     fn sum_of(kernel: &NearKernel, arrays: &[Vec<f64>; 4]) -> Sum {
         let view = Sources { x: &arrays[0], y: &arrays[1], z: &arrays[2], charge: &arrays[3] };
         let target = Target { position: [0.0; 3], own: OWN };
-        let mut sum = Sum::default();
-        kernel.add::<true>(target, view, 0..31, &mut sum);
-        kernel.add::<true>(target, view, 31..COUNT, &mut sum);
+        let (mut partners, mut sum) = (Partners::default(), Sum::default());
+        let gather = Gather::new(kernel.cutoff_squared, kernel.instructions);
+        for run in [0..31, 31..COUNT] {
+            gather
+                .append(target, view, run, &mut partners, |partners| kernel.add::<true>(partners, &mut sum));
+        }
+        kernel.add::<true>(&mut partners, &mut sum);
         sum
     }
 

@@ -1,12 +1,16 @@
 //! The near level: pairs and images within the cut-off radius.
 
+mod instructions;
 mod kernel;
+mod partners;
 
 use crate::image_cells::{IMAGE, ImageCells};
 use crate::images::ImageLattice;
 use amberfield_core::Domain;
-use kernel::{NearKernel, PADDING, Sources, Sum, Target};
+use instructions::Instructions;
+use kernel::{NearKernel, Sum};
 use nalgebra::Vector3;
+use partners::{Gather, PADDING, Partners, Sources, Target};
 use rayon::prelude::*;
 use serde::{Deserialize, Serialize};
 
@@ -28,6 +32,7 @@ pub(crate) struct NearParameters {
 #[derive(Debug)]
 pub(crate) struct NearLevel {
     kernel: NearKernel,
+    gather: Gather,
     parameters: NearParameters,
     lattice: ImageLattice,
     sources: ImageCells<()>,
@@ -39,8 +44,10 @@ pub(crate) struct NearLevel {
 impl NearLevel {
     pub(crate) fn new(domain: &Domain, parameters: NearParameters) -> Self {
         let NearParameters { sigma_m, cutoff_m, kernel_accuracy } = parameters;
+        let kernel = NearKernel::new(sigma_m, cutoff_m, kernel_accuracy);
         Self {
-            kernel: NearKernel::new(sigma_m, cutoff_m, kernel_accuracy),
+            gather: Gather::new(kernel.cutoff_squared(), Instructions::detect()),
+            kernel,
             parameters,
             lattice: ImageLattice::new(domain),
             sources: ImageCells::default(),
@@ -117,23 +124,26 @@ impl NearLevel {
         sums.clear();
         sums.resize(targets.len(), Sum::default());
         sums.par_chunks_mut(TASK).zip(targets.par_chunks(TASK)).for_each(|(sums, targets)| {
+            let mut partners = Partners::default();
             for (sum, &target) in sums.iter_mut().zip(targets) {
                 if potential {
-                    self.sum::<true>(target, sum);
+                    self.sum::<true>(target, &mut partners, sum);
                 } else {
-                    self.sum::<false>(target, sum);
+                    self.sum::<false>(target, &mut partners, sum);
                 }
             }
         });
     }
 
-    fn sum<const POTENTIAL: bool>(&self, target: u32, sum: &mut Sum) {
+    fn sum<const POTENTIAL: bool>(&self, target: u32, partners: &mut Partners, sum: &mut Sum) {
         let place = self.position(target as usize);
         let target = Target { position: place.into(), own: target as usize };
         let ImageCells { x, y, z, charge, .. } = &self.sources;
         let sources = Sources { x, y, z, charge };
         self.sources.for_each_range(&place, |run| {
-            self.kernel.add::<POTENTIAL>(target, sources, run, sum);
+            self.gather
+                .append(target, sources, run, partners, |full| self.kernel.add::<POTENTIAL>(full, sum));
         });
+        self.kernel.add::<POTENTIAL>(partners, sum);
     }
 }
