@@ -1,3 +1,62 @@
 //! The `amberfield` command.
 
-fn main() {}
+mod arguments;
+mod commands;
+mod failure;
+mod interrupt;
+mod logging;
+mod machine;
+mod not_built;
+mod plan_text;
+mod print;
+mod progress;
+mod run;
+
+use crate::arguments::{Arguments, Command};
+use crate::failure::{EXIT_BUG, Failure};
+use clap::Parser as _;
+use std::process::ExitCode;
+
+fn main() -> ExitCode {
+    install_panic_hook();
+    let arguments = Arguments::parse();
+    let log = logging::start(&arguments.common);
+    match start_threads(&arguments).and_then(|()| dispatch(&arguments, &log)) {
+        Ok(()) => ExitCode::SUCCESS,
+        Err(failure) => {
+            failure.report();
+            ExitCode::from(failure.code())
+        }
+    }
+}
+
+fn dispatch(arguments: &Arguments, log: &logging::Log) -> Result<(), Failure> {
+    let common = &arguments.common;
+    match &arguments.command {
+        Command::Run(options) => commands::run(options, common, log),
+        Command::Field(options) => commands::field(options),
+        Command::Explain(options) => commands::explain(options),
+        Command::Doctor(options) => commands::doctor(options),
+    }
+}
+
+/// A panic is our bug, in whichever thread it happens.
+fn install_panic_hook() {
+    let default = std::panic::take_hook();
+    std::panic::set_hook(Box::new(move |info| {
+        default(info);
+        print::error(format_args!(
+            "this is a bug in amberfield {}; please report it with the message above and the scene",
+            env!("CARGO_PKG_VERSION")
+        ));
+        std::process::exit(i32::from(EXIT_BUG));
+    }));
+}
+
+fn start_threads(arguments: &Arguments) -> Result<(), Failure> {
+    let Some(threads) = arguments.common.threads else { return Ok(()) };
+    rayon::ThreadPoolBuilder::new()
+        .num_threads(threads)
+        .build_global()
+        .map_err(|error| Failure::bad_input(format!("--threads {threads}: {error}; give fewer threads")))
+}

@@ -2,12 +2,11 @@
 //!
 //! Layout, little endian: magic (8 bytes), format version (u32), length and text of the program version (u16),
 //! fingerprint of the scene (u64), length of the payload (u64), CRC-32 of everything else (u32), payload
-//! (bincode 2).
+//! (MessagePack: it keeps every bit of a double, and unlike bincode it can carry tagged enums and is kept up).
 
 use super::atomic::write_atomically;
 use crate::SceneError;
 use crate::error::shorten;
-use bincode::config::{Configuration, standard};
 use serde::{Serialize, de::DeserializeOwned};
 use std::path::Path;
 
@@ -18,17 +17,12 @@ const FORMAT: u32 = 1;
 /// Version of the program that writes and reads.
 const PROGRAM: &str = env!("CARGO_PKG_VERSION");
 
-fn configuration() -> Configuration {
-    standard()
-}
-
 /// Writes a checkpoint.
 ///
 /// # Errors
 /// What the system says.
 pub fn write_checkpoint(path: &Path, scene_hash: u64, state: &impl Serialize) -> Result<(), SceneError> {
-    let payload = bincode::serde::encode_to_vec(state, configuration())
-        .map_err(|error| SceneError::unwritable(path, error))?;
+    let payload = rmp_serde::to_vec(state).map_err(|error| SceneError::unwritable(path, error))?;
     let header = header(PROGRAM, scene_hash, payload.len() as u64);
     let checksum = checksum(&header, &payload);
     write_atomically(path, |writer| {
@@ -66,14 +60,8 @@ pub fn read_checkpoint<T: DeserializeOwned>(path: &Path, scene_hash: u64) -> Res
     }
     let bytes = std::fs::read(path).map_err(|error| bad(format!("cannot be read: {error}")))?;
     let payload = open(&bytes, scene_hash).map_err(bad)?;
-    match bincode::serde::decode_from_slice(payload, configuration()) {
-        Ok((state, used)) if used == payload.len() => Ok(state),
-        Ok((_, used)) => Err(bad(format!(
-            "holds {} bytes more than its state; take another checkpoint",
-            payload.len() - used
-        ))),
-        Err(error) => Err(bad(format!("its state cannot be read ({error}); take another checkpoint"))),
-    }
+    rmp_serde::from_slice(payload)
+        .map_err(|error| bad(format!("its state cannot be read ({error}); take another checkpoint")))
 }
 
 /// The payload of a sound file.
@@ -128,12 +116,24 @@ fn open(bytes: &[u8], scene_hash: u64) -> Result<&[u8], String> {
 mod tests {
     use super::*;
 
-    type State = (u64, Vec<f64>, String);
+    #[derive(Debug, PartialEq, Serialize, serde::Deserialize)]
+    #[serde(tag = "kind")]
+    enum Tagged {
+        Plain,
+        Full { number: f64, counts: [usize; 3] },
+    }
+
+    type State = (u64, Vec<f64>, String, [Tagged; 2]);
 
     fn written() -> (tempfile::TempDir, std::path::PathBuf, State) {
         let folder = tempfile::tempdir().unwrap();
         let path = folder.path().join("a.amber");
-        let state: State = (7, vec![0.1, -0.0, f64::MIN_POSITIVE], "x".into());
+        let state: State = (
+            7,
+            vec![0.1, -0.0, f64::MIN_POSITIVE, f64::INFINITY],
+            "x".into(),
+            [Tagged::Full { number: f64::NEG_INFINITY, counts: [1, 2, 3] }, Tagged::Plain],
+        );
         write_checkpoint(&path, 42, &state).unwrap();
         (folder, path, state)
     }

@@ -1,0 +1,80 @@
+//! `amberfield doctor`.
+
+use crate::arguments::DoctorOptions;
+use crate::failure::Failure;
+use crate::machine;
+use crate::print::line;
+use crate::run::{is_stale, remove_leftovers};
+use std::path::{Path, PathBuf};
+
+/// Says what the machine offers and which runs were left behind.
+pub(crate) fn doctor(options: &DoctorOptions) -> Result<(), Failure> {
+    line(format_args!("amberfield {}", env!("CARGO_PKG_VERSION")));
+    let features = machine::cpu_features();
+    let features = if features.is_empty() { "none known".to_owned() } else { features.join(" ") };
+    line(format_args!("processor: {}", machine::cpu_name().unwrap_or_else(|| "not named".to_owned())));
+    line(format_args!("vector extensions: {features}"));
+    line(format_args!("threads: {}", rayon::current_num_threads()));
+    match machine::memory() {
+        Some((total, available)) => {
+            line(format_args!("memory: {}, {} available", machine::bytes(total), machine::bytes(available)))
+        }
+        None => line(format_args!("memory: not known on this system")),
+    }
+    match machine::shared_memory() {
+        Some((total, free)) => line(format_args!(
+            "shared memory: /dev/shm {}, {} free (not used by this version)",
+            machine::bytes(total),
+            machine::bytes(free)
+        )),
+        None => line(format_args!("shared memory: no /dev/shm (not used by this version)")),
+    }
+    match openfoam() {
+        Some(place) => line(format_args!(
+            "OpenFOAM: found at {}; the coupling is not part of this version, the internal grid is used",
+            place.display()
+        )),
+        None => line(format_args!(
+            "OpenFOAM: not found; the coupling is not part of this version, the internal grid is used"
+        )),
+    }
+    stale_runs(options.clean)
+}
+
+/// Where `OpenFOAM` is: its environment, or an application of it on the path.
+fn openfoam() -> Option<PathBuf> {
+    let project = std::env::var_os("WM_PROJECT_DIR").map(PathBuf::from);
+    let application = || {
+        let path = std::env::var_os("PATH")?;
+        std::env::split_paths(&path).map(|folder| folder.join("foamDictionary")).find(|file| file.is_file())
+    };
+    project.filter(|folder| folder.is_dir()).or_else(application)
+}
+
+/// Run folders here and one level below whose process went away.
+fn stale_runs(clean: bool) -> Result<(), Failure> {
+    let mut folders = vec![PathBuf::from(".")];
+    let entries = std::fs::read_dir(".").into_iter().flatten().flatten();
+    folders.extend(entries.map(|entry| Path::new(".").join(entry.file_name())).filter(|path| path.is_dir()));
+    folders.retain(|folder| is_stale(folder));
+    folders.sort();
+    if folders.is_empty() {
+        line(format_args!("stale runs: none in the current folder"));
+    }
+    for folder in &folders {
+        if clean {
+            let removed = remove_leftovers(folder)
+                .map_err(|error| Failure::bad_input(format!("{}: {error}", folder.display())))?;
+            line(format_args!(
+                "stale run: {} ({removed} leftover files removed; results stay)",
+                folder.display()
+            ));
+        } else {
+            line(format_args!(
+                "stale run: {} (its process is gone; doctor --clean removes the mark, results stay)",
+                folder.display()
+            ));
+        }
+    }
+    Ok(())
+}

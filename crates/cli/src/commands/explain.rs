@@ -1,0 +1,149 @@
+//! `amberfield explain`.
+
+use crate::arguments::ExplainOptions;
+use crate::failure::Failure;
+use crate::print::line;
+use crate::run::{domain_of, members, scene_name, setup_of};
+use crate::{machine, not_built, plan_text};
+use amberfield_core::{Axis, Boundary, Domain, Side};
+use amberfield_dem::Simulation;
+use amberfield_field::ElectricField;
+use amberfield_scene::{ElectricFieldSettings, Purpose, Scene, read_scene};
+use std::mem::size_of;
+
+/// Bytes that the motion of a grain takes: state, forces, neighbour lists at the usual 8 to 12 partners.
+const BYTES_PER_MOVING_GRAIN: usize = 1200;
+
+/// Says what a scene will do.
+pub(crate) fn explain(options: &ExplainOptions) -> Result<(), Failure> {
+    let scene = read_scene(&options.scene, &options.set, Purpose::Explain)?;
+    print_scene(&scene_name(&options.scene), &scene);
+    if let Some(field) = &scene.electric_field {
+        print_settings(field);
+    }
+    for warning in &scene.warnings {
+        line(format_args!("warning: {warning}"));
+    }
+    not_built::refuse(&scene, scene.time.is_some())?;
+    if scene.time.is_some() { explain_run(&scene) } else { explain_field(&scene) }
+}
+
+fn print_scene(name: &str, scene: &Scene) {
+    let particles = &scene.particles;
+    let range = |values: &[f64]| {
+        let low = values.iter().copied().fold(f64::INFINITY, f64::min);
+        let high = values.iter().copied().fold(f64::NEG_INFINITY, f64::max);
+        format!("{low:.4e} to {high:.4e}")
+    };
+    line(format_args!("scene: {name}"));
+    line(format_args!(
+        "grains: {}, radii {} m, charges {} C, net charge {:.4e} C",
+        particles.len(),
+        range(&particles.radius),
+        range(&particles.charge),
+        particles.net_charge()
+    ));
+    line(format_args!("walls: {}, materials: {}", scene.walls.len(), scene.materials.len()));
+    if let Some(domain) = &scene.domain {
+        let (min, max) = (domain.min(), domain.max());
+        line(format_args!("domain: {:?} to {:?} m; {}", min.as_slice(), max.as_slice(), faces(domain)));
+    }
+}
+
+fn faces(domain: &Domain) -> String {
+    let name = |face: Boundary| match face {
+        Boundary::Grounded => "grounded".to_owned(),
+        Boundary::Potential(volts) => format!("at {volts} V"),
+        Boundary::Insulating { normal_field_v_m: 0.0 } => "insulating".to_owned(),
+        Boundary::Insulating { normal_field_v_m } => format!("normal field {normal_field_v_m} V/m"),
+        Boundary::Periodic => "periodic".to_owned(),
+        Boundary::Open => "open".to_owned(),
+        other => format!("{other:?}"),
+    };
+    let axes = Axis::ALL.map(|axis| {
+        let [low, high] = [Side::Min, Side::Max].map(|side| name(domain.face(axis, side)));
+        if low == high { format!("{axis} {low}") } else { format!("{axis} {low} / {high}") }
+    });
+    axes.join(", ")
+}
+
+fn print_settings(field: &ElectricFieldSettings) {
+    line(format_args!("\nelectric field as keys:\n{}", field.as_section()));
+    match field.as_command() {
+        Ok(command) => line(format_args!("electric field as one line:\n{command}")),
+        Err(reason) => line(format_args!("electric field as one line: not possible, {reason}\n")),
+    }
+}
+
+fn explain_run(scene: &Scene) -> Result<(), Failure> {
+    let simulation = Simulation::new(setup_of(scene, None)?).map_err(|error| Failure::at_start(&error))?;
+    for text in plan_text::lines(simulation.plan()) {
+        line(format_args!("{text}"));
+    }
+    if let Some(field) = simulation.field() {
+        print_error(scene, field);
+    }
+    let motion = simulation.len() * BYTES_PER_MOVING_GRAIN;
+    print_memory(motion, simulation.field());
+    let end_s = scene.time.as_ref().map_or(0.0, |time| time.end_s);
+    line(format_args!(
+        "time step: {:e} s, {:.0} steps to {end_s} s; neighbour skin {:e} m",
+        simulation.step_s(),
+        (end_s / simulation.step_s()).ceil(),
+        simulation.skin_m()
+    ));
+    line(format_args!("limits on the time step now:"));
+    for guard in simulation.guards() {
+        if guard.limit_s.is_finite() {
+            line(format_args!(
+                "  {:14}  {:.4e} s, {:.1} times the step",
+                guard.name, guard.limit_s, guard.margin
+            ));
+        } else {
+            line(format_args!("  {:14}  none", guard.name));
+        }
+    }
+    Ok(())
+}
+
+fn explain_field(scene: &Scene) -> Result<(), Failure> {
+    let Some(settings) = &scene.electric_field else {
+        line(format_args!("nothing to compute: the scene has neither [time] nor [electric_field]"));
+        return Ok(());
+    };
+    let domain = domain_of(scene)?;
+    let member = members(scene);
+    let chosen = |index: &usize| member[*index];
+    let indices: Vec<usize> = (0..scene.particles.len()).filter(chosen).collect();
+    let positions: Vec<_> =
+        indices.iter().map(|index| domain.wrap(scene.particles.position[*index])).collect();
+    let charges: Vec<_> = indices.iter().map(|index| scene.particles.charge[*index]).collect();
+    let field = ElectricField::new(domain, &settings.field, &positions, &charges)
+        .map_err(|error| Failure::of_field(&error))?;
+    for text in plan_text::lines(&field.plan()) {
+        line(format_args!("{text}"));
+    }
+    print_error(scene, &field);
+    print_memory(positions.len() * 4 * size_of::<f64>(), Some(&field));
+    Ok(())
+}
+
+fn print_error(scene: &Scene, field: &ElectricField) {
+    let tolerance = scene.electric_field.as_ref().map_or(0.0, |settings| settings.field.tolerance);
+    let show =
+        |error: Option<f64>| error.map_or_else(|| "not stated".to_owned(), |error| format!("{error:.2e}"));
+    line(format_args!(
+        "relative error of E: {} estimated, {} measured, tolerance {tolerance:e}",
+        show(field.error_estimated()),
+        show(field.error_measured().map(|measured| measured.relative_rms))
+    ));
+}
+
+fn print_memory(grains: usize, field: Option<&ElectricField>) {
+    let field = field.map_or(0, ElectricField::memory_bytes);
+    line(format_args!(
+        "memory: about {} for the grains, {} for the field",
+        machine::bytes(grains as u64),
+        machine::bytes(field as u64)
+    ));
+}

@@ -1,0 +1,169 @@
+//! `amberfield run`.
+
+use crate::arguments::{Common, RunOptions};
+use crate::failure::Failure;
+use crate::logging::Log;
+use crate::progress::Progress;
+use crate::run::{Clock, Ending, Existing, RunFolder, Saved, Session, scene_name, setup_of};
+use crate::{interrupt, not_built, plan_text, print};
+use amberfield_dem::Simulation;
+use amberfield_scene::{Purpose, read_checkpoint, read_scene, write_json, write_text};
+use std::path::{Path, PathBuf};
+
+/// Share of the steps with limited grains above which a run says so loudly.
+const LIMITED_SHARE: f64 = 0.1;
+
+/// Simulates.
+pub(crate) fn run(options: &RunOptions, common: &Common, log: &Log) -> Result<(), Failure> {
+    let existing = match (&options.resume, options.overwrite) {
+        (Some(_), _) => Existing::Resume,
+        (None, true) => Existing::Overwrite,
+        (None, false) => Existing::Refuse,
+    };
+    let out = out_folder(options)?;
+    RunFolder::check(&out, existing, &options.scene)?;
+    let scene = read_scene(&options.scene, &options.set, Purpose::Run)?;
+    not_built::refuse(&scene, true)?;
+    for warning in &scene.warnings {
+        tracing::warn!("{warning}");
+    }
+    interrupt::watch()?;
+    let saved = options
+        .resume
+        .as_ref()
+        .map(|checkpoint| read_checkpoint::<Saved>(checkpoint, scene.hash()))
+        .transpose()?;
+    let setup = setup_of(&scene, None)?;
+    let (simulation, earlier) = match saved {
+        Some(Saved { state, history, wall_s, stage_s }) => {
+            let clock = Clock { wall_s, stages: stage_s };
+            (Simulation::resume(setup, state), Some((history, clock)))
+        }
+        None => (Simulation::new(setup), None),
+    };
+    let simulation = simulation.map_err(|error| Failure::at_start(&error))?;
+    let folder = RunFolder::open(&out, existing)?;
+    log.open(&folder.file("log.jsonl"))
+        .map_err(|error| Failure::bad_input(format!("{}: {error}", folder.file("log.jsonl").display())))?;
+    write_text(&folder.file("scene.toml"), scene.resolved())?;
+    if let (Some(field), None) = (simulation.field(), &earlier) {
+        write_json(&folder.file("tuning.json"), field.choice())?;
+    }
+    announce(&simulation);
+    let mut session = match earlier {
+        Some(earlier) => Session::resume(&folder, &scene, simulation, earlier)?,
+        None => Session::start(&folder, &scene, simulation)?,
+    };
+    let first = session.simulation.step_index();
+    let ending = {
+        let until = session.schedule.total;
+        let mut progress = Progress::start(common, first, until);
+        session.go(options.steps, &mut progress)?
+    };
+    finish(&session, &options.scene, first, ending)
+}
+
+/// The run folder that was named, that the checkpoint lies in, or one named after the scene.
+fn out_folder(options: &RunOptions) -> Result<PathBuf, Failure> {
+    if let Some(out) = &options.out {
+        return Ok(out.clone());
+    }
+    let Some(checkpoint) = &options.resume else {
+        return Ok(PathBuf::from(format!("{}-run", scene_name(&options.scene))));
+    };
+    let folder =
+        std::path::absolute(checkpoint).ok().and_then(|path| Some(path.parent()?.parent()?.to_path_buf()));
+    folder.ok_or_else(|| {
+        Failure::bad_input(format!("{}: not in a run folder; name one with --out", checkpoint.display()))
+    })
+}
+
+fn announce(simulation: &Simulation) {
+    for line in plan_text::lines(simulation.plan()) {
+        tracing::debug!("{line}");
+    }
+    tracing::info!(
+        "{} grains, step {:e} s, neighbour skin {:e} m, {} threads",
+        simulation.len(),
+        simulation.step_s(),
+        simulation.skin_m(),
+        rayon::current_num_threads()
+    );
+    if let Some(field) = simulation.field() {
+        let show =
+            |error: Option<f64>| error.map_or_else(|| "not known".to_owned(), |error| format!("{error:.2e}"));
+        tracing::info!(
+            "electric field: relative error estimated {}, measured {}",
+            show(field.error_estimated()),
+            show(field.error_measured().map(|measured| measured.relative_rms))
+        );
+    }
+}
+
+fn finish(session: &Session<'_>, scene_path: &Path, first: u64, ending: Ending) -> Result<(), Failure> {
+    let simulation = &session.simulation;
+    warn_about_limits(session, first);
+    draw(session, scene_path);
+    let seconds = session.begun.elapsed().as_secs_f64();
+    #[expect(clippy::cast_precision_loss, reason = "a rate for the eye")]
+    let rate = (simulation.step_index() - first) as f64 / seconds;
+    print::line(format_args!(
+        "{}: {} grains, step {} of {}, t = {:.6e} s, {seconds:.1} s ({rate:.0} steps/s)",
+        scene_name(scene_path),
+        simulation.len(),
+        simulation.step_index(),
+        session.schedule.total,
+        simulation.time_s(),
+    ));
+    print::line(format_args!("results: {}", session.folder.path().display()));
+    if ending != Ending::Complete {
+        print::line(format_args!(
+            "stopped before the end; go on with --resume {}",
+            session.checkpoint_path().display()
+        ));
+    }
+    Ok(())
+}
+
+fn warn_about_limits(session: &Session<'_>, first: u64) {
+    let simulation = &session.simulation;
+    let steps = simulation.step_index();
+    let Some(limited) = simulation.limited().filter(|limited| limited.steps > 0 && steps > first) else {
+        return;
+    };
+    #[expect(clippy::cast_precision_loss, reason = "a share for the eye")]
+    let share = limited.steps as f64 / steps as f64;
+    let text = format!(
+        "the electric force was limited in {} of {steps} steps ({} grains at the end, largest force {:e} N unlimited)",
+        limited.steps, limited.grains, limited.largest_force_n
+    );
+    if share > LIMITED_SHARE {
+        tracing::warn!(
+            "{text}: the limiter changes the physics of this run; use a smaller step_s or a larger factor"
+        );
+    } else {
+        tracing::info!("{text}");
+    }
+}
+
+/// Draws the grains at the end; a picture that fails is a warning, the results stand.
+#[cfg(feature = "plots")]
+fn draw(session: &Session<'_>, scene_path: &Path) {
+    use amberfield_study::{PictureScene, write_picture};
+    let Some(domain) = &session.scene.domain else { return };
+    let path = session.folder.file("picture.png");
+    let picture = PictureScene {
+        title: &scene_name(scene_path),
+        time_s: Some(session.simulation.time_s()),
+        domain,
+        walls: &session.scene.walls,
+        particles: &session.simulation.particles(),
+    };
+    if let Err(error) = write_picture(&path, &picture) {
+        tracing::warn!("no picture: {error}");
+    }
+}
+
+/// Without the feature there is no picture.
+#[cfg(not(feature = "plots"))]
+fn draw(_: &Session<'_>, _: &Path) {}

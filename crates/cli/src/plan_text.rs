@@ -1,0 +1,13 @@
+//! A plan as text.
+
+use amberfield_core::Plan;
+
+/// Lines of a plan: what runs, then what is left out.
+pub(crate) fn lines(plan: &Plan) -> Vec<String> {
+    let width = plan.stages().iter().chain(plan.left_out()).map(|entry| entry.stage.len()).max().unwrap_or(0);
+    let mut lines = vec!["runs:".to_owned()];
+    lines.extend(plan.stages().iter().map(|entry| format!("  {:width$}  {}", entry.stage, entry.reason)));
+    lines.push("left out:".to_owned());
+    lines.extend(plan.left_out().iter().map(|entry| format!("  {:width$}  {}", entry.stage, entry.reason)));
+    lines
+}

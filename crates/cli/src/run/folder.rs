@@ -1,0 +1,141 @@
+//! The run folder.
+
+use crate::failure::Failure;
+use crate::machine;
+use std::fs;
+use std::io::Write as _;
+use std::path::{Path, PathBuf};
+
+/// Everything that a run may write.
+const OUTPUTS: [&str; 9] = [
+    "scene.toml",
+    "log.jsonl",
+    "history.csv",
+    "particles",
+    "particles.pvd",
+    "checkpoints",
+    "tuning.json",
+    "summary.json",
+    "picture.png",
+];
+/// Holds the id of the process that writes to the folder.
+const LOCK: &str = "run.lock";
+
+/// What to do about results that are there already.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(crate) enum Existing {
+    /// Refuse.
+    Refuse,
+    /// Remove them.
+    Overwrite,
+    /// Go on with them.
+    Resume,
+}
+
+/// A run folder that this process writes to.
+#[derive(Debug)]
+pub(crate) struct RunFolder {
+    path: PathBuf,
+}
+
+impl RunFolder {
+    /// Refuses, before any work, a folder that cannot be used.
+    pub(crate) fn check(path: &Path, existing: Existing, scene: &Path) -> Result<(), Failure> {
+        let refuse = |problem: String| Err(Failure::bad_input(format!("{}: {problem}", path.display())));
+        if path.exists() && !path.is_dir() {
+            return refuse("not a folder; name another one with --out".to_owned());
+        }
+        if let Some(process) = owner(path).filter(|process| machine::is_alive(*process)) {
+            return refuse(format!(
+                "process {process} writes to this run folder; wait for it or name another with --out"
+            ));
+        }
+        let found = OUTPUTS.iter().find(|name| path.join(name).exists());
+        match (existing, found) {
+            (Existing::Refuse, Some(name)) => refuse(format!(
+                "the run folder exists ({name} is there); name another with --out, go on with --resume CHECKPOINT, or replace it with --overwrite"
+            )),
+            (Existing::Overwrite, _) if is_same(&path.join("scene.toml"), scene) => refuse(
+                "--overwrite would remove the scene file itself; name another folder with --out".to_owned(),
+            ),
+            (Existing::Resume, None) => {
+                refuse("there is no run to go on with; name its folder with --out".to_owned())
+            }
+            _ => Ok(()),
+        }
+    }
+
+    /// Takes the folder: creates it, removes old results if asked to, and marks it as in use.
+    pub(crate) fn open(path: &Path, existing: Existing) -> Result<Self, Failure> {
+        let failed = |error: std::io::Error| {
+            Failure::bad_input(format!("{}: cannot be used as run folder: {error}", path.display()))
+        };
+        if existing == Existing::Overwrite {
+            for name in OUTPUTS {
+                let old = path.join(name);
+                let removed = if old.is_dir() { fs::remove_dir_all(&old) } else { fs::remove_file(&old) };
+                removed
+                    .or_else(
+                        |error| {
+                            if error.kind() == std::io::ErrorKind::NotFound { Ok(()) } else { Err(error) }
+                        },
+                    )
+                    .map_err(failed)?;
+            }
+        }
+        fs::create_dir_all(path.join("particles")).map_err(failed)?;
+        fs::create_dir_all(path.join("checkpoints")).map_err(failed)?;
+        let lock = path.join(LOCK);
+        // A lock that is left belongs to a process that is gone: `check` looked.
+        let _ = fs::remove_file(&lock);
+        let mut file = fs::File::create_new(&lock).map_err(failed)?;
+        write!(file, "{}", std::process::id()).map_err(failed)?;
+        Ok(Self { path: path.to_path_buf() })
+    }
+
+    /// A file of the folder.
+    pub(crate) fn file(&self, name: &str) -> PathBuf {
+        self.path.join(name)
+    }
+
+    /// The folder.
+    pub(crate) fn path(&self) -> &Path {
+        &self.path
+    }
+}
+
+impl Drop for RunFolder {
+    fn drop(&mut self) {
+        let _ = fs::remove_file(self.path.join(LOCK));
+    }
+}
+
+fn owner(folder: &Path) -> Option<i32> {
+    fs::read_to_string(folder.join(LOCK)).ok()?.trim().parse().ok()
+}
+
+fn is_same(one: &Path, other: &Path) -> bool {
+    matches!((one.canonicalize(), other.canonicalize()), (Ok(one), Ok(other)) if one == other)
+}
+
+/// Whether a process that wrote to this run folder went away without an end.
+pub(crate) fn is_stale(folder: &Path) -> bool {
+    folder.join(LOCK).is_file() && owner(folder).is_none_or(|process| !machine::is_alive(process))
+}
+
+/// Removes what a process that went away left in its run folder: the mark and half-written files. Results stay.
+pub(crate) fn remove_leftovers(folder: &Path) -> std::io::Result<usize> {
+    let mut removed = 0;
+    for place in [folder.to_path_buf(), folder.join("particles"), folder.join("checkpoints")] {
+        let Ok(entries) = fs::read_dir(place) else { continue };
+        for entry in entries.flatten() {
+            let name = entry.file_name();
+            let name = name.to_string_lossy();
+            if name == LOCK || (name.starts_with(".amberfield-") && name.ends_with(".part")) {
+                fs::remove_file(entry.path())?;
+                removed += 1;
+            }
+        }
+    }
+    Ok(removed)
+}

@@ -1,0 +1,16 @@
+//! A run: its folder, its schedule, its records.
+
+mod folder;
+mod name;
+mod record;
+mod schedule;
+mod session;
+mod setup;
+mod summary;
+
+pub(crate) use folder::{Existing, RunFolder, is_stale, remove_leftovers};
+pub(crate) use name::scene_name;
+pub(crate) use record::Clock;
+pub(crate) use session::{Saved, Session};
+pub(crate) use setup::{domain_of, members, parameters, setup_of};
+pub(crate) use summary::Ending;

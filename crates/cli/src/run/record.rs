@@ -1,0 +1,153 @@
+//! Rows of the history and files of the grains.
+
+use super::folder::RunFolder;
+use super::schedule::Schedule;
+use crate::failure::Failure;
+use amberfield_dem::Simulation;
+use amberfield_scene::{Cell, History, PvdSeries, Scene, write_particles_csv, write_vtu};
+
+/// What a run writes while it goes.
+#[derive(Debug)]
+pub(crate) struct Record {
+    history: History,
+    columns: Columns,
+    series: PvdSeries,
+    last_row: Option<u64>,
+    last_frame: Option<u64>,
+}
+
+/// Columns beyond those that every run has.
+#[derive(Clone, Debug)]
+struct Columns {
+    gravity: bool,
+    field: bool,
+    limited: bool,
+    stages: Vec<&'static str>,
+}
+
+impl Columns {
+    fn new(scene: &Scene, simulation: &Simulation) -> Self {
+        Self {
+            gravity: scene.time.as_ref().is_some_and(|time| time.gravity_m_s2.norm() > 0.0),
+            field: simulation.plan().has("field"),
+            limited: simulation.plan().has("field")
+                && scene.electric_field.as_ref().is_some_and(|field| field.limit_field_force),
+            stages: simulation.stage_seconds().into_iter().map(|(name, _)| name).collect(),
+        }
+    }
+
+    fn names(&self) -> Vec<String> {
+        let mut names = vec!["step", "time_s", "kinetic_J", "contact_J"];
+        names.extend(self.gravity.then_some("gravity_J"));
+        names.extend(self.field.then_some("electric_J"));
+        names.extend(self.field.then_some("net_charge_C"));
+        names.extend(self.limited.then_some("limited"));
+        names.extend(["contacts", "wall_s"]);
+        let stages = self.stages.iter().map(|stage| format!("wall_s_{stage}"));
+        names.into_iter().map(ToOwned::to_owned).chain(stages).collect()
+    }
+}
+
+/// Clock readings of a row [s], earlier parts of the run included.
+#[derive(Clone, Debug)]
+pub(crate) struct Clock {
+    pub(crate) wall_s: f64,
+    pub(crate) stages: Vec<f64>,
+}
+
+impl Record {
+    /// Records of a new run.
+    pub(crate) fn create(
+        folder: &RunFolder,
+        scene: &Scene,
+        simulation: &Simulation,
+    ) -> Result<Self, Failure> {
+        let columns = Columns::new(scene, simulation);
+        let history = History::create(&folder.file("history.csv"), &columns.names())?;
+        let series = PvdSeries::new(&folder.file("particles.pvd"));
+        Ok(Self { history, columns, series, last_row: None, last_frame: None })
+    }
+
+    /// Records of a run that goes on: what was written after its checkpoint, or beside the schedule, is removed.
+    pub(crate) fn resume(
+        folder: &RunFolder,
+        scene: &Scene,
+        simulation: &Simulation,
+        schedule: &Schedule,
+    ) -> Result<Self, Failure> {
+        let columns = Columns::new(scene, simulation);
+        let reached = simulation.step_index();
+        let history = History::resume(&folder.file("history.csv"), &columns.names(), reached, |step| {
+            schedule.history.is_due(step)
+        })?;
+        let is_kept =
+            |name: &str| step_of(name).is_some_and(|step| step <= reached && schedule.frame_is_due(step));
+        let series = PvdSeries::resume(&folder.file("particles.pvd"), is_kept);
+        let files = std::fs::read_dir(folder.file("particles")).into_iter().flatten().flatten();
+        for file in files.filter(|file| !is_kept(&file.file_name().to_string_lossy())) {
+            // A file that stays only takes room: the series does not name it.
+            let _ = std::fs::remove_file(file.path());
+        }
+        Ok(Self { history, columns, series, last_row: None, last_frame: None })
+    }
+
+    /// Appends a row to the history, once per step.
+    pub(crate) fn row(&mut self, simulation: &mut Simulation, clock: &Clock) -> Result<(), Failure> {
+        let step = simulation.step_index();
+        if self.last_row.replace(step) == Some(step) {
+            return Ok(());
+        }
+        let energies =
+            simulation.energies(self.columns.field).map_err(|error| Failure::while_running(&error))?;
+        let mut row = vec![
+            Cell::Count(step),
+            Cell::Number(simulation.time_s()),
+            Cell::Number(energies.kinetic),
+            Cell::Number(energies.contact),
+        ];
+        row.extend(self.columns.gravity.then_some(Cell::Number(energies.gravity)));
+        if self.columns.field {
+            row.push(Cell::Number(energies.electric.unwrap_or_default()));
+            row.push(Cell::Number(simulation.particles().net_charge()));
+        }
+        if self.columns.limited {
+            row.push(Cell::Count(simulation.limited().unwrap_or_default().grains));
+        }
+        row.push(Cell::Count(simulation.contacts() as u64));
+        row.push(Cell::Number(clock.wall_s));
+        row.extend(clock.stages.iter().map(|seconds| Cell::Number(*seconds)));
+        Ok(self.history.append(&row)?)
+    }
+
+    /// Writes the grains, once per step.
+    pub(crate) fn frame(
+        &mut self,
+        folder: &RunFolder,
+        scene: &Scene,
+        simulation: &Simulation,
+    ) -> Result<(), Failure> {
+        let step = simulation.step_index();
+        if self.last_frame.replace(step) == Some(step) {
+            return Ok(());
+        }
+        let particles = simulation.particles();
+        let name = format!("particles/grains_{step:012}");
+        if scene.output.csv {
+            let path = folder.file(&format!("{name}.csv"));
+            write_particles_csv(&path, &particles, &scene.materials, &scene.groups)?;
+        }
+        if scene.output.vtk {
+            let file = format!("{name}.vtu");
+            let forces = simulation.electric_forces();
+            let vectors: Vec<_> = forces.iter().map(|forces| ("electric_force_N", &forces[..])).collect();
+            write_vtu(&folder.file(&file), &particles, &vectors)?;
+            self.series.append(simulation.time_s(), &file)?;
+        }
+        Ok(())
+    }
+}
+
+/// The step in a file's name.
+fn step_of(name: &str) -> Option<u64> {
+    name.rsplit(['/', '_']).next()?.split('.').next()?.parse().ok()
+}

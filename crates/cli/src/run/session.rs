@@ -1,0 +1,154 @@
+//! The loop of a run.
+
+use super::folder::RunFolder;
+use super::record::{Clock, Record};
+use super::schedule::{Every, Schedule};
+use super::summary::{Ending, write_summary};
+use crate::failure::Failure;
+use crate::interrupt;
+use crate::progress::Progress;
+use amberfield_dem::{Energies, Simulation, State};
+use amberfield_scene::{Scene, write_checkpoint};
+use serde::{Deserialize, Serialize};
+use std::path::PathBuf;
+use std::time::Instant;
+
+/// What a checkpoint holds.
+#[derive(Debug, Serialize, Deserialize)]
+pub(crate) struct Saved {
+    /// The simulation.
+    pub(crate) state: State,
+    /// Schedule of the history.
+    pub(crate) history: Every,
+    /// Seconds that the run took so far.
+    pub(crate) wall_s: f64,
+    /// The same for each stage.
+    pub(crate) stage_s: Vec<f64>,
+}
+
+/// A run in progress.
+pub(crate) struct Session<'a> {
+    pub(crate) folder: &'a RunFolder,
+    pub(crate) scene: &'a Scene,
+    pub(crate) simulation: Simulation,
+    pub(crate) schedule: Schedule,
+    pub(crate) record: Record,
+    /// Seconds of earlier parts of the run.
+    pub(crate) earlier: Clock,
+    pub(crate) begun: Instant,
+}
+
+impl<'a> Session<'a> {
+    /// A new run.
+    pub(crate) fn start(
+        folder: &'a RunFolder,
+        scene: &'a Scene,
+        simulation: Simulation,
+    ) -> Result<Self, Failure> {
+        let schedule = schedule(scene, &simulation, None)?;
+        let record = Record::create(folder, scene, &simulation)?;
+        let earlier = Clock { wall_s: 0.0, stages: Vec::new() };
+        Ok(Self { folder, scene, simulation, schedule, record, earlier, begun: Instant::now() })
+    }
+
+    /// A run that goes on from a checkpoint with its schedule of the history and its clock.
+    pub(crate) fn resume(
+        folder: &'a RunFolder,
+        scene: &'a Scene,
+        simulation: Simulation,
+        (history, earlier): (Every, Clock),
+    ) -> Result<Self, Failure> {
+        let schedule = schedule(scene, &simulation, Some(history))?;
+        let record = Record::resume(folder, scene, &simulation, &schedule)?;
+        Ok(Self { folder, scene, simulation, schedule, record, earlier, begun: Instant::now() })
+    }
+
+    /// Steps until the end, at most `most` steps, or until the user interrupts; writes what is due and the end.
+    pub(crate) fn go(&mut self, most: Option<u64>, progress: &mut Progress) -> Result<Ending, Failure> {
+        let first = self.simulation.step_index();
+        let stop =
+            most.map_or(self.schedule.total, |most| self.schedule.total.min(first.saturating_add(most)));
+        if first == 0 {
+            let clock = self.clock();
+            self.record.row(&mut self.simulation, &clock)?;
+            self.record.frame(self.folder, self.scene, &self.simulation)?;
+        }
+        let before = self.energies()?;
+        let ending = loop {
+            let step = self.simulation.step_index();
+            if step >= stop {
+                break if step >= self.schedule.total { Ending::Complete } else { Ending::Steps };
+            }
+            if interrupt::asked() {
+                break Ending::Interrupted;
+            }
+            if let Err(error) = self.step(progress) {
+                // The grains are between two steps: there is nothing to save but what is known.
+                write_summary(self, first, &before, Ending::Failed, Some(error.message()))?;
+                return Err(error);
+            }
+        };
+        let clock = self.clock();
+        self.record.row(&mut self.simulation, &clock)?;
+        self.record.frame(self.folder, self.scene, &self.simulation)?;
+        self.checkpoint()?;
+        write_summary(self, first, &before, ending, None)?;
+        Ok(ending)
+    }
+
+    fn step(&mut self, progress: &mut Progress) -> Result<(), Failure> {
+        self.simulation.step().map_err(|error| Failure::while_running(&error))?;
+        let step = self.simulation.step_index();
+        if self.schedule.history.is_due(step) {
+            let clock = self.clock();
+            self.record.row(&mut self.simulation, &clock)?;
+        }
+        if self.schedule.frame_is_due(step) {
+            self.record.frame(self.folder, self.scene, &self.simulation)?;
+        }
+        if self.schedule.checkpoint_is_due(step) {
+            self.checkpoint()?;
+        }
+        progress.tell(step, self.simulation.time_s());
+        Ok(())
+    }
+
+    /// Path of the checkpoint of the present step.
+    pub(crate) fn checkpoint_path(&self) -> PathBuf {
+        self.folder.file(&format!("checkpoints/step_{:012}.amber", self.simulation.step_index()))
+    }
+
+    fn checkpoint(&mut self) -> Result<(), Failure> {
+        let clock = self.clock();
+        let saved = Saved {
+            state: self.simulation.state(),
+            history: self.schedule.history,
+            wall_s: clock.wall_s,
+            stage_s: clock.stages,
+        };
+        let path = self.checkpoint_path();
+        write_checkpoint(&path, self.scene.hash(), &saved)?;
+        tracing::debug!(step = self.simulation.step_index(), "checkpoint {}", path.display());
+        Ok(())
+    }
+
+    /// Seconds so far.
+    pub(crate) fn clock(&self) -> Clock {
+        let stages = self.simulation.stage_seconds();
+        let earlier = self.earlier.stages.iter().copied().chain(std::iter::repeat(0.0));
+        Clock {
+            wall_s: self.earlier.wall_s + self.begun.elapsed().as_secs_f64(),
+            stages: stages.iter().zip(earlier).map(|((_, seconds), earlier)| seconds + earlier).collect(),
+        }
+    }
+
+    /// Energies now [J].
+    pub(crate) fn energies(&mut self) -> Result<Energies, Failure> {
+        self.simulation.energies(true).map_err(|error| Failure::while_running(&error))
+    }
+}
+
+fn schedule(scene: &Scene, simulation: &Simulation, history: Option<Every>) -> Result<Schedule, Failure> {
+    let time = scene.time.as_ref().ok_or_else(|| Failure::bad_input("the scene has no [time]; add it"))?;
+    Ok(Schedule::new(time, &scene.output, simulation.step_s(), history))
+}

@@ -1,0 +1,55 @@
+//! Description to set-up of a simulation.
+
+use crate::failure::Failure;
+use amberfield_core::Domain;
+use amberfield_dem::{FieldStageSetup, Setup};
+use amberfield_field::Choice;
+use amberfield_scene::Scene;
+use serde_json::{Map, Value, json};
+
+/// The box of a scene.
+pub(crate) fn domain_of(scene: &Scene) -> Result<&Domain, Failure> {
+    scene.domain.as_ref().ok_or_else(|| Failure::bad_input("the scene has no [domain]; add it"))
+}
+
+/// Whether each grain makes and feels the field.
+pub(crate) fn members(scene: &Scene) -> Vec<bool> {
+    let group = scene.electric_field.as_ref().map_or("all", |field| &field.particle_group);
+    let index = scene.groups.iter().position(|name| name == group);
+    scene.particles.group.iter().map(|id| group == "all" || index == Some(usize::from(id.0))).collect()
+}
+
+/// The parameters of a choice as one flat object; `built` names its kind.
+pub(crate) fn parameters(choice: &Choice) -> Value {
+    match serde_json::to_value(choice) {
+        Ok(Value::Object(kinds)) if kinds.len() == 1 => {
+            let (built, inner) = kinds.into_iter().next().expect("there is one");
+            let mut flat = match inner {
+                Value::Object(flat) => flat,
+                other => Map::from_iter([("value".to_owned(), other)]),
+            };
+            flat.insert("built".to_owned(), Value::String(built));
+            Value::Object(flat)
+        }
+        Ok(built) => json!({ "built": built }),
+        Err(_) => Value::Null,
+    }
+}
+
+/// The simulation that a scene asks for; `choice` are field parameters chosen earlier.
+pub(crate) fn setup_of(scene: &Scene, choice: Option<Choice>) -> Result<Setup, Failure> {
+    let time = scene.time.clone().ok_or_else(|| Failure::bad_input("the scene has no [time]; add it"))?;
+    let field = scene.electric_field.as_ref().map(|field| FieldStageSetup {
+        settings: field.field.clone(),
+        member: members(scene),
+        choice,
+    });
+    Ok(Setup {
+        domain: domain_of(scene)?.clone(),
+        materials: scene.materials.clone(),
+        particles: scene.particles.clone(),
+        walls: scene.walls.clone(),
+        time,
+        field,
+    })
+}

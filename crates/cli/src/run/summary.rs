@@ -1,0 +1,102 @@
+//! `summary.json`.
+
+use super::session::Session;
+use super::setup::parameters;
+use crate::failure::Failure;
+use crate::machine;
+use amberfield_dem::Energies;
+use amberfield_scene::write_json;
+use serde_json::{Map, Value, json};
+
+/// How a run ended.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(crate) enum Ending {
+    /// At `end_s`.
+    Complete,
+    /// After the steps that were asked for.
+    Steps,
+    /// By the user.
+    Interrupted,
+    /// By an error.
+    Failed,
+}
+
+impl Ending {
+    fn name(self) -> &'static str {
+        match self {
+            Self::Complete => "complete",
+            Self::Steps => "steps",
+            Self::Interrupted => "interrupted",
+            Self::Failed => "failed",
+        }
+    }
+}
+
+fn energies(energies: &Energies) -> Value {
+    json!({
+        "kinetic_J": energies.kinetic,
+        "contact_J": energies.contact,
+        "gravity_J": energies.gravity,
+        "electric_J": energies.electric,
+    })
+}
+
+/// Writes the summary of a run that began at step `first` with energies `before`.
+pub(crate) fn write_summary(
+    session: &mut Session<'_>,
+    first: u64,
+    before: &Energies,
+    ending: Ending,
+    error: Option<&str>,
+) -> Result<(), Failure> {
+    let after = if ending == Ending::Failed { None } else { Some(session.energies()?) };
+    let clock = session.clock();
+    let simulation = &session.simulation;
+    let steps = simulation.step_index() - first;
+    let seconds = clock.wall_s - session.earlier.wall_s;
+    let stages: Map<String, Value> = simulation
+        .stage_seconds()
+        .iter()
+        .zip(&clock.stages)
+        .map(|((name, _), seconds)| ((*name).to_owned(), json!(seconds)))
+        .collect();
+    let field = simulation.field().map(|field| {
+        json!({
+            "parameters": parameters(field.choice()),
+            "error_estimated": field.error_estimated(),
+            "error_measured": field.error_measured().map(|measured| measured.relative_rms),
+            "memory_bytes": field.memory_bytes(),
+        })
+    });
+    let guards: Map<String, Value> =
+        simulation.guards().iter().map(|guard| (guard.name.to_owned(), json!(guard.limit_s))).collect();
+    #[expect(clippy::cast_precision_loss, reason = "a rate for the eye")]
+    let summary = json!({
+        "version": env!("CARGO_PKG_VERSION"),
+        "ending": ending.name(),
+        "error": error,
+        "grains": simulation.len(),
+        "step": simulation.step_index(),
+        "steps_of_the_run": session.schedule.total,
+        "step_s": simulation.step_s(),
+        "time_s": simulation.time_s(),
+        "skin_m": simulation.skin_m(),
+        "wall_s": clock.wall_s,
+        "wall_s_stages": stages,
+        "steps_per_s": if seconds > 0.0 { steps as f64 / seconds } else { 0.0 },
+        "contacts": simulation.contacts(),
+        "energies_at_start": energies(before),
+        "energies_at_end": after.as_ref().map(energies),
+        "field": field,
+        "limited": simulation.limited().map(|limited| json!({
+            "grains_now": limited.grains,
+            "steps": limited.steps,
+            "grain_steps": limited.grain_steps,
+            "largest_force_N": limited.largest_force_n,
+        })),
+        "step_limits_s": guards,
+        "threads": rayon::current_num_threads(),
+        "cpu": machine::cpu_name(),
+    });
+    Ok(write_json(&session.folder.file("summary.json"), &summary)?)
+}

@@ -1,0 +1,89 @@
+//! Bad input is exit 2, says where, and leaves nothing behind.
+
+use crate::scenes::{CHARGED, PAIR, PAIR_CSV};
+use amberfield_tests::Bench;
+
+/// A scene changed in one place, and what the message must hold.
+fn refused(from: &str, to: &str, parts: &[&str]) {
+    assert!(CHARGED.contains(from), "{from}");
+    let bench = Bench::new(&CHARGED.replacen(from, to, 1));
+    let answer = bench.run(&["run", "scene.toml", "--out", "out"]);
+    assert_eq!(answer.code, Some(2), "{to}: {}", answer.stderr);
+    for part in parts {
+        assert!(answer.stderr.contains(part), "{part}: {}", answer.stderr);
+    }
+    assert!(answer.stderr.lines().all(|line| line.starts_with("error: ")), "{}", answer.stderr);
+    assert!(!bench.path("out").exists(), "nothing is written");
+}
+
+#[test]
+fn bad_values_name_file_line_key_and_value() {
+    refused(
+        "friction = 0.3",
+        "fricton = 0.3",
+        &["scene.toml:19", "materials[0].fricton", "materials[0].friction"],
+    );
+    refused("young_Pa = 1e6", "young_Pa = -1e6", &["scene.toml:16", "materials[0].young_Pa", "-1000000"]);
+    refused("count = 60", "count = 60000", &["scene.toml", "particles.generate", "fraction"]);
+    refused("step_s = 2e-6", "step_s = 1e-3", &["time step", "limit"]);
+    refused("tolerance = 1e-2", "tolerance = 1e-2\nmethod = \"kolehmainen\"", &["field_cutoff_radius"]);
+}
+
+#[test]
+fn what_is_not_built_is_refused_by_name() {
+    refused("tuning = \"model\"", "overlap = true", &["this version has no far solve beside the steps"]);
+    let transfer = "enable_collision_charge_transfer = true";
+    refused("tuning = \"model\"", transfer, &["materials[0].work_function_eV"]);
+    refused(
+        "rolling_friction = 0.01",
+        &format!("work_function_eV = 4.5\n[gas]\n# {transfer}"),
+        &["this version has no coupled gas flow"],
+    );
+}
+
+#[test]
+fn overlapping_and_coincident_grains_are_refused_before_anything_runs() {
+    let scene = CHARGED.split_once("[particles.generate]").unwrap().0.to_owned()
+        + "[particles]\nfile = \"g.csv\"\n[time]"
+        + CHARGED.split_once("[time]").unwrap().1;
+    for (second, part) in [("1e-3", "same centre"), ("1.05e-3", "overlap")] {
+        let bench = Bench::new(&scene);
+        bench.write(
+            "g.csv",
+            format!(
+                "id,x_m,y_m,z_m,radius_m,charge_C\n1,1e-3,1e-3,1e-3,1e-4,0\n2,1e-3,1e-3,{second},1e-4,0\n"
+            ),
+        );
+        let answer = bench.run(&["run", "scene.toml", "--out", "out"]);
+        assert_eq!(answer.code, Some(2), "{}", answer.stderr);
+        assert!(answer.stderr.contains(part), "{}", answer.stderr);
+        assert!(!bench.path("out").exists());
+    }
+}
+
+#[test]
+fn bad_command_lines_are_exit_2() {
+    let bench = Bench::new(PAIR);
+    bench.write("pair.csv", PAIR_CSV);
+    for arguments in [
+        &["run"][..],
+        &["fly", "scene.toml"],
+        &["run", "scene.toml", "--threads", "0"],
+        &["run", "scene.toml", "--steps", "0"],
+        &["run", "scene.toml", "--steps", "many"],
+        &["field", "nowhere.toml"],
+        &["field", "."],
+        &["field", "scene.toml", "--repeat", "0"],
+        &["field", "scene.toml", "--set", "electric_field.metod=p3m"],
+        &["field", "scene.toml", "--out", "no/such/folder/e.csv"],
+        &["field", "scene.toml", "--out", "."],
+        &["run", "scene.toml"],
+        &["run", "scene.toml", "--resume", "nothing.amber"],
+    ] {
+        let answer = bench.run(arguments);
+        assert_eq!(answer.code, Some(2), "{arguments:?}: {}", answer.stderr);
+        assert!(answer.stderr.contains("error"), "{arguments:?}: {}", answer.stderr);
+    }
+    assert_eq!(bench.run(&["--help"]).code, Some(0));
+    assert_eq!(bench.run(&["--version"]).code, Some(0));
+}

@@ -1,0 +1,63 @@
+//! `amberfield explain` and `amberfield doctor`.
+
+use crate::scenes::{CHARGED, PAIR, PAIR_CSV, plain};
+use amberfield_tests::Bench;
+
+#[test]
+fn explain_prints_plan_limits_and_both_forms() {
+    let bench = Bench::new(&CHARGED.replace("tuning = \"model\"", "field_cutoff_radius = 8e-4"));
+    let answer = bench.run(&["explain", "scene.toml"]);
+    assert_eq!(answer.code, Some(0), "{}", answer.stderr);
+    for part in [
+        "runs:",
+        "left out:",
+        "rayleigh",
+        "memory:",
+        "relative error",
+        "method = \"p3m\"",
+        "command = \"enable_electric_field ",
+    ] {
+        assert!(answer.stdout.contains(part), "{part}: {}", answer.stdout);
+    }
+    assert_eq!(bench.names("."), ["scene.toml"]);
+}
+
+#[test]
+fn the_printed_forms_are_scenes_of_the_same_field() {
+    let bench = Bench::new(PAIR);
+    bench.write("pair.csv", PAIR_CSV);
+    let set = [
+        "--set",
+        "electric_field.field_cutoff_radius=0.1",
+        "--set",
+        "electric_field.relative_permittivity=2.5",
+    ];
+    let first = bench.run(&["explain", "scene.toml", set[0], set[1], set[2], set[3]]).stdout;
+    let (_, rest) = first.split_once("electric field as keys:\n").unwrap();
+    let (keys, rest) = rest.split_once("\n\n").unwrap();
+    let (_, rest) = rest.split_once("electric field as one line:\n").unwrap();
+    let (line, _) = rest.split_once("\n\n").unwrap();
+    let head = PAIR.split_once("[electric_field]").unwrap().0;
+    for section in [keys, line] {
+        bench.write("scene.toml", format!("{head}{section}\n"));
+        assert_eq!(bench.run(&["explain", "scene.toml"]).stdout, first);
+    }
+}
+
+#[test]
+fn a_scene_without_a_field_says_so() {
+    let bench = Bench::new(&plain());
+    let answer = bench.run(&["explain", "scene.toml"]);
+    assert!(answer.stdout.contains("no [electric_field]"), "{}", answer.stdout);
+    assert!(answer.stdout.contains("0.0 kB for the field"), "{}", answer.stdout);
+}
+
+#[test]
+fn doctor_knows_the_machine() {
+    let bench = Bench::new("");
+    let answer = bench.run(&["doctor", "--threads", "2"]);
+    assert_eq!(answer.code, Some(0), "{}", answer.stderr);
+    for part in ["threads: 2", "memory:", "OpenFOAM", "stale runs: none"] {
+        assert!(answer.stdout.contains(part), "{part}: {}", answer.stdout);
+    }
+}

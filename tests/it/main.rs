@@ -1,0 +1,10 @@
+//! The commands as SCENES describes them: exit codes, messages, files.
+
+#![expect(clippy::unwrap_used, reason = "helpers of tests fail as tests do")]
+
+mod bad_input;
+mod explain_and_doctor;
+mod field;
+mod interrupt;
+mod run;
+mod scenes;

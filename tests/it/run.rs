@@ -1,0 +1,163 @@
+//! `amberfield run`.
+
+use crate::scenes::{CHARGED, plain};
+use amberfield_tests::{Bench, Table};
+
+fn last_frame(bench: &Bench, folder: &str) -> String {
+    let names = bench.names(&format!("{folder}/particles"));
+    let last = names.iter().rfind(|name| name.ends_with(".csv")).unwrap();
+    bench.read(&format!("{folder}/particles/{last}"))
+}
+
+#[test]
+fn a_run_writes_what_it_promises() {
+    let bench = Bench::new(CHARGED);
+    let answer = bench.run(&["run", "scene.toml", "--out", "out", "--threads", "2"]);
+    assert_eq!(answer.code, Some(0), "{}", answer.stderr);
+    assert_eq!(answer.stdout.lines().count(), 2, "{}", answer.stdout);
+    let names = bench.names("out");
+    for name in ["scene.toml", "log.jsonl", "history.csv", "particles.pvd", "summary.json", "tuning.json"] {
+        assert!(names.contains(&name.to_owned()), "{name} of {names:?}");
+    }
+    assert!(!names.contains(&"run.lock".to_owned()));
+    assert_eq!(bench.names("out/checkpoints").len(), 4);
+    assert_eq!(bench.names("out/particles").len(), 2 * 9);
+    let history = Table::parse(&bench.read("out/history.csv"));
+    let expected = "step,time_s,kinetic_J,contact_J,gravity_J,electric_J,net_charge_C,contacts,wall_s";
+    assert_eq!(history.columns[..9].join(","), expected);
+    assert!(history.columns[9..].iter().all(|column| column.starts_with("wall_s_")));
+    assert_eq!(history.rows.len(), 1001);
+    let steps = history.numbers("step");
+    assert!(steps.windows(2).all(|pair| pair[0] < pair[1]));
+    assert_eq!(steps.last(), Some(&1000.0));
+    let summary: serde_json::Value = serde_json::from_str(&bench.read("out/summary.json")).unwrap();
+    assert_eq!((summary["ending"].as_str(), summary["grains"].as_u64()), (Some("complete"), Some(60)));
+    for line in bench.read("out/log.jsonl").lines() {
+        let _: serde_json::Value = serde_json::from_str(line).unwrap();
+    }
+}
+
+#[test]
+fn columns_without_a_stage_are_not_there() {
+    let bench = Bench::new(&plain());
+    let answer = bench.run(&[
+        "run",
+        "scene.toml",
+        "--out",
+        "out",
+        "--steps",
+        "20",
+        "--set",
+        "time.gravity_m_s2=[0,0,0]",
+    ]);
+    assert_eq!(answer.code, Some(0), "{}", answer.stderr);
+    let history = Table::parse(&bench.read("out/history.csv"));
+    assert_eq!(history.without_clocks().columns, ["step", "time_s", "kinetic_J", "contact_J", "contacts"]);
+    assert!(!bench.names("out").contains(&"tuning.json".to_owned()));
+}
+
+#[test]
+fn a_continued_run_is_bitwise_the_uninterrupted_one() {
+    let bench = Bench::new(CHARGED);
+    assert_eq!(bench.run(&["run", "scene.toml", "--out", "whole"]).code, Some(0));
+    // 377 lies on no schedule.
+    assert_eq!(bench.run(&["run", "scene.toml", "--out", "parts", "--steps", "377"]).code, Some(0));
+    let checkpoint = "parts/checkpoints/step_000000000377.amber";
+    let answer = bench.run(&["run", "scene.toml", "--resume", checkpoint, "--steps", "250"]);
+    assert_eq!(answer.code, Some(0), "{}", answer.stderr);
+    let checkpoint = "parts/checkpoints/step_000000000627.amber";
+    // The run folder's own scene is the same scene.
+    let answer = bench.run(&["run", "parts/scene.toml", "--out", "parts", "--resume", checkpoint]);
+    assert_eq!(answer.code, Some(0), "{}", answer.stderr);
+    let history = |folder: &str| Table::parse(&bench.read(&format!("{folder}/history.csv"))).without_clocks();
+    assert_eq!(history("parts"), history("whole"));
+    assert_eq!(last_frame(&bench, "parts"), last_frame(&bench, "whole"));
+    assert_eq!(bench.names("parts/particles"), bench.names("whole/particles"));
+    assert_eq!(bench.read("parts/particles.pvd"), bench.read("whole/particles.pvd"));
+}
+
+#[test]
+fn a_run_goes_on_from_an_older_checkpoint_and_to_a_later_end() {
+    let bench = Bench::new(CHARGED);
+    let later = ["--set", "time.end_s=2.5e-3"];
+    assert_eq!(bench.run(&["run", "scene.toml", "--out", "out"]).code, Some(0));
+    let before = Table::parse(&bench.read("out/history.csv")).without_clocks();
+    let older = "out/checkpoints/step_000000000250.amber";
+    let answer = bench.run(&["run", "scene.toml", "--resume", older, later[0], later[1]]);
+    assert_eq!(answer.code, Some(0), "{}", answer.stderr);
+    let after = Table::parse(&bench.read("out/history.csv")).without_clocks();
+    assert_eq!(after.rows[..before.rows.len()], before.rows);
+    assert_eq!(after.numbers("step").last(), Some(&1250.0));
+}
+
+#[test]
+fn thread_counts_do_not_change_results() {
+    let bench = Bench::new(CHARGED);
+    for threads in ["1", "3"] {
+        let arguments = ["run", "scene.toml", "--out", threads, "--threads", threads, "--steps", "300"];
+        assert_eq!(bench.run(&arguments).code, Some(0));
+    }
+    assert_eq!(last_frame(&bench, "1"), last_frame(&bench, "3"));
+}
+
+#[test]
+fn an_existing_run_folder_is_kept_unless_asked() {
+    let bench = Bench::new(&plain());
+    let first = ["run", "scene.toml", "--out", "out", "--steps", "5"];
+    assert_eq!(bench.run(&first).code, Some(0));
+    let again = bench.run(&first);
+    assert_eq!(again.code, Some(2));
+    assert!(again.stderr.contains("--resume") && again.stderr.contains("--overwrite"), "{}", again.stderr);
+    let overwrite = ["run", "scene.toml", "--out", "out", "--steps", "7", "--overwrite"];
+    assert_eq!(bench.run(&overwrite).code, Some(0));
+    assert_eq!(bench.names("out/checkpoints"), ["step_000000000007.amber"]);
+    // The folder of the scene itself is never cleared.
+    let here = bench.run(&["run", "scene.toml", "--out", ".", "--overwrite"]);
+    assert_eq!(here.code, Some(2));
+    assert!(bench.path("scene.toml").exists());
+}
+
+#[test]
+fn bad_checkpoints_are_refused() {
+    let bench = Bench::new(&plain());
+    assert_eq!(bench.run(&["run", "scene.toml", "--out", "out", "--steps", "5"]).code, Some(0));
+    let path = "out/checkpoints/step_000000000005.amber";
+    let good = std::fs::read(bench.path(path)).unwrap();
+    let resume = |set: &str| bench.run(&["run", "scene.toml", "--resume", path, "--set", set]);
+    assert!(resume("time.step_s=1e-6").stderr.contains("another scene"));
+    for (damaged, part) in [
+        (good[..good.len() / 2].to_vec(), "cut short"),
+        (b"hello".to_vec(), "cut short"),
+        (vec![b'x'; 100], "not a checkpoint"),
+        (
+            {
+                let mut bytes = good.clone();
+                *bytes.last_mut().unwrap() ^= 1;
+                bytes
+            },
+            "checksum",
+        ),
+    ] {
+        bench.write(path, damaged);
+        let answer = resume("output.every_s=1");
+        assert_eq!(answer.code, Some(2));
+        assert!(answer.stderr.contains(part), "{}", answer.stderr);
+    }
+}
+
+#[test]
+fn a_grain_that_leaves_is_exit_4() {
+    let bench = Bench::new(
+        &plain()
+            .replace("[time]", "[time]\nskin_m = 5e-5")
+            .replace("z = \"grounded\"", "z = \"open\"")
+            .replace("[[walls]]\nplane = { point_m = [0, 0, 1e-5], normal = [0, 0, 1] }\n", ""),
+    );
+    let answer = bench.run(&["run", "scene.toml", "--out", "out"]);
+    assert_eq!(answer.code, Some(4), "{}", answer.stderr);
+    assert!(answer.stderr.contains("left the domain"), "{}", answer.stderr);
+    let summary: serde_json::Value = serde_json::from_str(&bench.read("out/summary.json")).unwrap();
+    assert_eq!(summary["ending"], "failed");
+    let answer = bench.run(&["run", "scene.toml", "--out", "gone", "--set", "particles.on_exit=delete"]);
+    assert_eq!(answer.code, Some(0), "{}", answer.stderr);
+}
