@@ -72,7 +72,7 @@ pub(crate) fn start(common: &Common) -> Log {
     let file = tracing_subscriber::fmt::layer().json().with_writer(log.clone());
     let subscriber = tracing_subscriber::registry()
         .with(stderr.with_filter(level))
-        .with(file.with_filter(level.max(LevelFilter::INFO)));
+        .with(file.with_filter(level.max(LevelFilter::DEBUG)));
     tracing::subscriber::set_global_default(subscriber).expect("the subscriber is set once");
     log
 }
