@@ -24,9 +24,9 @@ pub(crate) const SERIES: [Colour; 7] = [
 ];
 
 /// The map's ends and middle in Oklab (lightness, green–red, blue–yellow): blue, near-white, red of equal lightness.
-const NEGATIVE: [f64; 3] = [0.50, -0.035, -0.165];
+const NEGATIVE: [f64; 3] = [0.56, -0.040, -0.155];
 const NEUTRAL: [f64; 3] = [0.925, 0.0, 0.0];
-const POSITIVE: [f64; 3] = [0.50, 0.175, 0.085];
+const POSITIVE: [f64; 3] = [0.56, 0.175, 0.085];
 
 /// Diverging map: −1 blue, 0 near-white, +1 red; lightness falls evenly to both sides, so that equal steps of charge
 /// look equal. Values beyond ±1 have the end's colour.

@@ -38,7 +38,5 @@ pub(crate) fn run(root: &Path, with_tests: bool) -> Result<()> {
 }
 
 fn documentation(root: &Path) -> Result<()> {
-    // A unit in brackets, as in "radius [m]", is not a broken link.
-    let flags = "-D warnings -A rustdoc::broken_intra_doc_links";
-    execute(cargo(root, &["doc", "--workspace", "--no-deps"]).env("RUSTDOCFLAGS", flags))
+    execute(cargo(root, &["doc", "--workspace", "--no-deps"]).env("RUSTDOCFLAGS", "-D warnings"))
 }

@@ -17,6 +17,8 @@ const BOTTOM: f64 = 112.0;
 const LEFT: f64 = 56.0;
 /// Room for the colour bar.
 const RIGHT: f64 = 190.0;
+/// A net charge below this share of all charges is rounding.
+const NET_ROUNDING: f64 = 1e-9;
 const TITLE_SIZE: f64 = 30.0;
 const TEXT_SIZE: f64 = 19.0;
 
@@ -86,11 +88,16 @@ fn heading(raster: &mut Raster, layout: &Layout, scene: &PictureScene<'_>) {
         let (factor, prefix) = ticks::si_prefix(time);
         parts.push(format!("t = {} {prefix}s", trimmed(time / factor)));
     }
-    if particles.charge.iter().any(|charge| *charge != 0.0) {
+    let total: f64 = particles.charge.iter().map(|charge| charge.abs()).sum();
+    if total > 0.0 {
         let net = particles.net_charge();
-        let (factor, prefix) = ticks::si_prefix(net);
-        let sign = if net > 0.0 { "+" } else { "" };
-        parts.push(format!("net charge {sign}{} {prefix}C", trimmed(net / factor)));
+        parts.push(if net.abs() < NET_ROUNDING * total {
+            "no net charge".to_owned()
+        } else {
+            let (factor, prefix) = ticks::si_prefix(net);
+            let sign = if net > 0.0 { "+" } else { "" };
+            format!("net charge {sign}{} {prefix}C", trimmed(net / factor))
+        });
     }
     write(raster, [LEFT, 84.0], &parts.join("  ·  "), TEXT_SIZE, Anchor::Start, SOFT_INK);
 }
