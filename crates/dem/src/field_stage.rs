@@ -1,9 +1,15 @@
 //! The electric force on the grains, held constant between evaluations.
 //!
-//! `coupling_interval = "auto"`: E is evaluated anew as soon as the grains may have moved by
-//! `tolerance` × smallest member radius since the last evaluation (two touching grains that approach each
-//! other change their field by about that fraction), the travel being the sum over steps of Δt × largest
-//! speed; and at the latest after 0.2/ω_p. Both depend on the grains only, never on a clock.
+//! `coupling_interval = "auto"`: E is evaluated anew
+//!
+//! * as soon as the members have moved against each other by tolerance × smallest member radius, in RMS: two
+//!   touching grains that approach each other by that much change their field by about that fraction, and the
+//!   tolerance is an RMS error. Falling side by side changes nothing between them and does not count;
+//! * as soon as any grain may have moved by a tenth of that radius, so that no lone fast grain and no wall is
+//!   forgotten;
+//! * at the latest after 0.2/ω_p.
+//!
+//! Travels are sums over steps of Δt × speed. All depends on the grains only, never on a clock.
 
 use crate::error::DemError;
 use crate::grains::Grains;
@@ -15,8 +21,8 @@ use amberfield_field::{ElectricField, FieldValues, Wanted};
 use amberfield_laws::{force_limit, time_step_limits};
 use serde::{Deserialize, Serialize};
 
-/// Bounds of the travel between evaluations over the smallest radius, whatever the tolerance.
-const TRAVEL_FRACTION: (f64, f64) = (1e-3, 0.1);
+/// Largest travel of any grain between evaluations, over the smallest radius.
+const MOST_TRAVEL: f64 = 0.1;
 
 /// What the force limit did.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
@@ -46,7 +52,9 @@ pub(crate) struct FieldStage {
     values: FieldValues,
     /// Electric force on each grain [N], sorted order.
     pub(crate) force: Vec<Vector3<f64>>,
+    /// Travel of the fastest grain, and RMS travel against each other, since the last evaluation [m].
     travel: f64,
+    relative_travel: f64,
     steps_since: u64,
     /// Most steps between evaluations under the plasma limit.
     plasma_steps: u64,
@@ -85,6 +93,7 @@ impl FieldStage {
             values: FieldValues::default(),
             force: vec![Vector3::zeros(); particles.len()],
             travel: 0.0,
+            relative_travel: 0.0,
             steps_since: 0,
             plasma_steps: 1,
             plasma_limit: f64::INFINITY,
@@ -93,6 +102,7 @@ impl FieldStage {
         if let Some(state) = state {
             stage.force.clone_from(&state.force);
             stage.travel = state.travel;
+            stage.relative_travel = state.relative_travel;
             stage.steps_since = state.steps_since;
             stage.plasma_steps = state.plasma_steps;
             stage.plasma_limit = state.plasma_limit;
@@ -106,6 +116,7 @@ impl FieldStage {
             choice: self.field.choice().clone(),
             force: self.force.clone(),
             travel: self.travel,
+            relative_travel: self.relative_travel,
             steps_since: self.steps_since,
             plasma_steps: self.plasma_steps,
             plasma_limit: self.plasma_limit,
@@ -119,16 +130,31 @@ impl FieldStage {
     }
 
     /// Books a step of length `step` [s] at largest speed `speed` [m/s]; whether E is due.
-    pub(crate) fn is_due(&mut self, step: f64, speed: f64) -> bool {
-        self.travel += step * speed;
+    pub(crate) fn is_due(&mut self, step: f64, speed: f64, grains: &Grains) -> bool {
         self.steps_since += 1;
         match self.settings.coupling_interval {
             CouplingInterval::Steps(steps) => self.steps_since >= u64::from(steps.max(1)),
             CouplingInterval::Auto => {
-                let fraction = self.settings.tolerance.clamp(TRAVEL_FRACTION.0, TRAVEL_FRACTION.1);
-                self.travel > fraction * self.smallest_radius || self.steps_since >= self.plasma_steps
+                self.travel += step * speed;
+                self.relative_travel += step * self.relative_speed(grains);
+                self.relative_travel > self.settings.tolerance * self.smallest_radius
+                    || self.travel > MOST_TRAVEL * self.smallest_radius
+                    || self.steps_since >= self.plasma_steps
             }
         }
+    }
+
+    /// RMS speed of the members about their mean velocity [m/s].
+    fn relative_speed(&self, grains: &Grains) -> f64 {
+        let (mut sum, mut squares, mut count) = (Vector3::zeros(), 0.0, 0.0);
+        for (velocity, &original) in grains.velocity.iter().zip(&grains.original) {
+            if self.member[original as usize] {
+                sum += velocity;
+                squares += velocity.norm_squared();
+                count += 1.0;
+            }
+        }
+        if count == 0.0 { 0.0 } else { (squares / count - (sum / count).norm_squared()).max(0.0).sqrt() }
     }
 
     fn collect(&mut self, domain: &Domain, grains: &Grains, particles: &Particles) {
@@ -173,6 +199,7 @@ impl FieldStage {
         }
         self.watch_plasma(grains, step);
         self.travel = 0.0;
+        self.relative_travel = 0.0;
         self.steps_since = 0;
         Ok(())
     }

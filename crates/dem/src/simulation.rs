@@ -101,7 +101,7 @@ impl Simulation {
         if let Some(field) = &mut self.field {
             // The forces at the start come with a step of zero: the field was evaluated just before.
             if step > 0.0 {
-                if field.is_due(step, self.speed) {
+                if field.is_due(step, self.speed, &self.grains) {
                     field.evaluate(&self.domain, &self.grains, &self.particles, self.skin, self.step_s)?;
                 }
                 field.book_step();

@@ -43,6 +43,7 @@ pub(crate) struct FieldState {
     /// Electric force held on each grain [N], sorted order.
     pub(crate) force: Vec<Vector3<f64>>,
     pub(crate) travel: f64,
+    pub(crate) relative_travel: f64,
     pub(crate) steps_since: u64,
     pub(crate) plasma_steps: u64,
     pub(crate) plasma_limit: f64,
