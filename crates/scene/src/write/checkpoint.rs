@@ -2,7 +2,7 @@
 //!
 //! Layout, little endian: magic (8 bytes), format version (u32), length and text of the program version (u16),
 //! fingerprint of the scene (u64), length of the payload (u64), CRC-32 of everything else (u32), payload
-//! (MessagePack: it keeps every bit of a double, and unlike bincode it can carry tagged enums and is kept up).
+//! (bincode 2). This module alone knows the format: bincode is no longer maintained and may be replaced here.
 
 use super::atomic::write_atomically;
 use crate::SceneError;
@@ -22,7 +22,8 @@ const PROGRAM: &str = env!("CARGO_PKG_VERSION");
 /// # Errors
 /// What the system says.
 pub fn write_checkpoint(path: &Path, scene_hash: u64, state: &impl Serialize) -> Result<(), SceneError> {
-    let payload = rmp_serde::to_vec(state).map_err(|error| SceneError::unwritable(path, error))?;
+    let payload = bincode::serde::encode_to_vec(state, bincode::config::standard())
+        .map_err(|error| SceneError::unwritable(path, error))?;
     let header = header(PROGRAM, scene_hash, payload.len() as u64);
     let checksum = checksum(&header, &payload);
     write_atomically(path, |writer| {
@@ -60,7 +61,8 @@ pub fn read_checkpoint<T: DeserializeOwned>(path: &Path, scene_hash: u64) -> Res
     }
     let bytes = std::fs::read(path).map_err(|error| bad(format!("cannot be read: {error}")))?;
     let payload = open(&bytes, scene_hash).map_err(bad)?;
-    rmp_serde::from_slice(payload)
+    bincode::serde::decode_from_slice(payload, bincode::config::standard())
+        .map(|(state, _)| state)
         .map_err(|error| bad(format!("its state cannot be read ({error}); take another checkpoint")))
 }
 
@@ -117,7 +119,6 @@ mod tests {
     use super::*;
 
     #[derive(Debug, PartialEq, Serialize, serde::Deserialize)]
-    #[serde(tag = "kind")]
     enum Tagged {
         Plain,
         Full { number: f64, counts: [usize; 3] },
