@@ -3,25 +3,12 @@
 /// Red, green, blue, each 0 to 255 (sRGB).
 pub(crate) type Colour = [u8; 3];
 
-/// Text and axes.
+/// Text and lines.
 pub(crate) const INK: Colour = [38, 42, 51];
 /// Second-rank text.
 pub(crate) const SOFT_INK: Colour = [104, 110, 122];
-/// Grid lines.
-pub(crate) const GRID: Colour = [226, 228, 233];
 /// Paper.
 pub(crate) const PAPER: Colour = [255, 255, 255];
-
-/// Series colours that colour-blind readers tell apart (Okabe and Ito, 2008), dark ones first.
-pub(crate) const SERIES: [Colour; 7] = [
-    [0, 114, 178],
-    [213, 94, 0],
-    [0, 158, 115],
-    [204, 121, 167],
-    [86, 180, 233],
-    [230, 159, 0],
-    [60, 60, 60],
-];
 
 /// The map's ends and middle in Oklab (lightness, green–red, blue–yellow): blue, near-white, red of equal lightness.
 const NEGATIVE: [f64; 3] = [0.56, -0.040, -0.155];
@@ -52,11 +39,6 @@ fn from_oklab([lightness, a, b]: [f64; 3]) -> Colour {
             if value <= 0.003_130_8 { 12.92 * value } else { 1.055 * value.powf(1.0 / 2.4) - 0.055 };
         (encoded.clamp(0.0, 1.0) * 255.0).round() as u8
     })
-}
-
-/// `#rrggbb`.
-pub(crate) fn hex([red, green, blue]: Colour) -> String {
-    format!("#{red:02x}{green:02x}{blue:02x}")
 }
 
 #[cfg(test)]

@@ -2,7 +2,7 @@
 
 use std::path::PathBuf;
 
-/// Why a plot, picture or report cannot be made.
+/// Why a picture cannot be made.
 #[derive(Debug, thiserror::Error)]
 #[non_exhaustive]
 pub enum StudyError {
@@ -13,11 +13,5 @@ pub enum StudyError {
         path: PathBuf,
         /// What the system says.
         source: std::io::Error,
-    },
-    /// The file's ending names no known format.
-    #[error("{} ends in no known picture format; give .png or .svg", path.display())]
-    Ending {
-        /// The file.
-        path: PathBuf,
     },
 }

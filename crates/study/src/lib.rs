@@ -1,22 +1,20 @@
-//! Runs methods, checks the answer, then records the time; reports, plots and pictures.
+//! Draws what was computed: pictures of the bed.
 //!
-//! [`write_picture`] draws the bed; [`Plot`] draws curves. Both carry their font with them and need nothing from
-//! the machine. The feature `plots` (on by default) holds them.
+//! [`write_picture`] carries its font with it and needs nothing from the machine. The feature `plots` (on by
+//! default) holds it.
 
-#[cfg(feature = "plots")]
-mod canvas;
 #[cfg(feature = "plots")]
 mod colour;
 mod error;
 #[cfg(feature = "plots")]
+mod font;
+#[cfg(feature = "plots")]
 mod picture;
 #[cfg(feature = "plots")]
-mod plot;
+mod raster;
 #[cfg(feature = "plots")]
 mod ticks;
 
 pub use error::StudyError;
 #[cfg(feature = "plots")]
 pub use picture::{PictureScene, write_picture};
-#[cfg(feature = "plots")]
-pub use plot::{AxisScale, Marks, Plot, PlotAxis, Series};

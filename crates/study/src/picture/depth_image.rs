@@ -1,7 +1,7 @@
 //! An image that knows how near each of its pixels is.
 
-use crate::canvas::{Raster, blend};
 use crate::colour::Colour;
+use crate::raster::{Raster, blend};
 
 /// Unit vector towards the light in the view's axes (right, up, towards the viewer).
 pub(super) const LIGHT: [f64; 3] = [-0.408, 0.577, 0.707];

@@ -3,8 +3,9 @@
 use super::PictureScene;
 use super::camera::{Camera, axes, span};
 use super::grains::ChargeRange;
-use crate::canvas::{Anchor, Raster, Surface, Text, text_width};
 use crate::colour::{Colour, INK, SOFT_INK, diverging};
+use crate::font;
+use crate::raster::{Anchor, Raster, Text};
 use crate::ticks;
 use amberfield_core::{Axis, Boundary, Domain};
 
@@ -49,7 +50,7 @@ impl Layout {
 }
 
 fn write(raster: &mut Raster, at: [f64; 2], text: &str, size: f64, anchor: Anchor, colour: Colour) {
-    raster.text(at, Text { text, size, anchor, colour, upwards: false });
+    raster.text(at, Text { text, size, anchor, colour });
 }
 
 /// Draws everything around the box.
@@ -66,7 +67,7 @@ pub(super) fn draw(
     axis_cross(raster, [LEFT + 18.0, base - 14.0]);
     let end = scale_bar(raster, camera, layout, [LEFT + 96.0, base]);
     let note = boundaries(scene.domain);
-    if end + 24.0 + text_width(&note, 16.0) < layout.width as f64 - 24.0 {
+    if end + 24.0 + font::width(&note, 16.0) < layout.width as f64 - 24.0 {
         write(raster, [layout.width as f64 - 28.0, base], &note, 16.0, Anchor::End, SOFT_INK);
     } else {
         write(raster, [LEFT + 96.0, base + 26.0], &note, 16.0, Anchor::Start, SOFT_INK);
@@ -75,7 +76,7 @@ pub(super) fn draw(
 
 fn heading(raster: &mut Raster, layout: &Layout, scene: &PictureScene<'_>) {
     let room = layout.width as f64 - LEFT - 24.0;
-    let size = TITLE_SIZE.min(TITLE_SIZE * room / text_width(scene.title, TITLE_SIZE).max(1.0));
+    let size = TITLE_SIZE.min(TITLE_SIZE * room / font::width(scene.title, TITLE_SIZE).max(1.0));
     write(raster, [LEFT, 52.0], scene.title, size, Anchor::Start, INK);
     let particles = scene.particles;
     let count = if particles.len() == 1 {
@@ -142,12 +143,12 @@ fn colour_bar(raster: &mut Raster, layout: &Layout, range: ChargeRange) {
     write(raster, [left - 4.0, top - 22.0], &format!("charge [{prefix}C]"), TEXT_SIZE, Anchor::Start, INK);
     let limit = range.limit / factor;
     let values = ticks::linear(-limit, limit, 8);
-    let mut labels = ticks::labels(&values, 0);
+    let mut labels = ticks::labels(&values);
     for (label, _) in labels.iter_mut().zip(&values).filter(|(_, value)| **value > 0.0) {
         label.insert(0, '+');
     }
     // Right-aligned, so that signs stand left of a common column of digits.
-    let widest = labels.iter().map(|label| text_width(label, TEXT_SIZE)).fold(0.0, f64::max);
+    let widest = labels.iter().map(|label| font::width(label, TEXT_SIZE)).fold(0.0, f64::max);
     for (value, label) in values.iter().zip(&labels) {
         let y = top + 0.5 * height * (1.0 - value / limit);
         raster.line(&[[left + width, y], [left + width + 6.0, y]], 1.2, INK);
@@ -182,7 +183,7 @@ fn scale_bar(raster: &mut Raster, camera: &Camera, layout: &Layout, at: [f64; 2]
     let (factor, prefix) = ticks::si_prefix(length * (1.0 + 1e-9));
     let text = format!("{} {prefix}m", trimmed(length / factor));
     write(raster, [at[0] + pixels + 10.0, at[1]], &text, TEXT_SIZE, Anchor::Start, INK);
-    at[0] + pixels + 10.0 + text_width(&text, TEXT_SIZE)
+    at[0] + pixels + 10.0 + font::width(&text, TEXT_SIZE)
 }
 
 /// The field's boundary conditions in words: equal ones together.

@@ -7,7 +7,7 @@ mod legend;
 mod surroundings;
 
 use crate::StudyError;
-use crate::canvas::Raster;
+use crate::raster::Raster;
 use amberfield_core::{Domain, Particles, Wall};
 use camera::Camera;
 use depth_image::DepthImage;

@@ -1,8 +1,8 @@
 //! Pixels, drawn several times finer than they are written so that every edge is smooth.
 
-use super::{Anchor, Surface, Text, font};
 use crate::StudyError;
 use crate::colour::{Colour, PAPER};
+use crate::font;
 use std::fs::File;
 use std::io::BufWriter;
 use std::path::Path;
@@ -10,7 +10,25 @@ use std::path::Path;
 /// Fine pixels per pixel and direction.
 const FINENESS: usize = 3;
 
-/// An image of a given size in pixels.
+/// Which point of a text its coordinates give.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(crate) enum Anchor {
+    Start,
+    Middle,
+    End,
+}
+
+/// A text and how it looks.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Text<'a> {
+    pub(crate) text: &'a str,
+    /// Height of the letters' em [px].
+    pub(crate) size: f64,
+    pub(crate) anchor: Anchor,
+    pub(crate) colour: Colour,
+}
+
+/// An image of a given size in pixels; coordinates in pixels, x to the right, y down.
 pub(crate) struct Raster {
     width: usize,
     height: usize,
@@ -73,6 +91,52 @@ impl Raster {
         writer.finish().map_err(|error| failed(error.into()))
     }
 
+    /// A line through the points, of the given width [px].
+    pub(crate) fn line(&mut self, points: &[[f64; 2]], width: f64, colour: Colour) {
+        let fineness = self.fineness();
+        let half = 0.5 * width * fineness;
+        for pair in points.windows(2) {
+            let [a, b] = [pair[0], pair[1]].map(|point| point.map(|value| value * fineness));
+            let along = [b[0] - a[0], b[1] - a[1]];
+            let length_squared = along[0] * along[0] + along[1] * along[1];
+            let low = [a[0].min(b[0]) - half, a[1].min(b[1]) - half];
+            let high = [a[0].max(b[0]) + half, a[1].max(b[1]) + half];
+            self.fill(low, high, colour, |x, y| {
+                let from = [x - a[0], y - a[1]];
+                let part = if length_squared > 0.0 {
+                    ((from[0] * along[0] + from[1] * along[1]) / length_squared).clamp(0.0, 1.0)
+                } else {
+                    0.0
+                };
+                let off = [from[0] - part * along[0], from[1] - part * along[1]];
+                off[0] * off[0] + off[1] * off[1] <= half * half
+            });
+        }
+    }
+
+    /// A filled rectangle from its upper left corner.
+    pub(crate) fn rectangle(&mut self, corner: [f64; 2], size: [f64; 2], colour: Colour) {
+        let fineness = self.fineness();
+        let low = corner.map(|value| (value * fineness).round());
+        let high = [0, 1].map(|axis| ((corner[axis] + size[axis]) * fineness).round());
+        self.fill(low, high, colour, |_, _| true);
+    }
+
+    /// A text whose baseline passes through the point.
+    pub(crate) fn text(&mut self, at: [f64; 2], text: Text<'_>) {
+        let fineness = self.fineness();
+        let size = text.size * fineness;
+        let shift = match text.anchor {
+            Anchor::Start => 0.0,
+            Anchor::Middle => -0.5 * font::width(text.text, size),
+            Anchor::End => -font::width(text.text, size),
+        };
+        let origin = at.map(|value| (value * fineness).round());
+        font::rasterise(text.text, size, |x, y, coverage| {
+            self.mix(origin[0] + (x + shift).round(), origin[1] + y, text.colour, coverage);
+        });
+    }
+
     /// Mixes a colour into the fine pixel at fine coordinates; outside the image nothing happens.
     fn mix(&mut self, x: f64, y: f64, colour: Colour, weight: f64) {
         let [columns, rows] = self.fine_size();
@@ -105,63 +169,6 @@ pub(crate) fn blend(pixel: &mut Colour, colour: Colour, weight: f64) {
     }
 }
 
-impl Surface for Raster {
-    fn line(&mut self, points: &[[f64; 2]], width: f64, colour: Colour) {
-        let fineness = self.fineness();
-        let half = 0.5 * width * fineness;
-        for pair in points.windows(2) {
-            let [a, b] = [pair[0], pair[1]].map(|point| point.map(|value| value * fineness));
-            let along = [b[0] - a[0], b[1] - a[1]];
-            let length_squared = along[0] * along[0] + along[1] * along[1];
-            let low = [a[0].min(b[0]) - half, a[1].min(b[1]) - half];
-            let high = [a[0].max(b[0]) + half, a[1].max(b[1]) + half];
-            self.fill(low, high, colour, |x, y| {
-                let from = [x - a[0], y - a[1]];
-                let part = if length_squared > 0.0 {
-                    ((from[0] * along[0] + from[1] * along[1]) / length_squared).clamp(0.0, 1.0)
-                } else {
-                    0.0
-                };
-                let off = [from[0] - part * along[0], from[1] - part * along[1]];
-                off[0] * off[0] + off[1] * off[1] <= half * half
-            });
-        }
-    }
-
-    fn rectangle(&mut self, corner: [f64; 2], size: [f64; 2], colour: Colour) {
-        let fineness = self.fineness();
-        let low = corner.map(|value| (value * fineness).round());
-        let high = [0, 1].map(|axis| ((corner[axis] + size[axis]) * fineness).round());
-        self.fill(low, high, colour, |_, _| true);
-    }
-
-    fn disc(&mut self, centre: [f64; 2], radius: f64, colour: Colour) {
-        let fineness = self.fineness();
-        let (centre, radius) = (centre.map(|value| value * fineness), radius * fineness);
-        let low = centre.map(|value| value - radius);
-        let high = centre.map(|value| value + radius);
-        self.fill(low, high, colour, |x, y| {
-            (x - centre[0]).powi(2) + (y - centre[1]).powi(2) <= radius * radius
-        });
-    }
-
-    fn text(&mut self, at: [f64; 2], text: Text<'_>) {
-        let fineness = self.fineness();
-        let size = text.size * fineness;
-        let shift = match text.anchor {
-            Anchor::Start => 0.0,
-            Anchor::Middle => -0.5 * font::width(text.text, size),
-            Anchor::End => -font::width(text.text, size),
-        };
-        let origin = at.map(|value| (value * fineness).round());
-        font::rasterise(text.text, size, |x, y, coverage| {
-            let along = (x + shift).round();
-            let place = if text.upwards { [y, -along - 1.0] } else { [along, y] };
-            self.mix(origin[0] + place[0], origin[1] + place[1], text.colour, coverage);
-        });
-    }
-}
-
 #[cfg(test)]
 mod tests {
     use super::*;
@@ -178,12 +185,9 @@ mod tests {
     #[test]
     fn nothing_is_drawn_outside() {
         let mut raster = Raster::new(5, 5);
-        raster.disc([-50.0, 2.0], 3.0, [0; 3]);
+        raster.rectangle([-50.0, 2.0], [3.0, 3.0], [0; 3]);
         raster.line(&[[-10.0, -10.0], [-5.0, -3.0]], 2.0, [0; 3]);
-        raster.text(
-            [400.0, 1.0],
-            Text { text: "out", size: 12.0, anchor: Anchor::Start, colour: [0; 3], upwards: true },
-        );
+        raster.text([400.0, 1.0], Text { text: "out", size: 12.0, anchor: Anchor::Start, colour: [0; 3] });
         assert!(raster.bytes().iter().all(|byte| *byte == 255));
     }
 }
