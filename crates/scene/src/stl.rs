@@ -1,16 +1,20 @@
 //! STL surfaces, text or binary.
 //!
-//! Read here rather than by a library so that a bad file is refused with line and value, and a binary
-//! header that promises more triangles than the file holds allocates nothing.
+//! `stl_io` reads facets and numbers. Around it stands what a file from elsewhere needs: the file's length against
+//! the number of triangles it promises, the place of a mistake, the scale, and vertices merged.
 
 use crate::SceneError;
 use crate::error::shorten;
 use amberfield_core::TriangleMesh;
 use nalgebra::Vector3;
+use std::cell::Cell;
 use std::collections::HashMap;
+use std::io::{self, Read, Seek, SeekFrom};
 
-/// Bytes before the triangles of a binary file: 80 of text and a count.
-const BINARY_HEADER: usize = 84;
+/// Bytes of text at the beginning of a binary file.
+const HEADER_TEXT: usize = 80;
+/// Bytes before the triangles of a binary file: text and a count.
+const BINARY_HEADER: usize = HEADER_TEXT + 4;
 /// Bytes of a binary triangle: normal and three vertices in f32, two bytes of attributes.
 const BINARY_TRIANGLE: usize = 50;
 /// Largest coordinate [m], as elsewhere in a scene.
@@ -78,15 +82,19 @@ fn is_degenerate(points: &[Vector3<f64>; 3]) -> bool {
 fn is_binary(bytes: &[u8]) -> bool {
     match promised(bytes) {
         Some(count) if BINARY_HEADER + count * BINARY_TRIANGLE == bytes.len() => true,
-        _ => !bytes.trim_ascii_start().starts_with(b"solid"),
+        _ => {
+            let text = bytes.strip_prefix(b"\xef\xbb\xbf").unwrap_or(bytes);
+            !text.trim_ascii_start().starts_with(b"solid")
+        }
     }
 }
 
 fn promised(bytes: &[u8]) -> Option<usize> {
-    let count = bytes.get(80..BINARY_HEADER)?.try_into().ok()?;
+    let count = bytes.get(HEADER_TEXT..BINARY_HEADER)?.try_into().ok()?;
     usize::try_from(u32::from_le_bytes(count)).ok()
 }
 
+/// Checks the length that the header promises before a triangle is read.
 fn read_binary(file: &str, bytes: &[u8]) -> Result<Vec<Vector3<f64>>, SceneError> {
     let count = promised(bytes).ok_or_else(|| {
         SceneError::file(
@@ -104,94 +112,86 @@ fn read_binary(file: &str, bytes: &[u8]) -> Result<Vec<Vector3<f64>>, SceneError
             ),
         ));
     }
-    let mut corners = Vec::with_capacity(3 * count);
-    for (number, triangle) in bytes[BINARY_HEADER..needed].chunks_exact(BINARY_TRIANGLE).enumerate() {
-        for vertex in triangle[12..48].chunks_exact(12) {
-            let mut point = Vector3::zeros();
-            for (axis, number) in vertex.chunks_exact(4).enumerate() {
-                point[axis] =
-                    f64::from(f32::from_le_bytes(number.try_into().expect("chunks have four bytes")));
-            }
-            if !point.iter().all(|number| number.is_finite()) {
-                return Err(SceneError::file(
-                    file,
-                    format!(
-                        "triangle {} has the vertex {:?}, not finite; repair the file",
-                        number + 1,
-                        point.as_slice()
-                    ),
-                ));
-            }
-            corners.push(point);
-        }
-    }
-    Ok(corners)
+    // Headers that begin with "solid" would be taken for text: the library gets an empty one.
+    let pieces = [&[b'\n'; HEADER_TEXT][..], &bytes[HEADER_TEXT..needed]];
+    corners(Pieces::new(pieces.into_iter())).map_err(|(triangle, reason)| {
+        SceneError::file(file, format!("triangle {triangle}: {}; export it again", shorten(&reason)))
+    })
 }
 
+/// Lines go to the library one by one, so that a mistake has a line. Names of solids are left out, since there may be
+/// several in a file and the library ends at the first; normals too, since nobody reads them and exporters write NaN.
 fn read_text(file: &str, bytes: &[u8]) -> Result<Vec<Vector3<f64>>, SceneError> {
     let text = crate::scene::source::decode(file, bytes)?;
-    let mut corners = Vec::new();
-    let mut corners_of_facet = 0;
-    for (index, line) in text.lines().enumerate() {
-        let number = index as u64 + 1;
-        let mut words = line.split_ascii_whitespace();
-        match words.next() {
-            Some("vertex") => {
-                corners.push(read_vertex(file, number, words)?);
-                corners_of_facet += 1;
-            }
-            Some("endfacet") => {
-                if corners_of_facet != 3 {
-                    return Err(SceneError::data(
-                        file,
-                        number,
-                        format!("a facet with {corners_of_facet} vertices; facets have three"),
-                    ));
-                }
-                corners_of_facet = 0;
-            }
-            Some("solid" | "facet" | "outer" | "endloop" | "endsolid") | None => {}
-            Some(other) => {
-                return Err(SceneError::data(
-                    file,
-                    number,
-                    format!("unexpected word \"{}\"; expected facet, vertex or endsolid", shorten(other)),
-                ));
-            }
+    let number = Cell::new(0_usize);
+    let facets = text.split_inclusive('\n').enumerate().filter_map(|(index, line)| {
+        number.set(index + 1);
+        match line.split_ascii_whitespace().next() {
+            Some("solid" | "endsolid") | None => None,
+            Some("facet") => Some("facet normal 0 0 0\n"),
+            Some(_) => Some(line),
         }
-    }
-    if corners_of_facet != 0 {
-        return Err(SceneError::file(
+    });
+    let end = std::iter::once("endsolid\n").inspect(|_| number.set(0));
+    let pieces = ["solid \n"].into_iter().chain(facets).chain(["\n"]).chain(end).map(str::as_bytes);
+    corners(Pieces::new(pieces)).map_err(|(triangle, reason)| {
+        let Some(index) = number.get().checked_sub(1) else {
+            return SceneError::file(
+                file,
+                format!("triangle {triangle} does not end; the file is cut short, export it again"),
+            );
+        };
+        let line = text.lines().nth(index).unwrap_or_default().trim();
+        SceneError::data(
             file,
-            "the last facet does not end; the file is cut short, export it again",
-        ));
+            index as u64 + 1,
+            format!("\"{}\" in triangle {triangle}: {}; repair the file", shorten(line), shorten(&reason)),
+        )
+    })
+}
+
+/// The corners of all triangles, or the number of the bad one and what the library says of it.
+fn corners<'b>(
+    mut pieces: Pieces<'b, impl Iterator<Item = &'b [u8]> + Clone>,
+) -> Result<Vec<Vector3<f64>>, (usize, String)> {
+    let mut corners = Vec::new();
+    let triangles = stl_io::create_stl_reader(&mut pieces).map_err(|error| (1, error.to_string()))?;
+    for (index, triangle) in triangles.enumerate() {
+        let triangle = triangle.map_err(|error| (index + 1, error.to_string()))?;
+        corners.extend(triangle.vertices.map(|vertex| Vector3::from(vertex.0.map(f64::from))));
     }
     Ok(corners)
 }
 
-fn read_vertex<'w>(
-    file: &str,
-    line: u64,
-    mut words: impl Iterator<Item = &'w str>,
-) -> Result<Vector3<f64>, SceneError> {
-    let mut point = Vector3::zeros();
-    for axis in 0..3 {
-        let word = words.next().unwrap_or_default();
-        point[axis] = word.parse().ok().filter(|number: &f64| number.is_finite()).ok_or_else(|| {
-            SceneError::data(
-                file,
-                line,
-                format!("vertex coordinate \"{}\" is not a finite number", shorten(word)),
-            )
-        })?;
+/// Pieces of a file, at most one for each call: whoever reads line by line has not seen the next piece.
+struct Pieces<'b, I> {
+    all: I,
+    ahead: I,
+    rest: &'b [u8],
+}
+
+impl<'b, I: Iterator<Item = &'b [u8]> + Clone> Pieces<'b, I> {
+    fn new(all: I) -> Self {
+        Self { ahead: all.clone(), all, rest: &[] }
     }
-    match words.next() {
-        None => Ok(point),
-        Some(word) => Err(SceneError::data(
-            file,
-            line,
-            format!("a fourth vertex coordinate \"{}\"; give three", shorten(word)),
-        )),
+}
+
+impl<'b, I: Iterator<Item = &'b [u8]>> Read for Pieces<'b, I> {
+    fn read(&mut self, buffer: &mut [u8]) -> io::Result<usize> {
+        if self.rest.is_empty() {
+            self.rest = self.ahead.next().unwrap_or_default();
+        }
+        self.rest.read(buffer)
+    }
+}
+
+impl<'b, I: Iterator<Item = &'b [u8]> + Clone> Seek for Pieces<'b, I> {
+    fn seek(&mut self, to: SeekFrom) -> io::Result<u64> {
+        if to != SeekFrom::Start(0) {
+            return Err(io::ErrorKind::Unsupported.into());
+        }
+        (self.ahead, self.rest) = (self.all.clone(), &[]);
+        Ok(0)
     }
 }
 
@@ -221,6 +221,47 @@ mod tests {
         assert_eq!((mesh.vertices.len(), mesh.triangles.len(), dropped), (4, 2, 0));
         let other = binary(&[[0., 0., 0., 1., 0., 0., 0., 1., 0.], [1., 0., 0., 1., 1., 0., 0., 1., 0.]]);
         assert_eq!(read_stl("w.stl", &other, 1e-3).unwrap().0, mesh);
+    }
+
+    #[test]
+    fn text_may_hold_several_solids_and_normals_that_are_no_numbers() {
+        let other =
+            FACET.replace("normal 0 0 1", "normal nan nan nan").replace("vertex 0 0 0", "vertex 0 0 5");
+        let both = format!("\u{feff}{FACET}endsolid a\n\n{other}endsolid\n");
+        let (mesh, _) = read_stl("w.stl", both.as_bytes(), 1.0).unwrap();
+        assert_eq!((mesh.vertices.len(), mesh.triangles.len()), (4, 2));
+    }
+
+    #[test]
+    fn binary_files_may_begin_as_text_and_end_late() {
+        let mut bytes = binary(&[[0., 0., 0., 1., 0., 0., 0., 1., 0.]]);
+        bytes[..6].copy_from_slice(b"solid ");
+        assert_eq!(read_stl("w.stl", &bytes, 1.0).unwrap().0.triangles.len(), 1);
+        bytes[..6].copy_from_slice(b"colour");
+        bytes.extend([1, 2, 3]);
+        assert_eq!(read_stl("w.stl", &bytes, 1.0).unwrap().0.triangles.len(), 1);
+    }
+
+    #[test]
+    fn mistakes_in_text_have_a_line() {
+        for (good, bad, line, word) in [
+            ("vertex 0 1 0", "vertex 0 x 0", 6, "float"),
+            ("vertex 1 0 0", "vertex 1 inf 0", 5, "finite"),
+            ("vertex 1 0 0", "vertex 1 0 0 0", 5, "vertex"),
+            ("outer loop\n", "", 3, "outer"),
+            ("endloop\nendfacet\n", "endloop\nhello", 8, "endfacet"),
+        ] {
+            let text = FACET.replace(good, bad);
+            let message = read_stl("w.stl", text.as_bytes(), 1.0).unwrap_err().to_string();
+            assert!(message.starts_with(&format!("w.stl:{line}: ")) && message.contains(word), "{message}");
+        }
+        let cut = FACET.replace("endfacet\n", "");
+        assert!(
+            read_stl("w.stl", cut.as_bytes(), 1.0)
+                .unwrap_err()
+                .to_string()
+                .contains("triangle 1 does not end")
+        );
     }
 
     #[test]

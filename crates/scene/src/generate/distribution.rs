@@ -142,7 +142,7 @@ pub(super) fn read_charges_spec(
             let inner = table.table("normal", &["mean", "std"])?.expect("the key is there");
             Charges::Normal {
                 mean: inner.need_number("mean", CHARGE)?,
-                std: inner.need_number("std", Range::closed(0.0, 1.0))?,
+                std: inner.need_number("std", Range::closed(0.0, 1e6))?,
             }
         }
         "bipolar" => match table.get("bipolar").map(|node| &node.value) {

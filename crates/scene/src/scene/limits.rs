@@ -14,8 +14,8 @@ pub(crate) const RADIUS_OR_POINT: Range = Range::closed(0.0, 1e3);
 pub(crate) const DENSITY: Range = Range::positive(1e6);
 /// Young's moduli [Pa].
 pub(crate) const YOUNG: Range = Range::positive(1e15);
-/// Charges [C].
-pub(crate) const CHARGE: Range = Range::closed(-1.0, 1.0);
+/// Charges [C]: wide, since textbooks and test sets use unit charges.
+pub(crate) const CHARGE: Range = Range::closed(-1e6, 1e6);
 /// Velocities [m/s] and angular velocities [rad/s] of grains.
 pub(crate) const SPEED: Range = Range::closed(-1e9, 1e9);
 /// Times [s].
