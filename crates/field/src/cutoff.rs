@@ -3,14 +3,15 @@
 use crate::image_cells::ImageCells;
 use crate::images::ImageLattice;
 use crate::inputs::{check_finite, check_result};
-use crate::{FieldError, FieldValues, Wanted};
+use crate::stopwatch::Stopwatch;
+use crate::{FieldError, FieldMethod, FieldValues, Wanted};
 use amberfield_core::Domain;
 use amberfield_core::constants::coulomb_constant;
 use nalgebra::Vector3;
 use rayon::prelude::*;
-use std::time::Instant;
 
-/// Coulomb's sum over the charges and their periodic copies within a cut-off radius; walls have no images.
+/// Coulomb's sum over the charges and their periodic copies within a cut-off radius; walls have no images. All
+/// of it is near.
 ///
 /// Memory is kept: repeated evaluations of as many particles allocate nothing. Results do not depend on the
 /// number of threads.
@@ -24,7 +25,7 @@ pub struct Cutoff {
     wrapped: Vec<Vector3<f64>>,
     sums: Vec<CoulombSum>,
     pairs_per_particle: f64,
-    seconds: [(&'static str, f64); 1],
+    stopwatch: Stopwatch,
 }
 
 /// Coulomb's sum over k_e at one particle.
@@ -54,15 +55,13 @@ impl Cutoff {
             wrapped: Vec::new(),
             sums: Vec::new(),
             pairs_per_particle: 0.0,
-            seconds: [("near", 0.0)],
+            stopwatch: Stopwatch::default(),
         })
     }
+}
 
-    /// E [V/m] (and what else is wanted) at every particle, positions in m, charges in C. All of it is near.
-    ///
-    /// # Errors
-    /// Values that are not finite, two charges in one place.
-    pub fn evaluate(
+impl FieldMethod for Cutoff {
+    fn evaluate(
         &mut self,
         positions: &[Vector3<f64>],
         charges: &[f64],
@@ -70,7 +69,7 @@ impl Cutoff {
         out: &mut FieldValues,
     ) -> Result<(), FieldError> {
         check_finite(positions, charges)?;
-        let start = Instant::now();
+        self.stopwatch.restart();
         self.wrapped.clear();
         self.wrapped.extend(positions.iter().map(|position| self.domain.wrap(*position)));
         self.cells.build(&self.lattice, &self.wrapped, charges, self.radius, |_, _| ());
@@ -87,25 +86,19 @@ impl Cutoff {
         out.complete(positions.len(), wanted);
         let partners: usize = self.sums.iter().map(|sum| sum.partners).sum();
         self.pairs_per_particle = partners as f64 / self.sums.len().max(1) as f64;
-        self.seconds[0].1 = start.elapsed().as_secs_f64();
+        self.stopwatch.lap("near");
         check_result(&out.e)
     }
 
-    /// Mean number of partners within the radius in the last evaluation, periodic copies included.
-    #[must_use]
-    pub fn pairs_per_particle(&self) -> f64 {
+    fn pairs_per_particle(&self) -> f64 {
         self.pairs_per_particle
     }
 
-    /// Stages of the last evaluation and their time [s].
-    #[must_use]
-    pub fn seconds(&self) -> &[(&'static str, f64)] {
-        &self.seconds
+    fn seconds(&self) -> &[(&'static str, f64)] {
+        self.stopwatch.laps()
     }
 
-    /// Memory kept between evaluations [bytes].
-    #[must_use]
-    pub fn memory_bytes(&self) -> usize {
+    fn memory_bytes(&self) -> usize {
         self.cells.memory_bytes()
             + self.wrapped.capacity() * size_of::<Vector3<f64>>()
             + self.sums.capacity() * size_of::<CoulombSum>()

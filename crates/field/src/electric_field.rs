@@ -4,11 +4,11 @@ use crate::boundary_field::BoundaryField;
 use crate::cutoff::Cutoff;
 use crate::direct::Direct;
 use crate::images::{Geometry, ImageLattice};
-use crate::inputs::{check_finite, check_in_box, check_net_charge, check_result};
+use crate::inputs::{check_finite, check_in_box, check_net_charge};
 use crate::kolehmainen::Kolehmainen;
 use crate::p3m::{P3m, P3mParameters};
 use crate::tuning::Tuner;
-use crate::{FieldError, FieldValues, Wanted};
+use crate::{FieldError, FieldMethod, FieldValues, Wanted};
 use amberfield_core::constants::VACUUM_PERMITTIVITY;
 use amberfield_core::{Domain, FieldSettings, Method, Plan};
 use nalgebra::Vector3;
@@ -59,22 +59,13 @@ pub struct Statistics {
     pub seconds: Vec<(&'static str, f64)>,
 }
 
-/// What computes the field of the charges.
-#[derive(Debug)]
-enum Levels {
-    Cutoff(Box<Cutoff>),
-    Direct(Box<Direct>),
-    Kolehmainen(Box<Kolehmainen>),
-    P3m(Box<P3m>),
-}
-
 /// The field of one scene.
 #[derive(Debug)]
 pub struct ElectricField {
     domain: Domain,
     settings: FieldSettings,
     choice: Choice,
-    levels: Levels,
+    method: Box<dyn FieldMethod>,
     outside: Option<Outside>,
     error_estimated: Option<f64>,
     error_measured: Option<Measured>,
@@ -167,31 +158,24 @@ impl ElectricField {
         choice: &Choice,
     ) -> Result<Self, FieldError> {
         let permittivity = settings.relative_permittivity;
-        let levels = match choice {
-            Choice::Cutoff { cutoff_m } => {
-                Levels::Cutoff(Box::new(Cutoff::new(domain, permittivity, *cutoff_m)?))
+        let background = settings.neutralising_background;
+        let method: Box<dyn FieldMethod> = match choice {
+            Choice::Cutoff { cutoff_m } => Box::new(Cutoff::new(domain, permittivity, *cutoff_m)?),
+            Choice::Direct | Choice::AllPairs => Box::new(Direct::new(domain, permittivity, background)?),
+            Choice::Kolehmainen { cutoff_m } => {
+                let cells = settings.grid_cells;
+                Box::new(Kolehmainen::new(domain, permittivity, background, *cutoff_m, cells)?)
             }
-            Choice::Direct | Choice::AllPairs => {
-                let direct = Direct::new(domain, permittivity, settings.neutralising_background)?;
-                Levels::Direct(Box::new(direct))
-            }
-            Choice::Kolehmainen { cutoff_m } => Levels::Kolehmainen(Box::new(Kolehmainen::new(
-                domain,
-                permittivity,
-                settings.neutralising_background,
-                *cutoff_m,
-                settings.grid_cells,
-            )?)),
             Choice::P3m(parameters) => {
                 Geometry::of(domain)?;
-                Levels::P3m(Box::new(P3m::new(domain, permittivity, *parameters)))
+                Box::new(P3m::new(domain, settings, *parameters))
             }
         };
         Ok(Self {
             domain: domain.clone(),
             settings: settings.clone(),
             choice: choice.clone(),
-            levels,
+            method,
             outside: Outside::new(domain, settings)?,
             error_estimated: None,
             error_measured: None,
@@ -214,18 +198,7 @@ impl ElectricField {
         wanted: Wanted,
         out: &mut FieldValues,
     ) -> Result<(), FieldError> {
-        check_finite(positions, charges)?;
-        out.clear();
-        match &mut self.levels {
-            Levels::Cutoff(cutoff) => cutoff.evaluate(positions, charges, wanted, out)?,
-            Levels::Direct(direct) => direct.evaluate(positions, charges, wanted, out)?,
-            Levels::Kolehmainen(hybrid) => hybrid.evaluate(positions, charges, wanted, out)?,
-            Levels::P3m(p3m) => {
-                check_charges(&self.domain, &self.settings, positions, charges)?;
-                p3m.evaluate(positions, charges, wanted, out);
-            }
-        }
-        out.complete(positions.len(), wanted);
+        self.method.evaluate(positions, charges, wanted, out)?;
         if let Some(outside) = &mut self.outside {
             for (particle, (e, potential)) in outside.evaluate(positions).iter().enumerate() {
                 out.e[particle] += e;
@@ -237,7 +210,7 @@ impl ElectricField {
                 }
             }
         }
-        check_result(&out.e)
+        Ok(())
     }
 
     /// Measures the error of E on a sample by a second, more exact splitting; `None` for methods that make no
@@ -250,14 +223,14 @@ impl ElectricField {
         positions: &[Vector3<f64>],
         charges: &[f64],
     ) -> Result<Option<Measured>, FieldError> {
-        let Levels::P3m(p3m) = &self.levels else { return Ok(None) };
+        let Choice::P3m(parameters) = self.choice else { return Ok(None) };
         check_finite(positions, charges)?;
         check_charges(&self.domain, &self.settings, positions, charges)?;
         if charges.iter().all(|charge| *charge == 0.0) {
             return Ok(None);
         }
         let tuner = Tuner::new(&self.domain, &self.settings, positions, charges);
-        self.error_measured = Some(tuner.measure(*p3m.parameters(), tuner.scale()?));
+        self.error_measured = Some(tuner.measure(parameters, tuner.scale()?));
         Ok(self.error_measured)
     }
 
@@ -282,39 +255,17 @@ impl ElectricField {
     /// Cost of the last evaluation.
     #[must_use]
     pub fn statistics(&self) -> Statistics {
-        match &self.levels {
-            Levels::Cutoff(cutoff) => Statistics {
-                pairs_per_particle: cutoff.pairs_per_particle(),
-                grid_cells: None,
-                seconds: cutoff.seconds().to_vec(),
-            },
-            Levels::Direct(direct) => Statistics {
-                pairs_per_particle: direct.pairs_per_particle(),
-                grid_cells: None,
-                seconds: direct.seconds().to_vec(),
-            },
-            Levels::Kolehmainen(hybrid) => Statistics {
-                pairs_per_particle: hybrid.pairs_per_particle(),
-                grid_cells: Some(hybrid.grid_cells()),
-                seconds: hybrid.seconds().to_vec(),
-            },
-            Levels::P3m(p3m) => Statistics {
-                pairs_per_particle: p3m.pairs_per_particle(),
-                grid_cells: Some(p3m.cells()),
-                seconds: p3m.stopwatch.laps().to_vec(),
-            },
+        Statistics {
+            pairs_per_particle: self.method.pairs_per_particle(),
+            grid_cells: self.method.grid_cells(),
+            seconds: self.method.seconds().to_vec(),
         }
     }
 
     /// Memory held [bytes].
     #[must_use]
     pub fn memory_bytes(&self) -> usize {
-        match &self.levels {
-            Levels::Cutoff(cutoff) => cutoff.memory_bytes(),
-            Levels::Direct(direct) => direct.memory_bytes(),
-            Levels::Kolehmainen(hybrid) => hybrid.memory_bytes(),
-            Levels::P3m(p3m) => p3m.memory_bytes(),
-        }
+        self.method.memory_bytes()
     }
 
     /// Which field stages are built and which are not, with reasons.

@@ -3,11 +3,12 @@
 //! 1/r = [1 − erf(r/√2σ)]/r + erf(r/√2σ)/r — pairs within r_c, and the internal grid with the box's faces.
 
 use crate::grid::level::{GridLevel, GridParameters};
+use crate::inputs::{check_finite, check_in_box, check_net_charge, check_result};
 use crate::near::{NearLevel, NearParameters};
 use crate::stopwatch::Stopwatch;
-use crate::{FieldValues, Wanted};
-use amberfield_core::Domain;
+use crate::{FieldError, FieldMethod, FieldValues, Wanted};
 use amberfield_core::constants::coulomb_constant;
+use amberfield_core::{Domain, FieldSettings};
 use amberfield_laws::gaussian_cloud::cloud_potential;
 use nalgebra::Vector3;
 use serde::{Deserialize, Serialize};
@@ -48,20 +49,22 @@ pub(crate) struct P3m {
     domain: Domain,
     parameters: P3mParameters,
     coulomb: f64,
+    neutralising_background: bool,
     near: NearLevel,
     grid: GridLevel,
     positions: Vec<Vector3<f64>>,
     near_field: Vec<(Vector3<f64>, f64)>,
     grid_field: Vec<(Vector3<f64>, f64)>,
-    pub(crate) stopwatch: Stopwatch,
+    stopwatch: Stopwatch,
 }
 
 impl P3m {
-    pub(crate) fn new(domain: &Domain, relative_permittivity: f64, parameters: P3mParameters) -> Self {
+    pub(crate) fn new(domain: &Domain, settings: &FieldSettings, parameters: P3mParameters) -> Self {
         Self {
             domain: domain.clone(),
             parameters,
-            coulomb: coulomb_constant(relative_permittivity),
+            coulomb: coulomb_constant(settings.relative_permittivity),
+            neutralising_background: settings.neutralising_background,
             near: NearLevel::new(domain, parameters.near()),
             grid: GridLevel::new(domain, parameters.grid()),
             positions: Vec::new(),
@@ -69,64 +72,6 @@ impl P3m {
             grid_field: Vec::new(),
             stopwatch: Stopwatch::default(),
         }
-    }
-
-    pub(crate) fn parameters(&self) -> &P3mParameters {
-        &self.parameters
-    }
-
-    pub(crate) fn cells(&self) -> [usize; 3] {
-        self.grid.cells()
-    }
-
-    pub(crate) fn pairs_per_particle(&self) -> f64 {
-        self.near.pairs_per_particle()
-    }
-
-    pub(crate) fn memory_bytes(&self) -> usize {
-        self.near.memory_bytes() + self.grid.memory_bytes() + self.positions.capacity() * 88
-    }
-
-    /// E (and what else is wanted) of the charges alone, positions inside the domain or a period away.
-    pub(crate) fn evaluate(
-        &mut self,
-        positions: &[Vector3<f64>],
-        charges: &[f64],
-        wanted: Wanted,
-        out: &mut FieldValues,
-    ) {
-        self.stopwatch.restart();
-        self.load(positions);
-        self.near.sort(&self.positions, charges);
-        self.stopwatch.lap("sort");
-        self.near.add_all(wanted.potential, &mut self.near_field);
-        self.stopwatch.lap("near");
-        self.grid.solve(&self.positions, charges);
-        self.stopwatch.lap("grid");
-        self.grid.gather(&self.positions, &mut self.grid_field);
-        self.stopwatch.lap("gather");
-
-        let k = self.coulomb;
-        let levels = || self.near_field.iter().zip(&self.grid_field);
-        out.e.clear();
-        out.e.extend(levels().map(|(near, far)| k * (near.0 + far.0)));
-        if wanted.potential {
-            let own_cloud = cloud_potential(0.0, self.parameters.sigma_m);
-            let background = self.background_potential(charges);
-            out.potential.clear();
-            out.potential.extend(
-                levels()
-                    .zip(charges)
-                    .map(|((near, far), charge)| k * (near.1 + far.1 - charge * own_cloud - background)),
-            );
-        }
-        if wanted.components {
-            out.components.near.clear();
-            out.components.near.extend(self.near_field.iter().map(|near| k * near.0));
-            out.components.far.clear();
-            out.components.far.extend(self.grid_field.iter().map(|far| k * far.0));
-        }
-        self.stopwatch.lap("sum");
     }
 
     /// E of the charges alone at a sample of the particles.
@@ -156,6 +101,13 @@ impl P3m {
         }
     }
 
+    fn check(&self, positions: &[Vector3<f64>], charges: &[f64]) -> Result<(), FieldError> {
+        check_finite(positions, charges)?;
+        check_in_box(&self.domain, positions)?;
+        let permittivity = 1.0 / (4.0 * PI * self.coulomb);
+        check_net_charge(&self.domain, permittivity, self.neutralising_background, charges)
+    }
+
     /// Mean potential of the near level in a box without conductor, where the mean must vanish.
     fn background_potential(&self, charges: &[f64]) -> f64 {
         if !self.domain.needs_neutrality() {
@@ -163,5 +115,65 @@ impl P3m {
         }
         let net: f64 = charges.iter().sum();
         2.0 * PI * self.parameters.sigma_m.powi(2) * net / self.domain.volume()
+    }
+}
+
+impl FieldMethod for P3m {
+    fn evaluate(
+        &mut self,
+        positions: &[Vector3<f64>],
+        charges: &[f64],
+        wanted: Wanted,
+        out: &mut FieldValues,
+    ) -> Result<(), FieldError> {
+        self.check(positions, charges)?;
+        self.stopwatch.restart();
+        self.load(positions);
+        self.near.sort(&self.positions, charges);
+        self.stopwatch.lap("sort");
+        self.near.add_all(wanted.potential, &mut self.near_field);
+        self.stopwatch.lap("near");
+        self.grid.solve(&self.positions, charges);
+        self.stopwatch.lap("grid");
+        self.grid.gather(&self.positions, &mut self.grid_field);
+        self.stopwatch.lap("gather");
+
+        let k = self.coulomb;
+        let levels = || self.near_field.iter().zip(&self.grid_field);
+        out.clear();
+        out.e.extend(levels().map(|(near, far)| k * (near.0 + far.0)));
+        if wanted.potential {
+            let own_cloud = cloud_potential(0.0, self.parameters.sigma_m);
+            let background = self.background_potential(charges);
+            out.potential.extend(
+                levels()
+                    .zip(charges)
+                    .map(|((near, far), charge)| k * (near.1 + far.1 - charge * own_cloud - background)),
+            );
+        }
+        if wanted.components {
+            out.components.near.extend(self.near_field.iter().map(|near| k * near.0));
+            out.components.far.extend(self.grid_field.iter().map(|far| k * far.0));
+        }
+        out.complete(positions.len(), wanted);
+        self.stopwatch.lap("sum");
+        check_result(&out.e)
+    }
+
+    fn pairs_per_particle(&self) -> f64 {
+        self.near.pairs_per_particle()
+    }
+
+    fn grid_cells(&self) -> Option<[usize; 3]> {
+        Some(self.grid.cells())
+    }
+
+    fn seconds(&self) -> &[(&'static str, f64)] {
+        self.stopwatch.laps()
+    }
+
+    fn memory_bytes(&self) -> usize {
+        let per_particle = size_of::<Vector3<f64>>() + 2 * size_of::<(Vector3<f64>, f64)>();
+        self.near.memory_bytes() + self.grid.memory_bytes() + self.positions.capacity() * per_particle
     }
 }

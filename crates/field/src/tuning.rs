@@ -3,7 +3,7 @@
 use crate::error_model::{grid_error_squared, near_error_squared};
 use crate::grid::level::grid_axes;
 use crate::p3m::{P3m, P3mParameters};
-use crate::{FieldError, FieldValues, Measured, Wanted};
+use crate::{FieldError, FieldMethod, FieldValues, Measured, Wanted};
 use amberfield_core::constants::coulomb_constant;
 use amberfield_core::{Domain, FieldSettings, Tuning};
 use nalgebra::Vector3;
@@ -17,6 +17,8 @@ const ACCEPT: f64 = 0.9;
 const SAMPLE: usize = 600;
 /// The second splitting's width over the first.
 const SECOND_WIDTH: f64 = 1.5;
+/// The second splitting's r_c/σ over the first: with less, both leave out the same distant pairs and agree on it.
+const SECOND_CUTOFF: f64 = 1.4;
 /// Rounds of tightening before a tolerance counts as out of reach.
 const ROUNDS: usize = 6;
 /// Candidates that are timed.
@@ -204,7 +206,7 @@ impl<'a> Tuner<'a> {
             if candidates.is_empty() {
                 break;
             }
-            let timed = self.fastest(&candidates);
+            let timed = self.fastest(&candidates)?;
             let measured = self.measure(timed, scale);
             tracing::debug!(?timed, aim, measured = measured.relative_rms, "p3m candidate");
             if measured.relative_rms <= ACCEPT * asked {
@@ -225,8 +227,8 @@ impl<'a> Tuner<'a> {
     pub(crate) fn scale(&self) -> Result<f64, FieldError> {
         let first = self.best_by_model(&self.cloud, FIRST_LOOK * self.cloud.floor)?;
         let mut field = FieldValues::default();
-        let mut p3m = P3m::new(self.domain, self.settings.relative_permittivity, first);
-        p3m.evaluate(self.positions, self.charges, Wanted::default(), &mut field);
+        let mut p3m = P3m::new(self.domain, self.settings, first);
+        p3m.evaluate(self.positions, self.charges, Wanted::default(), &mut field)?;
         let sum: f64 = field.e.iter().map(Vector3::norm_squared).sum();
         Ok((sum / self.cloud.count).sqrt().max(self.cloud.floor))
     }
@@ -238,17 +240,13 @@ impl<'a> Tuner<'a> {
         let sigma = SECOND_WIDTH * parameters.sigma_m;
         let second = P3mParameters {
             sigma_m: sigma,
-            cutoff_m: sigma * (parameters.cutoff_m / parameters.sigma_m + 0.7),
+            cutoff_m: sigma * (parameters.cutoff_m / parameters.sigma_m + SECOND_CUTOFF),
             order: (parameters.order + 1).min(8),
             kernel_accuracy: 0.1 * parameters.kernel_accuracy,
             ..parameters
         };
         let field = |parameters| {
-            P3m::new(self.domain, self.settings.relative_permittivity, parameters).sample(
-                self.positions,
-                self.charges,
-                &sample,
-            )
+            P3m::new(self.domain, self.settings, parameters).sample(self.positions, self.charges, &sample)
         };
         let (first, second) = (field(parameters), field(second));
         let sum: f64 = first.iter().zip(&second).map(|(a, b)| (a - b).norm_squared()).sum();
@@ -359,25 +357,25 @@ impl<'a> Tuner<'a> {
     }
 
     /// The candidate with the shortest evaluation, or the cheapest by the model when timing is off.
-    fn fastest(&self, candidates: &[(f64, P3mParameters)]) -> P3mParameters {
+    fn fastest(&self, candidates: &[(f64, P3mParameters)]) -> Result<P3mParameters, FieldError> {
         const WORTH_TIMING: f64 = 2.5;
         if self.settings.tuning == Tuning::Model || candidates.len() == 1 {
-            return candidates[0].1;
+            return Ok(candidates[0].1);
         }
         let worth = candidates.iter().take(TIMED).filter(|(cost, _)| *cost < WORTH_TIMING * candidates[0].0);
         let mut field = FieldValues::default();
-        worth
-            .map(|(_, parameters)| {
-                let mut p3m = P3m::new(self.domain, self.settings.relative_permittivity, *parameters);
-                let mut seconds = f64::INFINITY;
-                for _ in 0..2 {
-                    let start = Instant::now();
-                    p3m.evaluate(self.positions, self.charges, Wanted::default(), &mut field);
-                    seconds = seconds.min(start.elapsed().as_secs_f64());
+        let mut best = (f64::INFINITY, candidates[0].1);
+        for (_, parameters) in worth {
+            let mut p3m = P3m::new(self.domain, self.settings, *parameters);
+            for _ in 0..2 {
+                let start = Instant::now();
+                p3m.evaluate(self.positions, self.charges, Wanted::default(), &mut field)?;
+                let seconds = start.elapsed().as_secs_f64();
+                if seconds < best.0 {
+                    best = (seconds, *parameters);
                 }
-                (seconds, *parameters)
-            })
-            .min_by(|a, b| a.0.total_cmp(&b.0))
-            .map_or(candidates[0].1, |(_, parameters)| parameters)
+            }
+        }
+        Ok(best.1)
     }
 }

@@ -2,7 +2,7 @@
 
 use amberfield_core::constants::coulomb_constant;
 use amberfield_core::{Boundary, Domain, Vector3};
-use amberfield_field::{Cutoff, FieldError, FieldValues, Wanted};
+use amberfield_field::{Cutoff, FieldError, FieldMethod, FieldValues, Wanted};
 use amberfield_oracle::{open_sum, reference};
 
 /// Round-off of sums of up to some thousand terms.

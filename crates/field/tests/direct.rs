@@ -2,7 +2,7 @@
 
 use amberfield_core::constants::coulomb_constant;
 use amberfield_core::{Boundary, Domain, Vector3};
-use amberfield_field::{Direct, FieldError, FieldValues, Wanted};
+use amberfield_field::{Direct, FieldError, FieldMethod, FieldValues, Wanted};
 use amberfield_oracle::{ErrorNorms, field_scale, reference};
 use std::f64::consts::PI;
 

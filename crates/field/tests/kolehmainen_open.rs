@@ -2,7 +2,7 @@
 
 use amberfield_core::constants::VACUUM_PERMITTIVITY;
 use amberfield_core::{Boundary, Domain, Vector3};
-use amberfield_field::{FieldValues, Kolehmainen, Wanted};
+use amberfield_field::{FieldMethod, FieldValues, Kolehmainen, Wanted};
 
 /// Round-off of the transforms.
 const ROUND_OFF: f64 = 1e-11;

@@ -7,14 +7,14 @@ mod splitting;
 use crate::image_cells::ImageCells;
 use crate::images::{BoundingBox, Geometry, ImageLattice};
 use crate::inputs::{check_finite, check_inside, check_net_charge, check_result};
-use crate::{FieldError, FieldValues, Wanted};
+use crate::stopwatch::Stopwatch;
+use crate::{FieldError, FieldMethod, FieldValues, Wanted};
 use amberfield_core::Domain;
 use amberfield_core::constants::coulomb_constant;
 use modes::Modes;
 use nalgebra::Vector3;
 use splitting::Splitting;
 use std::f64::consts::{FRAC_2_SQRT_PI, PI};
-use std::time::Instant;
 
 /// The direct sum of a box: E and potential at every particle with all images, exact to about 1e-12.
 ///
@@ -36,7 +36,7 @@ pub struct Direct {
     cells: ImageCells<()>,
     wrapped: Vec<Vector3<f64>>,
     pairs_per_particle: f64,
-    seconds: Vec<(&'static str, f64)>,
+    stopwatch: Stopwatch,
 }
 
 /// Two parts of the sum over k_e at one particle, and the number of partners.
@@ -66,38 +66,8 @@ impl Direct {
             cells: ImageCells::default(),
             wrapped: Vec::new(),
             pairs_per_particle: 0.0,
-            seconds: Vec::new(),
+            stopwatch: Stopwatch::default(),
         })
-    }
-
-    /// E [V/m] (and what else is wanted) at every particle, positions in m, charges in C. Components: pairs are
-    /// near, modes far.
-    ///
-    /// # Errors
-    /// Values that are not finite, grains on or beyond a wall, two charges in one place, a net charge that no
-    /// face takes.
-    pub fn evaluate(
-        &mut self,
-        positions: &[Vector3<f64>],
-        charges: &[f64],
-        wanted: Wanted,
-        out: &mut FieldValues,
-    ) -> Result<(), FieldError> {
-        let parts = self.sum(positions, charges)?;
-        let k = coulomb_constant(self.relative_permittivity);
-        out.clear();
-        out.e.extend(parts.iter().map(|part| (part.near + part.far) * k));
-        if wanted.potential {
-            out.potential.extend(parts.iter().map(|part| part.potential * k));
-        }
-        if wanted.components {
-            out.components.near.extend(parts.iter().map(|part| part.near * k));
-            out.components.far.extend(parts.iter().map(|part| part.far * k));
-        }
-        out.complete(parts.len(), wanted);
-        let partners: usize = parts.iter().map(|part| part.partners).sum();
-        self.pairs_per_particle = partners as f64 / parts.len().max(1) as f64;
-        check_result(&out.e)
     }
 
     fn sum(&mut self, positions: &[Vector3<f64>], charges: &[f64]) -> Result<Vec<Parts>, FieldError> {
@@ -105,16 +75,15 @@ impl Direct {
         check_inside(&self.domain, positions)?;
         let permittivity = 1.0 / (4.0 * PI * coulomb_constant(self.relative_permittivity));
         check_net_charge(&self.domain, permittivity, self.neutralising_background, charges)?;
-        self.seconds.clear();
+        self.stopwatch.restart();
         self.wrapped.clear();
         self.wrapped.extend(positions.iter().map(|position| self.domain.wrap(*position)));
         let Some(particles) = BoundingBox::around(&self.wrapped) else {
             return Ok(Vec::new());
         };
         if self.geometry == Geometry::Open {
-            let start = Instant::now();
             let sums = pairs::open(&self.lattice, &self.wrapped, charges);
-            self.seconds.push(("pairs", start.elapsed().as_secs_f64()));
+            self.stopwatch.lap("pairs");
             return Ok(sums
                 .into_iter()
                 .map(|(potential, near, partners)| Parts { potential, near, far: Vector3::zeros(), partners })
@@ -125,15 +94,13 @@ impl Direct {
     }
 
     fn ewald(&mut self, charges: &[f64], splitting: &Splitting) -> Vec<Parts> {
-        let start = Instant::now();
         self.cells.build(&self.lattice, &self.wrapped, charges, splitting.radius, |_, _| ());
         let near = pairs::short_ranged(&self.cells, &self.wrapped, splitting.alpha, splitting.radius);
-        self.seconds.push(("pairs", start.elapsed().as_secs_f64()));
-        let start = Instant::now();
+        self.stopwatch.lap("pairs");
         let modes = Modes::new(splitting);
         let amplitudes = modes.amplitudes(&self.wrapped, charges);
         let far = modes.gather(&amplitudes, &self.wrapped);
-        self.seconds.push(("modes", start.elapsed().as_secs_f64()));
+        self.stopwatch.lap("modes");
         tracing::debug!(
             alpha_per_m = splitting.alpha,
             radius_m = splitting.radius,
@@ -159,22 +126,42 @@ impl Direct {
             })
             .collect()
     }
+}
 
-    /// Mean number of partners within the pairs' radius in the last evaluation, images included.
-    #[must_use]
-    pub fn pairs_per_particle(&self) -> f64 {
+impl FieldMethod for Direct {
+    fn evaluate(
+        &mut self,
+        positions: &[Vector3<f64>],
+        charges: &[f64],
+        wanted: Wanted,
+        out: &mut FieldValues,
+    ) -> Result<(), FieldError> {
+        let parts = self.sum(positions, charges)?;
+        let k = coulomb_constant(self.relative_permittivity);
+        out.clear();
+        out.e.extend(parts.iter().map(|part| (part.near + part.far) * k));
+        if wanted.potential {
+            out.potential.extend(parts.iter().map(|part| part.potential * k));
+        }
+        if wanted.components {
+            out.components.near.extend(parts.iter().map(|part| part.near * k));
+            out.components.far.extend(parts.iter().map(|part| part.far * k));
+        }
+        out.complete(parts.len(), wanted);
+        let partners: usize = parts.iter().map(|part| part.partners).sum();
+        self.pairs_per_particle = partners as f64 / parts.len().max(1) as f64;
+        check_result(&out.e)
+    }
+
+    fn pairs_per_particle(&self) -> f64 {
         self.pairs_per_particle
     }
 
-    /// Stages of the last evaluation and their time [s].
-    #[must_use]
-    pub fn seconds(&self) -> &[(&'static str, f64)] {
-        &self.seconds
+    fn seconds(&self) -> &[(&'static str, f64)] {
+        self.stopwatch.laps()
     }
 
-    /// Memory kept between evaluations [bytes].
-    #[must_use]
-    pub fn memory_bytes(&self) -> usize {
+    fn memory_bytes(&self) -> usize {
         self.cells.memory_bytes() + self.wrapped.capacity() * size_of::<Vector3<f64>>()
     }
 }

@@ -8,13 +8,13 @@ use crate::cutoff::check_radius;
 use crate::image_cells::ImageCells;
 use crate::images::ImageLattice;
 use crate::inputs::{check_finite, check_in_box, check_net_charge, check_result};
-use crate::{FieldError, FieldValues, Wanted};
+use crate::stopwatch::Stopwatch;
+use crate::{FieldError, FieldMethod, FieldValues, Wanted};
 use amberfield_core::Domain;
 use amberfield_core::constants::{VACUUM_PERMITTIVITY, coulomb_constant};
 use mesh::Mesh;
 use nalgebra::Vector3;
 use rayon::prelude::*;
-use std::time::Instant;
 
 /// Cells per cut-off radius when the scene leaves them open: just above √3, the diagonal of a cube.
 const CELLS_PER_RADIUS: f64 = 1.75;
@@ -30,7 +30,8 @@ const MOST_CELLS: f64 = 2e8;
 ///
 /// The mesh is that of the box: seven-point finite volumes, walls at cell faces, gradient by Gauss' theorem with
 /// linear interpolation, and the faces' potentials and normal fields in its boundary conditions. Beyond open faces the
-/// mesh goes on for ever. The potential holds the mesh's potential of the particle's own charge, one cell wide.
+/// mesh goes on for ever. Components: pairs are near, the mesh far, the sum over cells' centres correction. The
+/// potential holds the mesh's potential of the particle's own charge, one cell wide.
 #[derive(Debug)]
 pub struct Kolehmainen {
     domain: Domain,
@@ -44,7 +45,7 @@ pub struct Kolehmainen {
     cells: Vec<[usize; 3]>,
     sums: Vec<PairSums>,
     pairs_per_particle: f64,
-    seconds: [(&'static str, f64); 2],
+    stopwatch: Stopwatch,
 }
 
 /// Sums over the partners of one particle, over k_e.
@@ -84,39 +85,8 @@ impl Kolehmainen {
             cells: Vec::new(),
             sums: Vec::new(),
             pairs_per_particle: 0.0,
-            seconds: [("mesh", 0.0), ("pairs", 0.0)],
+            stopwatch: Stopwatch::default(),
         })
-    }
-
-    /// E [V/m] (and what else is wanted) at every particle, positions in m, charges in C. Components: pairs are
-    /// near, the mesh far, the sum over cells' centres correction.
-    ///
-    /// # Errors
-    /// Values that are not finite, grains outside the box, two charges in one place, a net charge that no face
-    /// takes.
-    pub fn evaluate(
-        &mut self,
-        positions: &[Vector3<f64>],
-        charges: &[f64],
-        wanted: Wanted,
-        out: &mut FieldValues,
-    ) -> Result<(), FieldError> {
-        check_finite(positions, charges)?;
-        check_in_box(&self.domain, positions)?;
-        let permittivity = VACUUM_PERMITTIVITY * self.relative_permittivity;
-        check_net_charge(&self.domain, permittivity, self.neutralising_background, charges)?;
-        let start = Instant::now();
-        self.wrapped.clear();
-        self.wrapped.extend(positions.iter().map(|position| self.domain.wrap(*position)));
-        self.cells.clear();
-        self.cells.extend(self.wrapped.iter().map(|position| self.mesh.cell_of(position)));
-        self.mesh.solve(&self.cells, charges, permittivity);
-        self.seconds[0].1 = start.elapsed().as_secs_f64();
-        let start = Instant::now();
-        self.sum_pairs(charges);
-        self.seconds[1].1 = start.elapsed().as_secs_f64();
-        self.fill(wanted, out);
-        check_result(&out.e)
     }
 
     /// Sums over pairs within the radius, and over the centres of their cells where these differ.
@@ -178,28 +148,46 @@ impl Kolehmainen {
         }
         out.complete(self.sums.len(), wanted);
     }
+}
 
-    /// Cells of the mesh per axis.
-    #[must_use]
-    pub fn grid_cells(&self) -> [usize; 3] {
-        self.mesh.cells()
+impl FieldMethod for Kolehmainen {
+    fn evaluate(
+        &mut self,
+        positions: &[Vector3<f64>],
+        charges: &[f64],
+        wanted: Wanted,
+        out: &mut FieldValues,
+    ) -> Result<(), FieldError> {
+        check_finite(positions, charges)?;
+        check_in_box(&self.domain, positions)?;
+        let permittivity = VACUUM_PERMITTIVITY * self.relative_permittivity;
+        check_net_charge(&self.domain, permittivity, self.neutralising_background, charges)?;
+        self.stopwatch.restart();
+        self.wrapped.clear();
+        self.wrapped.extend(positions.iter().map(|position| self.domain.wrap(*position)));
+        self.cells.clear();
+        self.cells.extend(self.wrapped.iter().map(|position| self.mesh.cell_of(position)));
+        self.mesh.solve(&self.cells, charges, permittivity);
+        self.stopwatch.lap("mesh");
+        self.sum_pairs(charges);
+        self.stopwatch.lap("pairs");
+        self.fill(wanted, out);
+        check_result(&out.e)
     }
 
-    /// Mean number of partners within the radius in the last evaluation, periodic copies included.
-    #[must_use]
-    pub fn pairs_per_particle(&self) -> f64 {
+    fn grid_cells(&self) -> Option<[usize; 3]> {
+        Some(self.mesh.cells())
+    }
+
+    fn pairs_per_particle(&self) -> f64 {
         self.pairs_per_particle
     }
 
-    /// Stages of the last evaluation and their time [s].
-    #[must_use]
-    pub fn seconds(&self) -> &[(&'static str, f64)] {
-        &self.seconds
+    fn seconds(&self) -> &[(&'static str, f64)] {
+        self.stopwatch.laps()
     }
 
-    /// Memory held [bytes].
-    #[must_use]
-    pub fn memory_bytes(&self) -> usize {
+    fn memory_bytes(&self) -> usize {
         self.mesh.memory_bytes()
             + self.images.memory_bytes()
             + self.wrapped.capacity() * size_of::<Vector3<f64>>()
