@@ -279,9 +279,10 @@ mod tests {
             bytes
         };
         let nan = binary(&[[0., f32::NAN, 0., 1., 0., 0., 0., 1., 0.]]);
+        let huge = binary(&[[0., 1e30, 0., 1., 0., 0., 0., 1., 0.]]);
         let text_nan = FACET.replace("vertex 1", "vertex nan").into_bytes();
         let text_two = FACET.replace("vertex 1 0 0\n", "").into_bytes();
-        for bytes in [b"x".to_vec(), b"solid\nendsolid\n".to_vec(), promise, nan, text_nan, text_two] {
+        for bytes in [b"x".to_vec(), b"solid\nendsolid\n".to_vec(), promise, nan, huge, text_nan, text_two] {
             assert!(read_stl("w.stl", &bytes, 1.0).is_err());
         }
     }

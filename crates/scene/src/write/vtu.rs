@@ -1,7 +1,6 @@
 //! Particles for ParaView: VTK XML unstructured grid, one vertex per grain, raw appended data.
 //!
-//! Written here: the format is a header and arrays, and the library at hand (vtkio) has no release that is
-//! kept up.
+//! Written here rather than by a library: docs/decisions/mesh-and-vtk-files.md says why.
 
 use super::atomic::write_atomically;
 use crate::SceneError;
