@@ -12,7 +12,7 @@ pub(crate) fn run(root: &Path) -> Result<()> {
     if works(&mut cargo(root, &["nextest", "--version"])) {
         execute(&mut cargo(root, &["nextest", "run", "--workspace", "--no-fail-fast"]))
     } else {
-        println!("cargo-nextest is not installed: cargo test does the same, a little slower");
+        println!("cargo-nextest is not installed and not needed: cargo test runs the same tests");
         execute(&mut cargo(root, &["test", "--workspace", "--lib", "--bins", "--tests", "--no-fail-fast"]))
     }
 }

@@ -1,5 +1,6 @@
 //! The rules of this repository that no other tool knows.
 
+mod dependencies;
 mod edges;
 mod laws;
 mod length;
@@ -39,6 +40,7 @@ pub(crate) fn run(root: &Path) -> Result<()> {
 
 fn all_problems(tree: &Tree) -> Vec<Problem> {
     let mut problems = [
+        dependencies::problems(tree),
         edges::problems(tree),
         laws::problems(tree),
         length::problems(tree),
