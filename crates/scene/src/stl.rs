@@ -17,6 +17,8 @@ const HEADER_TEXT: usize = 80;
 const BINARY_HEADER: usize = HEADER_TEXT + 4;
 /// Bytes of a binary triangle: normal and three vertices in f32, two bytes of attributes.
 const BINARY_TRIANGLE: usize = 50;
+/// Longest line of text [bytes]: the library keeps each word of a line, and no vertex needs so many.
+const LONGEST_LINE: usize = 1000;
 /// Largest coordinate [m], as elsewhere in a scene.
 const LARGEST_COORDINATE: f64 = 1e6;
 /// Sine of the smallest angle of a triangle that counts as having an area.
@@ -129,6 +131,7 @@ fn read_text(file: &str, bytes: &[u8]) -> Result<Vec<Vector3<f64>>, SceneError> 
         match line.split_ascii_whitespace().next() {
             Some("solid" | "endsolid") | None => None,
             Some("facet") => Some("facet normal 0 0 0\n"),
+            Some(_) if line.len() > LONGEST_LINE => Some("a line too long\n"),
             Some(_) => Some(line),
         }
     });
@@ -250,6 +253,7 @@ mod tests {
             ("vertex 1 0 0", "vertex 1 0 0 0", 5, "vertex"),
             ("outer loop\n", "", 3, "outer"),
             ("endloop\nendfacet\n", "endloop\nhello", 8, "endfacet"),
+            ("vertex 0 1 0", &format!("vertex {}", "1 ".repeat(1_000_000)), 6, "too"),
         ] {
             let text = FACET.replace(good, bad);
             let message = read_stl("w.stl", text.as_bytes(), 1.0).unwrap_err().to_string();
