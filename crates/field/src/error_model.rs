@@ -9,6 +9,8 @@
 
 use libm::erfc;
 use std::f64::consts::PI;
+use std::ops::RangeInclusive;
+use std::sync::LazyLock;
 
 /// Quadrature points per axis of an octant of the zone.
 const ZONE_POINTS: usize = 7;
@@ -17,6 +19,51 @@ const ALIASES: i32 = 2;
 /// Intervals of the near integral, which ends this many widths beyond the cut-off.
 const NEAR_INTERVALS: usize = 160;
 const NEAR_WIDTHS: f64 = 8.0;
+
+/// Orders of the splines.
+pub(crate) const ORDERS: RangeInclusive<usize> = 4..=8;
+/// Smallest and largest σ/h considered: below, the model is no longer a model; above, order 8 has no use.
+const RATIOS: [f64; 2] = [0.3, 4.0];
+/// Smallest and largest r_c/σ considered.
+const CUTOFFS: [f64; 2] = [0.5, 9.0];
+
+/// A falling function tabulated as ln f over ln x.
+struct Table(Vec<(f64, f64)>);
+
+impl Table {
+    fn new([low, high]: [f64; 2], count: usize, function: impl Fn(f64) -> f64) -> Self {
+        let (low, high) = (low.ln(), high.ln());
+        let at = |i: usize| low + (high - low) * i as f64 / count as f64;
+        Self((0..=count).map(|i| (at(i), function(at(i).exp()).max(f64::MIN_POSITIVE).ln())).collect())
+    }
+
+    /// Smallest x whose value is at most `bound`.
+    fn solve(&self, bound: f64) -> Option<f64> {
+        let bound = bound.ln();
+        let at = self.0.partition_point(|(_, value)| *value > bound);
+        let (x1, value1) = *self.0.get(at)?;
+        if at == 0 {
+            return Some(x1.exp());
+        }
+        let (x0, value0) = self.0[at - 1];
+        Some((x0 + (x1 - x0) * (value0 - bound) / (value0 - value1)).exp())
+    }
+}
+
+static GRID: LazyLock<Vec<Table>> = LazyLock::new(|| {
+    ORDERS.map(|order| Table::new(RATIOS, 28, |ratio| grid_error_squared(order, ratio))).collect()
+});
+static NEAR: LazyLock<Table> = LazyLock::new(|| Table::new(CUTOFFS, 120, near_error_squared));
+
+/// Smallest σ/h whose Q is at most `bound`.
+pub(crate) fn sigma_over_spacing_for(order: usize, bound: f64) -> Option<f64> {
+    GRID[order - ORDERS.start()].solve(bound)
+}
+
+/// Smallest r_c/σ whose F is at most `bound`.
+pub(crate) fn cutoff_over_sigma_for(bound: f64) -> Option<f64> {
+    NEAR.solve(bound)
+}
 
 /// F(x): squared near error per q²n/σ (4πε = 1) of a cut-off of x widths.
 pub(crate) fn near_error_squared(cutoff_over_sigma: f64) -> f64 {
@@ -124,6 +171,19 @@ mod tests {
             let ratio_to_measured = squared.sqrt() / measured;
             assert!((0.7..1.5).contains(&ratio_to_measured), "{order} {ratio}: {ratio_to_measured}");
         }
+    }
+
+    #[test]
+    fn tables_invert_the_functions() {
+        for cutoff in [1.3, 2.9, 4.4, 6.1] {
+            let found = cutoff_over_sigma_for(near_error_squared(cutoff)).unwrap();
+            assert!((found / cutoff - 1.0).abs() < 1e-3, "{cutoff}: {found}");
+        }
+        for order in ORDERS {
+            let found = sigma_over_spacing_for(order, grid_error_squared(order, 1.1)).unwrap();
+            assert!((found / 1.1 - 1.0).abs() < 1e-2, "{order}: {found}");
+        }
+        assert!(cutoff_over_sigma_for(0.0).is_none());
     }
 
     #[test]

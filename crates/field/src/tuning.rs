@@ -1,6 +1,8 @@
 //! From a tolerance and a cloud of charges to the parameters of p3m: error model, candidates, timing, check.
 
-use crate::error_model::{grid_error_squared, near_error_squared};
+use crate::error_model::{
+    ORDERS, cutoff_over_sigma_for, grid_error_squared, near_error_squared, sigma_over_spacing_for,
+};
 use crate::grid::level::grid_axes;
 use crate::p3m::{P3m, P3mParameters};
 use crate::{FieldError, FieldMethod, FieldValues, Measured, Wanted};
@@ -25,11 +27,6 @@ const ROUNDS: usize = 6;
 const TIMED: usize = 4;
 /// Tolerance of the first look at E_rms.
 const FIRST_LOOK: f64 = 0.05;
-/// Smallest and largest σ/h considered: below, the model is no longer a model; above, order 8 has no use.
-const RATIOS: [f64; 2] = [0.3, 4.0];
-/// Smallest and largest r_c/σ considered.
-const CUTOFFS: [f64; 2] = [0.5, 9.0];
-
 /// Cost of the pieces, in nanoseconds on a reference machine; only ratios matter.
 mod cost {
     /// A pair within the cut-off, the neighbours beyond it that are looked at included.
@@ -120,55 +117,6 @@ pub(crate) struct Tuner<'a> {
     positions: &'a [Vector3<f64>],
     charges: &'a [f64],
     cloud: Cloud,
-    grid_errors: Vec<OrderErrors>,
-}
-
-/// ln Q over ln(σ/h) for one order.
-struct OrderErrors {
-    order: usize,
-    samples: Vec<(f64, f64)>,
-}
-
-impl OrderErrors {
-    fn new(order: usize) -> Self {
-        const COUNT: usize = 28;
-        let [low, high] = RATIOS.map(f64::ln);
-        let samples = (0..=COUNT)
-            .map(|i| {
-                let ratio = low + (high - low) * i as f64 / COUNT as f64;
-                (ratio, grid_error_squared(order, ratio.exp()).max(f64::MIN_POSITIVE).ln())
-            })
-            .collect();
-        Self { order, samples }
-    }
-
-    /// Smallest σ/h whose squared coefficient is at most `bound`.
-    fn ratio_for(&self, bound: f64) -> Option<f64> {
-        let bound = bound.ln();
-        let at = self.samples.iter().position(|(_, error)| *error <= bound)?;
-        if at == 0 {
-            return Some(self.samples[0].0.exp());
-        }
-        let ((r0, e0), (r1, e1)) = (self.samples[at - 1], self.samples[at]);
-        Some((r0 + (r1 - r0) * (e0 - bound) / (e0 - e1)).exp())
-    }
-}
-
-/// Smallest r_c/σ whose squared coefficient is at most `bound`.
-fn cutoff_for(bound: f64) -> Option<f64> {
-    let [mut low, mut high] = CUTOFFS;
-    if near_error_squared(high) > bound {
-        return None;
-    }
-    for _ in 0..30 {
-        let middle = 0.5 * (low + high);
-        if near_error_squared(middle) > bound {
-            low = middle;
-        } else {
-            high = middle;
-        }
-    }
-    Some(high)
 }
 
 impl<'a> Tuner<'a> {
@@ -179,8 +127,7 @@ impl<'a> Tuner<'a> {
         charges: &'a [f64],
     ) -> Self {
         let cloud = Cloud::new(domain, settings.relative_permittivity, positions, charges);
-        let grid_errors = (4..=8).map(OrderErrors::new).collect();
-        Self { domain, settings, positions, charges, cloud, grid_errors }
+        Self { domain, settings, positions, charges, cloud }
     }
 
     /// Parameters that meet the tolerance, with their measured error.
@@ -290,11 +237,11 @@ impl<'a> Tuner<'a> {
         let one = cloud.squared_error(self.settings.relative_permittivity, 1.0);
         let half = 0.5 * error * error / one;
         let mut best: Vec<(f64, P3mParameters)> = Vec::new();
-        for errors in &self.grid_errors {
+        for order in ORDERS {
             let of_order = self
                 .spacings(cloud)
                 .into_iter()
-                .filter_map(|spacing| self.candidate(errors, spacing, half, error))
+                .filter_map(|spacing| self.candidate(order, spacing, half, error))
                 .map(|parameters| (self.cost(cloud, &parameters), parameters))
                 .min_by(|a, b| a.0.total_cmp(&b.0));
             best.extend(of_order);
@@ -303,15 +250,15 @@ impl<'a> Tuner<'a> {
         best
     }
 
-    fn candidate(&self, errors: &OrderErrors, spacing: f64, half: f64, error: f64) -> Option<P3mParameters> {
-        let least_sigma = errors.ratio_for(half * spacing)? * spacing;
+    fn candidate(&self, order: usize, spacing: f64, half: f64, error: f64) -> Option<P3mParameters> {
+        let least_sigma = sigma_over_spacing_for(order, half * spacing)? * spacing;
         let (sigma_m, cutoff_m) = match self.settings.cutoff_radius_m {
-            None => (least_sigma, least_sigma * cutoff_for(half * least_sigma)?),
+            None => (least_sigma, least_sigma * cutoff_over_sigma_for(half * least_sigma)?),
             Some(cutoff) => {
                 // The widest clouds that the fixed cut-off allows.
-                let mut sigma = cutoff / CUTOFFS[0];
+                let mut sigma = 2.0 * cutoff;
                 for _ in 0..60 {
-                    sigma = cutoff / cutoff_for(half * sigma)?;
+                    sigma = cutoff / cutoff_over_sigma_for(half * sigma)?;
                 }
                 (sigma, cutoff)
             }
@@ -320,7 +267,7 @@ impl<'a> Tuner<'a> {
             return None;
         }
         let kernel_accuracy = self.kernel_accuracy(error);
-        Some(P3mParameters { sigma_m, cutoff_m, spacing_m: spacing, order: errors.order, kernel_accuracy })
+        Some(P3mParameters { sigma_m, cutoff_m, spacing_m: spacing, order, kernel_accuracy })
     }
 
     /// Polynomials a good deal better than the tolerance, never better than round-off.
