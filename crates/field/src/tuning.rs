@@ -23,6 +23,10 @@ const SECOND_WIDTH: f64 = 1.5;
 const SECOND_CUTOFF: f64 = 1.4;
 /// Rounds of tightening before a tolerance counts as out of reach.
 const ROUNDS: usize = 6;
+/// Nodes of the largest grid considered: 5 GiB.
+const MOST_NODES: f64 = 2e8;
+/// Fewer particles than this are evaluated twice for a time; of more, one evaluation is long enough.
+const TIMED_TWICE_BELOW: usize = 200_000;
 /// Candidates that are timed.
 const TIMED: usize = 4;
 /// Tolerance of the first look at E_rms.
@@ -166,7 +170,10 @@ impl<'a> Tuner<'a> {
         Err(FieldError::Tolerance {
             asked,
             reached: best.unwrap_or(f64::NAN),
-            advice: "raise electric_field.tolerance, remove field_cutoff_radius or grid.cells, or use method = \"direct\"".into(),
+            advice: format!(
+                "raise electric_field.tolerance{}, or use method = \"direct\"",
+                self.fixed_keys()
+            ),
         })
     }
 
@@ -225,11 +232,21 @@ impl<'a> Tuner<'a> {
 
     fn best_by_model(&self, cloud: &Cloud, error: f64) -> Result<P3mParameters, FieldError> {
         self.candidates(cloud, error).first().map(|(_, parameters)| *parameters).ok_or_else(|| {
-            FieldError::Settings(
-                "no p3m parameters fit field_cutoff_radius and grid.cells together; remove one of them"
-                    .into(),
-            )
+            FieldError::Settings(format!(
+                "no p3m parameters within {MOST_NODES:e} grid nodes have an error of {error:e} V/m; raise electric_field.tolerance{}",
+                self.fixed_keys()
+            ))
         })
+    }
+
+    /// Advice about the parameters that the scene fixes.
+    fn fixed_keys(&self) -> &'static str {
+        match (self.settings.cutoff_radius_m, self.settings.grid_cells) {
+            (None, None) => "",
+            (Some(_), None) => " or change field_cutoff_radius",
+            (None, Some(_)) => " or change grid.cells",
+            (Some(_), Some(_)) => ", or change field_cutoff_radius or grid.cells",
+        }
     }
 
     /// Candidates with an error of `error` [V/m], cheapest first by the cost model: the best of each order.
@@ -280,7 +297,6 @@ impl<'a> Tuner<'a> {
         const FINEST: f64 = 0.25;
         const COARSEST: f64 = 4.0;
         const STEP: f64 = 1.12;
-        const MOST_NODES: f64 = 1e9;
         if let Some(cells) = self.settings.grid_cells {
             let extent = self.domain.extent();
             return vec![(0..3).map(|axis| extent[axis] / cells[axis] as f64).fold(0.0, f64::max)];
@@ -314,7 +330,7 @@ impl<'a> Tuner<'a> {
         let mut best = (f64::INFINITY, candidates[0].1);
         for (_, parameters) in worth {
             let mut p3m = P3m::new(self.domain, self.settings, *parameters);
-            for _ in 0..2 {
+            for _ in 0..TIMED_TWICE_BELOW.div_ceil(self.positions.len().max(1)).min(2) {
                 let start = Instant::now();
                 p3m.evaluate(self.positions, self.charges, Wanted::default(), &mut field)?;
                 let seconds = start.elapsed().as_secs_f64();

@@ -148,5 +148,5 @@ fn bad_requests_are_refused_with_advice() {
     assert!(message(&fixed, &bad).contains("outside the domain"));
     let hopeless =
         FieldSettings { grid_cells: Some([2; 3]), cutoff_radius_m: Some(1e-4), ..settings(Method::P3m) };
-    assert!(message(&hopeless, &positions).contains("remove"));
+    assert!(message(&hopeless, &positions).contains("change field_cutoff_radius or grid.cells"));
 }
