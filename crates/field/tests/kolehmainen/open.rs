@@ -1,31 +1,9 @@
 //! The published hybrid's mesh beside open faces: mirror charges, limits, values on faces.
 
+use super::{GROUNDED, OPEN, PERIODIC, ROUND_OFF, domain, evaluate, insulating};
 use amberfield_core::constants::VACUUM_PERMITTIVITY;
 use amberfield_core::{Boundary, Domain, Vector3};
-use amberfield_field::{FieldMethod, FieldValues, Kolehmainen, Wanted};
-
-/// Round-off of the transforms.
-const ROUND_OFF: f64 = 1e-11;
-
-const ALL: Wanted = Wanted { potential: true, components: true };
-const GROUNDED: [Boundary; 2] = [Boundary::Grounded; 2];
-const PERIODIC: [Boundary; 2] = [Boundary::Periodic; 2];
-const OPEN: [Boundary; 2] = [Boundary::Open; 2];
-
-const fn insulating(normal_field_v_m: f64) -> Boundary {
-    Boundary::Insulating { normal_field_v_m }
-}
-
-fn domain(extent: [f64; 3], faces: [[Boundary; 2]; 3]) -> Domain {
-    let min = Vector3::new(-0.2, 0.1, 3.0);
-    Domain::new(min, min + Vector3::from(extent), faces).expect("a valid box")
-}
-
-fn evaluate(hybrid: &mut Kolehmainen, positions: &[Vector3<f64>], charges: &[f64]) -> FieldValues {
-    let mut out = FieldValues::default();
-    hybrid.evaluate(positions, charges, ALL, &mut out).expect("a valid system");
-    out
-}
+use amberfield_field::Kolehmainen;
 
 fn points(domain: &Domain, count: u32) -> Vec<Vector3<f64>> {
     let step = Vector3::new(0.819_172_5, 0.671_043_6, 0.549_700_4);

@@ -1,5 +1,7 @@
 //! The published hybrid against an independent assembly, hand-computed sets, lattice values and its known floor.
 
+mod open;
+
 use amberfield_core::constants::{VACUUM_PERMITTIVITY, coulomb_constant};
 use amberfield_core::{Boundary, Domain, Vector3};
 use amberfield_field::{Direct, FieldError, FieldMethod, FieldValues, Kolehmainen, Wanted};
