@@ -7,13 +7,13 @@ pub(crate) const COORDINATE: Range = Range::closed(-1e6, 1e6);
 /// Lengths [m].
 pub(crate) const LENGTH: Range = Range::positive(1e6);
 /// Radii of grains [m].
-pub(crate) const RADIUS: Range = Range::positive(1e3);
+pub(crate) const RADIUS: Range = Range::closed(1e-12, 1e3);
 /// Radii of grains that need no size [m].
 pub(crate) const RADIUS_OR_POINT: Range = Range::closed(0.0, 1e3);
 /// Densities [kg/m³].
-pub(crate) const DENSITY: Range = Range::positive(1e6);
+pub(crate) const DENSITY: Range = Range::closed(1e-6, 1e6);
 /// Young's moduli [Pa].
-pub(crate) const YOUNG: Range = Range::positive(1e15);
+pub(crate) const YOUNG: Range = Range::closed(1e-3, 1e15);
 /// Charges [C]: wide, since textbooks and test sets use unit charges.
 pub(crate) const CHARGE: Range = Range::closed(-1e6, 1e6);
 /// Velocities [m/s] and angular velocities [rad/s] of grains.

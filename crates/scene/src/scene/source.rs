@@ -65,10 +65,13 @@ impl Source {
     }
 }
 
-/// Bytes of a regular file that is not empty.
+/// Bytes of a file or pipe that is not empty; a device may never end.
 fn read_bytes(path: &Path) -> Result<Vec<u8>, String> {
     if path.is_dir() {
         return Err(format!("{} is a directory; name a file", path.display()));
+    }
+    if is_device(path) {
+        return Err(format!("{} is a device; name a file", path.display()));
     }
     let bytes = std::fs::read(path).map_err(|error| match error.kind() {
         ErrorKind::NotFound => format!("there is no file {}; check the path", path.display()),
@@ -79,6 +82,18 @@ fn read_bytes(path: &Path) -> Result<Vec<u8>, String> {
     } else {
         Ok(bytes)
     }
+}
+
+#[cfg(unix)]
+fn is_device(path: &Path) -> bool {
+    use std::os::unix::fs::FileTypeExt as _;
+    std::fs::metadata(path)
+        .is_ok_and(|found| found.file_type().is_char_device() || found.file_type().is_block_device())
+}
+
+#[cfg(not(unix))]
+fn is_device(_: &Path) -> bool {
+    false
 }
 
 /// Text of a scene file: UTF-8, with or without a byte-order mark.

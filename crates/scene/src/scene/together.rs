@@ -4,10 +4,14 @@ use super::description::{Purpose, Scene};
 use crate::SceneError;
 use crate::error::{Problems, shorten};
 use crate::tree::{Table, nearest};
-use amberfield_core::{Method, WallCharging, WallShape};
+use amberfield_core::{Axis, Boundary, Domain, Method, WallCharging, WallShape};
 
 /// Grains beyond which the direct sum is worth a warning.
 const MANY_FOR_DIRECT: usize = 100_000;
+/// Copies of the box that a cut-off may reach: beyond, the near sum is far dearer than the direct one.
+const MOST_COPIES: f64 = 1e3;
+/// Nodes of the internal grid, padding beside open faces included: what a workstation holds.
+const MOST_NODES: f64 = 2e8;
 
 /// Checks what no section can check alone.
 pub(super) fn check_together(
@@ -17,6 +21,7 @@ pub(super) fn check_together(
 ) -> Result<(), SceneError> {
     let mut problems = Problems::default();
     problems.keep(check_field(document, scene, has_charge));
+    problems.keep(check_reach(document, scene));
     problems.keep(check_charge_transfer(document, scene));
     problems.finish()?;
     warn(scene);
@@ -77,6 +82,49 @@ fn check_field(document: &Table<'_>, scene: &Scene, has_charge: bool) -> Result<
         )));
     }
     problems.finish()
+}
+
+/// Checks that a cut-off and a grid that were given fit the box.
+fn check_reach(document: &Table<'_>, scene: &Scene) -> Result<(), SceneError> {
+    let (Some(read), Some(domain)) = (&scene.electric_field, &scene.domain) else { return Ok(()) };
+    let field = &read.field;
+    if field.method == Method::Direct {
+        return Ok(());
+    }
+    let mut problems = Problems::default();
+    let cutoff = field.cutoff_radius_m.unwrap_or(0.0);
+    if copies_within(domain, field.method, cutoff) > MOST_COPIES {
+        problems.keep::<()>(Err(document.bad_below(
+            "electric_field",
+            "field_cutoff_radius",
+            &format!("{cutoff:e}"),
+            format!("reaches over {MOST_COPIES} copies of the box; give a radius within a few box lengths, or method = \"direct\" without a cut-off"),
+        )));
+    }
+    let padded = |axis: Axis| if domain.faces()[axis.index()].contains(&Boundary::Open) { 2.0 } else { 1.0 };
+    let nodes = |cells: [usize; 3]| -> f64 {
+        #[expect(clippy::cast_precision_loss, reason = "at most 2^16 cells per axis")]
+        Axis::ALL.iter().map(|&axis| cells[axis.index()] as f64 * padded(axis)).product()
+    };
+    if let Some(cells) = field.grid_cells.filter(|&cells| nodes(cells) > MOST_NODES) {
+        problems.keep::<()>(Err(document.bad_below(
+            "electric_field",
+            "grid",
+            &format!("{{ cells = {cells:?} }}"),
+            format!("{:e} nodes with the padding beside open faces are more than {MOST_NODES:e}; take fewer, or \"auto\"", nodes(cells)),
+        )));
+    }
+    problems.finish()
+}
+
+/// Copies of the box within a radius: periodic ones, and for p3m images in pairs of walls.
+fn copies_within(domain: &Domain, method: Method, radius_m: f64) -> f64 {
+    let repeats = |axis: &Axis| match method {
+        Method::P3m => !domain.faces()[axis.index()].contains(&Boundary::Open),
+        _ => domain.faces()[axis.index()].contains(&Boundary::Periodic),
+    };
+    let copies = |axis: Axis| 1.0 + 2.0 * radius_m / domain.extent()[axis.index()];
+    Axis::ALL.into_iter().filter(repeats).map(copies).product()
 }
 
 fn check_charge_transfer(document: &Table<'_>, scene: &Scene) -> Result<(), SceneError> {

@@ -20,6 +20,10 @@ pub fn write_atomically(
     if path.is_dir() {
         return Err(SceneError::unwritable(path, "it is a directory; name a file"));
     }
+    if path.exists() && !path.is_file() {
+        // Renaming would put a file in the place of a device or pipe.
+        return Err(SceneError::unwritable(path, "it is a device or pipe; name a file"));
+    }
     let write = || -> io::Result<()> {
         let mut builder = tempfile::Builder::new();
         builder.prefix(".amberfield-").suffix(".part");

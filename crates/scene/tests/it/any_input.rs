@@ -42,7 +42,7 @@ fn settings() -> impl Strategy<Value = ElectricFieldSettings> {
         prop::option::of(1e-9..1e3_f64),
         1.0..1e3_f64,
         prop::array::uniform3(prop_oneof![Just(0.0), -1e6..1e6_f64]),
-        prop::option::of(prop::array::uniform3(1..60_000_usize)),
+        prop::option::of(prop::array::uniform3(1..280_usize)),
         prop::option::of(1..u32::MAX),
     );
     let more = (

@@ -17,6 +17,8 @@ const SCENE_CHANGES: &[(&str, &str)] = &[
     ("tolerance = 1e-2", "particle_group = \"fin\""),
     ("tolerance = 1e-2", "enable_collision_charge_transfer = true"),
     ("tolerance = 1e-2", "grid = { cells = [8, 8] }"),
+    ("tolerance = 1e-2", "grid = { cells = [1000, 1000, 1000] }"),
+    ("tolerance = 1e-2", "field_cutoff_radius = 1.0"),
     ("tolerance = 1e-2", "coupling_interval = 0"),
     ("tolerance = 1e-2", "command = \"enable_electric_field\""),
     (
@@ -54,6 +56,8 @@ const SCENE_CHANGES: &[(&str, &str)] = &[
     ("normal = [0, 0, 2]", "normal = [0, 0, 0]"),
     ("stl = \"plate.stl\"", "stl = \"plat.stl\""),
     ("stl = \"plate.stl\"", "stl = \".\""),
+    #[cfg(unix)]
+    ("stl = \"plate.stl\"", "stl = \"/dev/zero\""),
     ("charging = \"grounded\"", "charging = \"ground\""),
     ("file = \"grains.csv\"", ""),
     ("file = \"grains.csv\"", "file = \"grains.csv\"\ngenerate = { count = 1 }"),
@@ -85,6 +89,7 @@ const GRAIN_CHANGES: &[(&str, &str)] = &[
     ("2e-4", "-2e-4"),
     ("2e-4", "0"),
     ("2e-4", "1e9"),
+    ("2e-4", "1e-300"),
     ("-1e-14", "1e300"),
     ("glass,fine", "glas,fine"),
     ("glass,fine", "glass"),

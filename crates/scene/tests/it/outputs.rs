@@ -46,3 +46,15 @@ fn appended_arrays_lie_where_the_header_says() {
         .filter(|entry| entry.as_ref().unwrap().file_name().to_string_lossy().ends_with(".part"));
     assert_eq!(left_over.count(), 0);
 }
+
+#[test]
+#[cfg(unix)]
+fn a_device_is_never_replaced() {
+    use std::os::unix::fs::FileTypeExt as _;
+    let folder = Folder::good();
+    let socket = folder.file("socket");
+    let _listener = std::os::unix::net::UnixListener::bind(&socket).unwrap();
+    let refused = amberfield_scene::write_text(&socket, "text").unwrap_err().to_string();
+    assert!(refused.contains("name a file"), "{refused}");
+    assert!(std::fs::metadata(&socket).unwrap().file_type().is_socket());
+}
