@@ -109,7 +109,8 @@ fn a_net_charge_without_a_field_is_bad_input() {
 #[test]
 fn unit_charges_and_metres_are_a_scene() {
     let bench = bench();
-    bench.write("pair.csv", "id,x_m,y_m,z_m,radius_m,charge_C\n5,0.25,0.5,0.5,0,2.5\n3,0.75,0.5,0.5,0,-1.5\n");
+    bench
+        .write("pair.csv", "id,x_m,y_m,z_m,radius_m,charge_C\n5,0.25,0.5,0.5,0,2.5\n3,0.75,0.5,0.5,0,-1.5\n");
     let answer = bench.run(&["field", "scene.toml", "--out", "e.csv"]);
     assert_eq!(answer.code, Some(0), "{}", answer.stderr);
     let potential = Table::parse(&bench.read("e.csv")).numbers("potential_V");

@@ -31,6 +31,9 @@ const COLUMNS: [&str; 15] = [
 /// Columns that must be there.
 const REQUIRED: [&str; 5] = ["id", "x_m", "y_m", "z_m", "radius_m"];
 
+/// Smallest charge but 0 [C]: squares of smaller ones vanish in rounding.
+const LEAST_CHARGE: f64 = 1e-100;
+
 /// What a particles file is read against.
 pub(crate) struct CsvContext<'a> {
     /// The box that grains must lie in.
@@ -156,6 +159,14 @@ fn read_grain(
         Some(column) => columns.number(record, column, DENSITY)?,
         None => context.materials.density(material),
     };
+    let charge = optional(layout.charge, CHARGE)?;
+    if let Some(column) = layout.charge.filter(|_| charge != 0.0 && charge.abs() < LEAST_CHARGE) {
+        return Err(columns.bad(
+            record,
+            column,
+            &format!("smaller than {LEAST_CHARGE:e} C but not 0; write 0 for a grain without charge"),
+        ));
+    }
     let radius_range = if context.allow_points { RADIUS_OR_POINT } else { RADIUS };
     Ok(Grain {
         id,
@@ -164,7 +175,7 @@ fn read_grain(
         angular_velocity: vector(layout.spin)?,
         radius: columns.number(record, layout.radius, radius_range)?,
         density,
-        charge: optional(layout.charge, CHARGE)?,
+        charge,
         material,
         group: read_group(columns, layout, record, groups)?,
     })

@@ -20,8 +20,8 @@ pub fn write_atomically(
     if path.is_dir() {
         return Err(SceneError::unwritable(path, "it is a directory; name a file"));
     }
-    if path.exists() && !path.is_file() {
-        // Renaming would put a file in the place of a device or pipe.
+    if path.exists() && (!path.is_file() || folder == Path::new("/dev")) {
+        // Renaming would put a file in the place of a device or pipe, or of the link to one (/dev/stdout).
         return Err(SceneError::unwritable(path, "it is a device or pipe; name a file"));
     }
     let write = || -> io::Result<()> {

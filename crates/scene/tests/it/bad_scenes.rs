@@ -91,6 +91,7 @@ const GRAIN_CHANGES: &[(&str, &str)] = &[
     ("2e-4", "1e9"),
     ("2e-4", "1e-300"),
     ("-1e-14", "1e300"),
+    ("-1e-14", "1e-300"),
     ("glass,fine", "glas,fine"),
     ("glass,fine", "glass"),
     ("7,0.003", "7,\"0.003"),

@@ -57,4 +57,5 @@ fn a_device_is_never_replaced() {
     let refused = amberfield_scene::write_text(&socket, "text").unwrap_err().to_string();
     assert!(refused.contains("name a file"), "{refused}");
     assert!(std::fs::metadata(&socket).unwrap().file_type().is_socket());
+    assert!(amberfield_scene::write_text("/dev/null".as_ref(), "text").is_err());
 }
