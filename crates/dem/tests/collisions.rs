@@ -89,6 +89,22 @@ fn restitution_is_the_materials() {
 }
 
 #[test]
+fn restitution_converges_with_first_order() {
+    let (y, r, m) = pair();
+    let duration = hertz::contact_time(y, r, m, 0.2);
+    for e in [0.5, 0.9] {
+        let errors: Vec<f64> = [100.0, 400.0, 1600.0, 6400.0]
+            .iter()
+            .map(|steps| (collide(e, 0.2, duration / steps).restitution - e).abs())
+            .collect();
+        // The contact begins and ends within a step, where the damping jumps as δ^{1/4}: first order, and where in a
+        // step it ends adds some scatter.
+        let order = (errors[0] / errors[3]).log2() / 6.0;
+        assert!((0.8..1.5).contains(&order), "e = {e}: observed order {order}, errors {errors:?}");
+    }
+}
+
+#[test]
 fn elastic_collision_has_hertz_time_and_overlap_with_second_order() {
     let (y, r, m) = pair();
     let (duration, overlap) = (hertz::contact_time(y, r, m, 0.2), hertz::largest_overlap(y, r, m, 0.2));
