@@ -22,6 +22,9 @@ const PLANE_SLACK: f64 = 1e-6;
 /// Squared lateral distance over r² below which the closest point is taken as the foot on the face.
 const FACE_SLACK: f64 = 1e-10;
 
+/// Triangles whose height is below this fraction of their longest edge have no direction beyond round-off.
+const SLIVER: f64 = 1e-10;
+
 /// A contact with a wall: direction from the grain to the wall, and overlap [m].
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub(crate) struct Found {
@@ -54,14 +57,16 @@ fn plain(v: ParryVector) -> Vector3<f64> {
 }
 
 impl MeshWall {
-    /// Triangles without area are dropped: their neighbours' edges cover them.
+    /// Triangles without area, and slivers whose plane is round-off, are dropped: their neighbours' edges cover
+    /// them.
     pub(crate) fn new(mesh: &TriangleMesh) -> Self {
         let (mut triangles, mut normals) = (Vec::new(), Vec::new());
         for indices in &mesh.triangles {
             let [a, b, c] = indices.map(|k| mesh.vertices[k as usize]);
             let across = (b - a).cross(&(c - a));
             let normal = across / across.norm();
-            if normal.iter().all(|x| x.is_finite()) {
+            let longest2 = [b - a, c - b, a - c].iter().map(Vector3::norm_squared).fold(0.0, f64::max);
+            if across.norm() > SLIVER * longest2 && normal.iter().all(|x| x.is_finite()) {
                 triangles.push(Triangle::new(parry(a), parry(b), parry(c)));
                 normals.push(normal);
             }
@@ -95,7 +100,8 @@ impl MeshWall {
         let height = (centre - plain(shape.a)).dot(&normal);
         let offset = plain(shape.project_local_point(parry(centre), false).point) - centre;
         let square = offset.norm_squared();
-        if square - height * height <= FACE_SLACK * radius * radius {
+        // Both ways: beside a thin triangle, whose normal is inexact, the height may exceed the distance.
+        if (square - height * height).abs() <= FACE_SLACK * radius * radius {
             (height.abs(), if height < 0.0 { normal } else { -normal })
         } else {
             let distance = square.sqrt();
