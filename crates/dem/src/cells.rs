@@ -14,6 +14,8 @@ pub(crate) const INDEX_MASK: u32 = (1 << INDEX_BITS) - 1;
 pub(crate) const NO_SHIFT: u32 = 13;
 /// Most cells per stored item; beyond it cells are enlarged.
 const CELLS_PER_ITEM: usize = 8;
+/// A cell number beyond every grid.
+const FAR_CELL: f64 = 1e15;
 /// Radius ratio of neighbouring levels.
 const LEVEL_RATIO: f64 = 2.0;
 
@@ -227,8 +229,11 @@ impl Level {
         self.start[total] = self.loose.len() as u32;
     }
 
+    /// Cell of a point; one far outside the grid stays in a range where neighbours can be counted.
     fn cell(&self, centre: &[f64; 4]) -> [i64; 3] {
-        std::array::from_fn(|a| ((centre[a] - self.origin[a]) * self.inverse_size).floor() as i64)
+        std::array::from_fn(|a| {
+            ((centre[a] - self.origin[a]) * self.inverse_size).floor().clamp(-FAR_CELL, FAR_CELL) as i64
+        })
     }
 
     fn row(&self, y: i64, z: i64) -> usize {

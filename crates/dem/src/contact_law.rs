@@ -1,6 +1,7 @@
 //! One contact: force and torque from overlap, relative motion and history.
 //!
-//! The tangential spring is kept as a force, advanced by −S_t v_t Δt and turned with the contact. While the
+//! The tangential spring is kept as a force, advanced by −S_t v_t Δt with the slip v_t at the end of the step
+//! (first order: a damping of ½ S_t Δt, which vanishes with the step), and turned with the contact. While the
 //! contact unloads it shrinks with the contact radius √(R*δ), so that no energy is made by stretching a spring
 //! at high load and releasing it at low load (Thornton, Cummins & Cleary, Powder Technol. 233, 30 (2013)). The
 //! normal damping is kept to the end of the contact (δ = 0), where it pulls slightly: that is what makes the
@@ -20,8 +21,8 @@ pub(crate) struct Contact {
     pub(crate) spin: Vector3<f64>,
     /// ω_i − ω_j.
     pub(crate) turning: Vector3<f64>,
-    /// 1/R*.
-    pub(crate) inverse_radius: f64,
+    /// R*.
+    pub(crate) radius: f64,
     /// 1/m*.
     pub(crate) inverse_mass: f64,
     /// Σ 1/(m r²) of the bodies.
@@ -51,7 +52,7 @@ pub(crate) fn respond<const FRICTION: bool, const ROLLING: bool, const DAMPING: 
     rolling: &mut [f64; 3],
 ) -> Response {
     let Contact { overlap, normal, velocity, .. } = *contact;
-    let contact_radius = (overlap / contact.inverse_radius).sqrt();
+    let contact_radius = (overlap * contact.radius).sqrt();
     let approach = velocity.dot(&normal);
     let damping = if DAMPING { pair.damping * (contact_radius / contact.inverse_mass).sqrt() } else { 0.0 };
     let load = pair.hertz * contact_radius * overlap + damping * approach;
@@ -78,7 +79,7 @@ pub(crate) fn respond<const FRICTION: bool, const ROLLING: bool, const DAMPING: 
     }
     if ROLLING {
         let turning = contact.turning;
-        let radius = 1.0 / contact.inverse_radius;
+        let radius = contact.radius;
         let stiffness = rolling_friction::stiffness(pair.normal * contact_radius, pair.rolling, radius);
         let dashpot = rolling_friction::damping(CONTACT_INERTIA / contact.inverse_moment, stiffness);
         let bound = rolling_friction::largest(pair.rolling, radius, load);

@@ -251,3 +251,66 @@ impl FieldStage {
         Ok(0.5 * terms.map(|((x, q), v)| q * (v - external.dot(&(x - centre)))).sum::<f64>())
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use amberfield_core::{Boundary, Grain, GroupId, MaterialId, Method};
+
+    const RADIUS: f64 = 1e-3;
+    const STEP: f64 = 1e-5;
+
+    /// Four slowly oscillating charges (no plasma limit in sight) with the given velocities.
+    fn stage(velocities: [[f64; 3]; 4]) -> (FieldStage, Grains) {
+        let domain = Domain::new(Vector3::repeat(-1.0), Vector3::repeat(1.0), [[Boundary::Open; 2]; 3])
+            .expect("a good scene");
+        let particles: Particles = velocities
+            .into_iter()
+            .enumerate()
+            .map(|(k, velocity)| Grain {
+                id: k as u64,
+                position: Vector3::new(k as f64 * 4.0 * RADIUS, 0.0, 0.0),
+                velocity: velocity.into(),
+                angular_velocity: Vector3::zeros(),
+                radius: RADIUS,
+                density: 2500.0,
+                charge: 1e-15,
+                material: MaterialId(0),
+                group: GroupId(0),
+            })
+            .collect();
+        let settings = FieldSettings { method: Method::Direct, tolerance: 1e-2, ..FieldSettings::default() };
+        let setup = FieldStageSetup { settings, member: vec![true; 4], choice: None };
+        let mut stage = FieldStage::new(&domain, setup, &particles, None).expect("a good scene");
+        let grains = Grains::new(&particles, vec![0; 4], false);
+        stage.evaluate(&domain, &grains, &particles, 1e-4, STEP).expect("a good scene");
+        (stage, grains)
+    }
+
+    /// Steps until E is due.
+    fn interval(velocities: [[f64; 3]; 4]) -> u64 {
+        let (mut stage, grains) = stage(velocities);
+        let speed = velocities.iter().map(|v| Vector3::from(*v).norm()).fold(0.0, f64::max);
+        (1..).find(|_| stage.is_due(STEP, speed, &grains)).expect("a good scene")
+    }
+
+    #[test]
+    fn grains_that_approach_are_due_after_the_tolerance_and_side_by_side_after_a_tenth() {
+        // ±0.1 m/s along x is an RMS of 0.1 m/s: 1e-2 radii take 10 steps, or 11 by round-off.
+        let approaching = interval([[0.1, 0.0, 0.0], [-0.1, 0.0, 0.0], [0.1, 0.0, 0.0], [-0.1, 0.0, 0.0]]);
+        assert!((10..=11).contains(&approaching), "{approaching}");
+        // Side by side: a tenth of the radius.
+        let together = interval([[0.0, 0.0, -0.1]; 4]);
+        assert!((100..=101).contains(&together), "{together}");
+        // Side by side and approaching: what they share does not count.
+        let both = interval([[0.1, 0.0, -0.1], [-0.1, 0.0, -0.1], [0.1, 0.0, -0.1], [-0.1, 0.0, -0.1]]);
+        assert!((10..=11).contains(&both), "{both}");
+    }
+
+    #[test]
+    fn grains_at_rest_are_due_under_the_plasma_limit_only() {
+        let (mut stage, grains) = stage([[0.0; 3]; 4]);
+        stage.plasma_steps = 1000;
+        assert_eq!((1..).find(|_| stage.is_due(STEP, 0.0, &grains)), Some(1000));
+    }
+}

@@ -24,6 +24,19 @@ pub(crate) struct Grains {
     pub(crate) material: Vec<u16>,
     /// Level of the cells.
     pub(crate) level: Vec<u8>,
+    /// Memory of the reordering.
+    pub(crate) spare: Spare,
+}
+
+/// Arrays that reordering writes into, kept so that rebuilds do not allocate.
+#[derive(Debug, Default)]
+pub(crate) struct Spare {
+    pub(crate) vectors: Vec<Vector3<f64>>,
+    quads: Vec<[f64; 4]>,
+    reals: Vec<f64>,
+    indices: Vec<u32>,
+    materials: Vec<u16>,
+    levels: Vec<u8>,
 }
 
 impl Grains {
@@ -44,6 +57,7 @@ impl Grains {
             inverse_mass: (0..count).map(|i| 1.0 / particles.mass(i)).collect(),
             material: particles.material.iter().map(|m| m.0).collect(),
             level,
+            spare: Spare::default(),
         }
     }
 
@@ -58,17 +72,18 @@ impl Grains {
 
     /// Reorders to `order[new] = old`; grains that are not named are dropped.
     pub(crate) fn reorder(&mut self, order: &[u32]) {
-        pick(&mut self.original, order);
-        pick(&mut self.centre, order);
-        pick(&mut self.velocity, order);
-        pick(&mut self.angular, order);
-        pick(&mut self.force, order);
+        let spare = &mut self.spare;
+        pick(&mut self.original, order, &mut spare.indices);
+        pick(&mut self.centre, order, &mut spare.quads);
+        pick(&mut self.velocity, order, &mut spare.vectors);
+        pick(&mut self.angular, order, &mut spare.vectors);
+        pick(&mut self.force, order, &mut spare.vectors);
         if !self.torque.is_empty() {
-            pick(&mut self.torque, order);
+            pick(&mut self.torque, order, &mut spare.vectors);
         }
-        pick(&mut self.inverse_mass, order);
-        pick(&mut self.material, order);
-        pick(&mut self.level, order);
+        pick(&mut self.inverse_mass, order, &mut spare.reals);
+        pick(&mut self.material, order, &mut spare.materials);
+        pick(&mut self.level, order, &mut spare.levels);
     }
 
     /// Order along a Morton curve, equal keys by original index: it depends on positions only.
@@ -107,9 +122,11 @@ fn spread(x: u64) -> u64 {
     (x | x << 2) & 0x1249_2492_4924_9249
 }
 
-/// array[new] = array[order[new]].
-pub(crate) fn pick<T: Copy>(array: &mut Vec<T>, order: &[u32]) {
-    *array = order.iter().map(|&old| array[old as usize]).collect();
+/// array[new] = array[order[new]]; `spare` lends its memory and takes that of the array.
+pub(crate) fn pick<T: Copy>(array: &mut Vec<T>, order: &[u32], spare: &mut Vec<T>) {
+    spare.clear();
+    spare.extend(order.iter().map(|&old| array[old as usize]));
+    std::mem::swap(array, spare);
 }
 
 #[cfg(test)]

@@ -65,29 +65,38 @@ impl Limits {
         Self { rayleigh, hertz, electric }
     }
 
+    /// Takes the plasma limit of a new evaluation of the field.
+    pub(crate) fn set_plasma(&mut self, plasma: f64) {
+        if let Some(electric) = &mut self.electric {
+            electric.plasma = plasma;
+        }
+    }
+
     pub(crate) fn set_electric(&mut self, electric: ElectricLimits) {
         self.electric = Some(electric);
     }
 
     /// All guards for a step and the grains' largest speed [m/s] (two of them head-on).
-    pub(crate) fn guards(&self, step: f64, speed: f64) -> Vec<Guard> {
+    pub(crate) fn guards(&self, step: f64, speed: f64) -> impl Iterator<Item = Guard> + use<> {
         let hertz = CONTACT_TIME_FRACTION * self.hertz * (2.0 * speed).powf(-0.2);
-        let mut limits = vec![("rayleigh", self.rayleigh), ("hertz", hertz)];
-        if let Some(e) = &self.electric {
-            limits.extend([("electric pair", e.pair), ("wall image", e.wall_image), ("plasma", e.plasma)]);
-        }
-        limits.into_iter().map(|(name, limit_s)| Guard { name, limit_s, margin: limit_s / step }).collect()
+        let electric = self
+            .electric
+            .map(|e| [("electric pair", e.pair), ("wall image", e.wall_image), ("plasma", e.plasma)]);
+        [("rayleigh", self.rayleigh), ("hertz", hertz)]
+            .into_iter()
+            .chain(electric.into_iter().flatten())
+            .map(move |(name, limit_s)| Guard { name, limit_s, margin: limit_s / step })
     }
 
     /// The step that `auto` stands for [s].
     pub(crate) fn auto_step(&self, speed: f64) -> f64 {
-        let tightest = self.guards(1.0, speed).iter().map(|g| g.limit_s).fold(f64::INFINITY, f64::min);
+        let tightest = self.guards(1.0, speed).map(|g| g.limit_s).fold(f64::INFINITY, f64::min);
         AUTO_FRACTION * tightest
     }
 
     /// The guard that a step breaks, if any.
     pub(crate) fn broken(&self, step: f64, speed: f64, time_s: f64) -> Option<DemError> {
-        let tightest = self.guards(step, speed).into_iter().min_by(|a, b| a.limit_s.total_cmp(&b.limit_s))?;
+        let tightest = self.guards(step, speed).min_by(|a, b| a.limit_s.total_cmp(&b.limit_s))?;
         // `!(a <= b)`: a limit that is not a number is broken too.
         let holds = step <= tightest.limit_s;
         (!holds).then_some(DemError::Unstable {

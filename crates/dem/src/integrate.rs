@@ -146,9 +146,8 @@ pub(crate) fn kick(
             &mut [Vector3<f64>],
             &mut [Vector3<f64>]
         )| {
-            for inbound in &neighbours.inbox[k] {
-                force[inbound.local as usize] +=
-                    neighbours.lists[inbound.chunk as usize].outbox[inbound.slot as usize].force;
+            for (local, push) in neighbours.pushes(k) {
+                force[local] += push.force;
             }
             let first = k * CHUNK;
             for (n, (v, f)) in velocity.iter_mut().zip(&*force).enumerate() {
@@ -163,9 +162,8 @@ pub(crate) fn kick(
             &mut [Vector3<f64>],
             &mut [Vector3<f64>]
         )| {
-            for inbound in &neighbours.inbox[k] {
-                torque[inbound.local as usize] +=
-                    neighbours.lists[inbound.chunk as usize].outbox[inbound.slot as usize].torque;
+            for (local, push) in neighbours.pushes(k) {
+                torque[local] += push.torque;
             }
             let first = k * CHUNK;
             for (n, (w, t)) in angular.iter_mut().zip(&*torque).enumerate() {

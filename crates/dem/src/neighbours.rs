@@ -44,6 +44,8 @@ pub(crate) struct ChunkList {
     pub(crate) hits: Vec<Hit>,
     /// What this chunk does to other chunks.
     pub(crate) outbox: Vec<Push>,
+    /// Which of the outbox's slots hold something in this step.
+    pub(crate) filled: Vec<bool>,
     /// Touching pairs of the last evaluation.
     pub(crate) contacts: usize,
 }
@@ -134,7 +136,18 @@ impl Neighbours {
             }
             list.outbox.clear();
             list.outbox.resize(slots as usize, NO_PUSH);
+            list.filled.clear();
+            list.filled.resize(slots as usize, false);
         }
+    }
+
+    /// What other chunks do to chunk `k` in this step: index in the chunk, and push.
+    #[inline]
+    pub(crate) fn pushes(&self, k: usize) -> impl Iterator<Item = (usize, &Push)> {
+        self.inbox[k].iter().filter_map(|inbound| {
+            let (list, slot) = (&self.lists[inbound.chunk as usize], inbound.slot as usize);
+            list.filled[slot].then(|| (inbound.local as usize, &list.outbox[slot]))
+        })
     }
 
     /// Histories of the touching pairs, with indices of the set-up's order.

@@ -5,7 +5,7 @@ use crate::chunks::{CHUNK, chunk_count, for_each_chunk, is_parallel};
 use crate::contact_law::{Contact, respond};
 use crate::grains::Grains;
 use crate::material_pairs::PairTable;
-use crate::neighbours::{ChunkList, Hit, NO_PUSH, Neighbours, Push};
+use crate::neighbours::{ChunkList, Hit, Neighbours, Push};
 use amberfield_core::Vector3;
 
 /// What every chunk reads.
@@ -133,11 +133,11 @@ fn contact_of<const FRICTION: bool, const ROLLING: bool, const PERIODIC: bool>(
     let (inverse_i, inverse_j) = (grains.inverse_mass[i], grains.inverse_mass[j]);
     let mut contact = Contact {
         overlap,
-        normal: offset / distance,
+        normal: offset * (1.0 / distance),
         velocity: grains.velocity[i] - grains.velocity[j],
         spin: Vector3::zeros(),
         turning: Vector3::zeros(),
-        inverse_radius: (a[3] + b[3]) / (a[3] * b[3]),
+        radius: a[3] * b[3] / (a[3] + b[3]),
         inverse_mass: inverse_i + inverse_j,
         inverse_moment: 0.0,
     };
@@ -161,7 +161,7 @@ fn chunk<const FRICTION: bool, const ROLLING: bool, const DAMPING: bool, const P
     let first = k * CHUNK;
     force.fill(Vector3::zeros());
     torque.fill(Vector3::zeros());
-    list.outbox.fill(NO_PUSH);
+    list.filled.fill(false);
     let found = find_hits::<PERIODIC>(scene, first, list);
     list.contacts = found;
     let grains = scene.grains;
@@ -204,6 +204,7 @@ fn chunk<const FRICTION: bool, const ROLLING: bool, const DAMPING: bool, const P
             }
         } else {
             list.outbox[slot as usize] = push;
+            list.filled[slot as usize] = true;
         }
     }
 }

@@ -98,11 +98,14 @@ impl Simulation {
             walls.forces(&self.grains, &self.table, self.features, step, force, torque);
             self.watch.lap(Stage::Walls);
         }
+        let mut evaluated = false;
         if let Some(field) = &mut self.field {
             // The forces at the start come with a step of zero: the field was evaluated just before.
             if step > 0.0 {
                 if field.is_due(step, self.speed, &self.grains) {
                     field.evaluate(&self.domain, &self.grains, &self.particles, self.skin, self.step_s)?;
+                    self.limits.set_plasma(field.plasma_limit);
+                    evaluated = true;
                 }
                 field.book_step();
             }
@@ -111,7 +114,8 @@ impl Simulation {
             }
             self.watch.lap(Stage::Field);
         }
-        Ok(())
+        // Charges and pairs are looked at when lists are rebuilt; density and speeds are new here.
+        if evaluated { self.watch_limits() } else { Ok(()) }
     }
 
     /// Whether a grain may have moved by half the skin since the lists were built. The travel is only a
@@ -144,7 +148,7 @@ impl Simulation {
         self.grains.spatial_order(&mut self.keys, &mut self.order);
         self.grains.reorder(&self.order);
         if let Some(field) = &mut self.field {
-            crate::grains::pick(&mut field.force, &self.order);
+            crate::grains::pick(&mut field.force, &self.order, &mut self.grains.spare.vectors);
         }
         self.neighbours.build(&self.domain, &self.grains, &self.order);
         if let Some(walls) = &mut self.walls {
@@ -192,7 +196,7 @@ impl Simulation {
         keep.retain(|&i| gone.binary_search(&(i as usize)).is_err());
         self.grains.reorder(&keep);
         if let Some(field) = &mut self.field {
-            crate::grains::pick(&mut field.force, &keep);
+            crate::grains::pick(&mut field.force, &keep, &mut self.grains.spare.vectors);
         }
         self.resize_scratch();
         self.neighbours.build(&self.domain, &self.grains, &keep);
@@ -230,9 +234,14 @@ impl Simulation {
         self.limits.set_electric(ElectricLimits { pair, wall_image, plasma: field.plasma_limit });
     }
 
-    /// Checks the guards at the present speed.
+    /// Computes the guards anew and checks them at the present speed.
     fn watch_guards(&mut self) -> Result<(), DemError> {
         self.update_electric_limits();
+        self.watch_limits()
+    }
+
+    /// Checks the guards as they are at the present speed.
+    fn watch_limits(&mut self) -> Result<(), DemError> {
         let Some(broken) = self.limits.broken(self.step_s, self.speed, self.time_s()) else {
             return Ok(());
         };

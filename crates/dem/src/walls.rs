@@ -316,7 +316,7 @@ fn contact_of<const FRICTION: bool, const ROLLING: bool>(
         velocity: grains.velocity[i],
         spin: turning * arm,
         turning,
-        inverse_radius: 1.0 / radius,
+        radius,
         inverse_mass,
         inverse_moment: inverse_mass / (radius * radius),
     };

@@ -53,7 +53,7 @@ fn steady_step_allocates_nothing() {
             })
             .collect();
         let silent = counts.iter().filter(|&&n| n == 0).count();
-        // Steps with a rebuild may allocate; they are rare.
+        // Steps with a rebuild may let a list grow; they are rare.
         assert!(silent >= 180, "{counts:?}");
         assert!(simulation.contacts() > 20, "{}", simulation.contacts());
     });

@@ -124,7 +124,7 @@ impl Simulation {
     /// Limits on the time step at the present speeds.
     #[must_use]
     pub fn guards(&self) -> Vec<Guard> {
-        self.limits.guards(self.step_s, self.speed)
+        self.limits.guards(self.step_s, self.speed).collect()
     }
 
     /// The field; `None` without a field stage.

@@ -224,3 +224,85 @@ fn check_state(setup: &Setup, state: &State) -> Result<(), DemError> {
     }
     Ok(())
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use amberfield_core::{
+        Boundary, Grain, GroupId, Material, MaterialId, OnExit, Skin, TimeSettings, Wall, WallCharging,
+        WallShape,
+    };
+
+    /// A short column on a floor, with the given friction and rolling friction.
+    fn run(friction: f64, rolling_friction: f64) -> Simulation {
+        let grain = |id: u64| Grain {
+            id,
+            position: Vector3::new(0.0, 0.0, 1e-3 * (1.98 * id as f64 + 0.99)),
+            velocity: Vector3::zeros(),
+            angular_velocity: Vector3::zeros(),
+            radius: 1e-3,
+            density: 2500.0,
+            charge: 0.0,
+            material: MaterialId(0),
+            group: GroupId(0),
+        };
+        let floor = WallShape::Plane { point: Vector3::zeros(), normal: Vector3::z() };
+        let setup = Setup {
+            domain: Domain::new(Vector3::repeat(-1.0), Vector3::repeat(1.0), [[Boundary::Open; 2]; 3])
+                .expect("a good scene"),
+            materials: vec![Material {
+                name: "glass".into(),
+                density_kg_m3: 2500.0,
+                young_pa: 1e7,
+                young_real_pa: None,
+                poisson: 0.25,
+                restitution: 0.8,
+                friction,
+                rolling_friction,
+                work_function_ev: None,
+            }],
+            particles: (0..5).map(grain).collect(),
+            walls: vec![Wall {
+                name: "floor".into(),
+                shape: floor,
+                material: MaterialId(0),
+                charging: WallCharging::None,
+            }],
+            time: TimeSettings {
+                step: Step::Seconds(1e-6),
+                end_s: 1.0,
+                gravity_m_s2: Vector3::new(0.0, 0.0, -9.81),
+                skin: Skin::Auto,
+                allow_unstable: false,
+                on_exit: OnExit::Stop,
+                allow_overlap: false,
+            },
+            field: None,
+        };
+        let mut run = Simulation::new(setup).expect("a good scene");
+        (0..50).for_each(|_| run.step().expect("a good scene"));
+        assert!(run.contacts() > 3);
+        run
+    }
+
+    /// Entries of tangential and rolling history, torques.
+    fn memory(run: &Simulation) -> [usize; 3] {
+        let lists = &run.neighbours.lists;
+        [
+            lists.iter().map(|l| l.spring.capacity()).sum(),
+            lists.iter().map(|l| l.rolling.capacity()).sum(),
+            run.grains.torque.capacity() + run.new_torque.capacity(),
+        ]
+    }
+
+    #[test]
+    fn scene_keeps_only_the_memory_that_it_needs() {
+        let smooth = run(0.0, 0.0);
+        assert_eq!(memory(&smooth), [0; 3]);
+        assert!(smooth.field.is_none());
+        let [tangential, rolling, torque] = memory(&run(0.3, 0.0));
+        assert!(tangential > 0 && rolling == 0 && torque > 0);
+        let [tangential, rolling, torque] = memory(&run(0.3, 0.1));
+        assert!(tangential > 0 && rolling > 0 && torque > 0);
+    }
+}
