@@ -3,7 +3,7 @@
 use crate::error_model::{
     ORDERS, cutoff_over_sigma_for, grid_error_squared, near_error_squared, sigma_over_spacing_for,
 };
-use crate::grid::level::grid_axes;
+use crate::grid::level::grid_sizes;
 use crate::p3m::{P3m, P3mParameters};
 use crate::{FieldError, FieldMethod, FieldValues, Measured, Wanted};
 use amberfield_core::constants::coulomb_constant;
@@ -226,8 +226,8 @@ impl<'a> Tuner<'a> {
     }
 
     fn widest_spacing(&self, parameters: &P3mParameters) -> f64 {
-        let axes = grid_axes(self.domain, parameters.spacing_m, parameters.sigma_m);
-        axes.iter().map(|axis| axis.spacing).fold(0.0, f64::max)
+        let sizes = grid_sizes(self.domain, parameters.spacing_m, parameters.sigma_m);
+        sizes.iter().map(|size| size.spacing).fold(0.0, f64::max)
     }
 
     fn best_by_model(&self, cloud: &Cloud, error: f64) -> Result<P3mParameters, FieldError> {
@@ -295,6 +295,7 @@ impl<'a> Tuner<'a> {
     /// Node spacings worth a look [m].
     fn spacings(&self, cloud: &Cloud) -> Vec<f64> {
         const FINEST: f64 = 0.25;
+        const FINEST_OF_CUTOFF: f64 = 0.05;
         const COARSEST: f64 = 4.0;
         const STEP: f64 = 1.12;
         if let Some(cells) = self.settings.grid_cells {
@@ -302,17 +303,20 @@ impl<'a> Tuner<'a> {
             return vec![(0..3).map(|axis| extent[axis] / cells[axis] as f64).fold(0.0, f64::max)];
         }
         let distance = cloud.density.cbrt().recip();
-        let finest = (self.domain.volume() / MOST_NODES).cbrt();
-        let count = ((COARSEST / FINEST).ln() / STEP.ln()).ceil() as i32;
-        (0..=count).map(|i| distance * FINEST * STEP.powi(i)).filter(|spacing| *spacing > finest).collect()
+        // A cut-off far below the distance of the grains needs clouds, and nodes, of its own size.
+        let cutoff = self.settings.cutoff_radius_m.unwrap_or(f64::INFINITY);
+        let least = (self.domain.volume() / MOST_NODES).cbrt();
+        let finest = (FINEST * distance).min(FINEST_OF_CUTOFF * cutoff).max(least);
+        let count = ((COARSEST * distance / finest).ln() / STEP.ln()).ceil() as i32;
+        (0..=count).map(|i| finest * STEP.powi(i)).collect()
     }
 
     /// Modelled cost of one evaluation [ns].
     fn cost(&self, cloud: &Cloud, parameters: &P3mParameters) -> f64 {
         let pairs = 4.0 / 3.0 * std::f64::consts::PI * cloud.density * parameters.cutoff_m.powi(3);
-        let nodes: f64 = grid_axes(self.domain, parameters.spacing_m, parameters.sigma_m)
+        let nodes: f64 = grid_sizes(self.domain, parameters.spacing_m, parameters.sigma_m)
             .iter()
-            .map(|axis| axis.transform.len() as f64)
+            .map(|size| size.padded as f64)
             .product();
         let per_particle =
             cost::PARTICLE + cost::PAIR * pairs + cost::NODE * (parameters.order as f64).powi(3);

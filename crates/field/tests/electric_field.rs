@@ -150,3 +150,15 @@ fn bad_requests_are_refused_with_advice() {
         FieldSettings { grid_cells: Some([2; 3]), cutoff_radius_m: Some(1e-4), ..settings(Method::P3m) };
     assert!(message(&hopeless, &positions).contains("change field_cutoff_radius or grid.cells"));
 }
+
+#[test]
+fn a_cut_off_below_the_distance_of_the_grains_meets_the_tolerance() {
+    let domain = domain([[Boundary::Grounded; 2]; 3]);
+    let (positions, charges) = cloud();
+    let mut asked = settings(Method::P3m);
+    let distance = (domain.volume() / positions.len() as f64).cbrt();
+    asked.cutoff_radius_m = Some(0.4 * distance);
+    let field = ElectricField::new(&domain, &asked, &positions, &charges).unwrap();
+    let measured = field.error_measured().unwrap().relative_rms;
+    assert!(measured <= asked.tolerance, "{measured}");
+}

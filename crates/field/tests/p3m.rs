@@ -157,7 +157,7 @@ fn every_supported_mix_of_faces_agrees_with_the_direct_sum() {
         for tolerance in [1e-2, 1e-5] {
             let mut on_grid = settings(tolerance);
             // A fixed grid keeps the tuner from summing all pairs in open space.
-            let cells = if tolerance > 1e-3 { 16 } else { 32 };
+            let cells = if tolerance > 1e-3 { 12 } else { 24 };
             on_grid.grid_cells = Some([cells; 3]);
             let mut field = ElectricField::new(&domain, &on_grid, &positions, &charges).unwrap();
             let Choice::P3m(_) = field.choice() else { panic!("{faces:?}: no grid") };

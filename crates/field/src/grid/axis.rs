@@ -31,6 +31,47 @@ impl Beyond {
     }
 }
 
+/// How many nodes an axis has and where they lie: all that its cost depends on.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(crate) struct AxisSize {
+    /// Nodes that carry charge.
+    pub(crate) nodes: usize,
+    /// Node spacing h [m].
+    pub(crate) spacing: f64,
+    /// Length of the transformed line: with an open end, zero-padded.
+    pub(crate) padded: usize,
+    /// Lower end of the first node's cell [m].
+    origin: f64,
+    /// Index of node 0 in the padded line.
+    offset: usize,
+}
+
+impl AxisSize {
+    /// Axis of a domain with nodes at most `spacing` apart. `padding` is what a zero-padded line needs beyond
+    /// twice its own length [m].
+    pub(crate) fn new(domain: &Domain, axis: Axis, spacing: f64, padding: f64) -> Self {
+        let beyond = ends(domain, axis);
+        let length = domain.extent()[axis.index()];
+        let lower = domain.min()[axis.index()];
+        let whole = (length / spacing).ceil().max(1.0) as usize;
+        if !beyond.contains(&Beyond::Nothing) {
+            let nodes = smooth_even(whole.max(2));
+            return Self { nodes, spacing: length / nodes as f64, padded: nodes, origin: lower, offset: 0 };
+        }
+        let [below, above] = beyond.map(|end| if end == Beyond::Nothing { HALO } else { 0 });
+        let nodes = whole + below + above;
+        let spacing = length / whole as f64;
+        let padded = smooth_even(2 * nodes + (padding / spacing).ceil() as usize);
+        // A wall at the upper end stays at the end of the line.
+        let offset = if below > 0 && above == 0 { padded - nodes } else { 0 };
+        Self { nodes, spacing, padded, origin: lower - below as f64 * spacing, offset }
+    }
+}
+
+fn ends(domain: &Domain, axis: Axis) -> [Beyond; 2] {
+    [Side::Min, Side::Max].map(|side| Beyond::of(domain.face(axis, side)))
+}
+
 /// One axis of the grid. Node i lies at `origin + (i + ½) spacing`.
 #[derive(Debug)]
 pub(crate) struct GridAxis {
@@ -38,8 +79,7 @@ pub(crate) struct GridAxis {
     pub(crate) nodes: usize,
     /// Node spacing h [m].
     pub(crate) spacing: f64,
-    /// Lower end of the first node's cell [m].
-    pub(crate) origin: f64,
+    origin: f64,
     /// Transform of the (zero-padded) line.
     pub(crate) transform: LineTransform,
     /// Index of node 0 in the padded line.
@@ -50,29 +90,13 @@ pub(crate) struct GridAxis {
 }
 
 impl GridAxis {
-    /// Axis of a domain with nodes at most `spacing` apart. `padding` is what a zero-padded line needs beyond
-    /// twice its own length [m].
-    pub(crate) fn new(domain: &Domain, axis: Axis, spacing: f64, padding: f64) -> Self {
-        let beyond = [Side::Min, Side::Max].map(|side| Beyond::of(domain.face(axis, side)));
-        let length = domain.extent()[axis.index()];
-        let lower = domain.min()[axis.index()];
-        let margin = |side: usize| if beyond[side] == Beyond::Nothing { HALO } else { 0 };
-        let open = beyond.contains(&Beyond::Nothing);
-        let whole = (length / spacing).ceil().max(1.0) as usize;
-        if !open {
-            let nodes = smooth_even(whole.max(2));
-            let transform = LineTransform::new(symmetry(beyond), nodes);
-            let spacing = length / nodes as f64;
-            return Self { nodes, spacing, origin: lower, transform, offset: 0, open, beyond };
-        }
-        let nodes = whole + margin(0) + margin(1);
-        let spacing = length / whole as f64;
-        let origin = lower - margin(0) as f64 * spacing;
-        let padded = smooth_even(2 * nodes + (padding / spacing).ceil() as usize);
-        let offset = if beyond[0] == Beyond::Nothing { padded - nodes } else { 0 };
-        let both_open = beyond == [Beyond::Nothing; 2];
+    /// Axis of a domain with the given size.
+    pub(crate) fn new(domain: &Domain, axis: Axis, size: AxisSize) -> Self {
+        let AxisSize { nodes, spacing, padded, origin, offset } = size;
+        let beyond = ends(domain, axis);
         let transform = LineTransform::new(symmetry(beyond), padded);
-        Self { nodes, spacing, origin, transform, offset: if both_open { 0 } else { offset }, open, beyond }
+        let open = beyond.contains(&Beyond::Nothing);
+        Self { nodes, spacing, origin, transform, offset, open, beyond }
     }
 
     /// Greatest distance between a charge and a node, images included [m].
@@ -152,7 +176,7 @@ mod tests {
         let mut faces = [[Boundary::Open; 2]; 3];
         faces[0] = [lower, upper];
         let domain = Domain::new(Vector3::zeros(), Vector3::repeat(1.0), faces).unwrap();
-        GridAxis::new(&domain, Axis::X, 0.25, 0.0)
+        GridAxis::new(&domain, Axis::X, AxisSize::new(&domain, Axis::X, 0.25, 0.0))
     }
 
     #[test]

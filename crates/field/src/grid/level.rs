@@ -1,11 +1,11 @@
 //! The smooth level on the internal grid: spread charge with B-splines, convolve, gather potential and field.
 
-use super::axis::{GridAxis, TAIL_WIDTHS};
+use super::axis::{AxisSize, GridAxis, TAIL_WIDTHS};
 use super::bspline::{HALO, MAX_ORDER, weights};
 use super::halo::HaloArray;
 use super::influence::{Influence, singular_width};
 use super::solve::Solver;
-use amberfield_core::{Axis, Domain};
+use amberfield_core::{Axis, Boundary, Domain};
 use nalgebra::Vector3;
 use rayon::prelude::*;
 use serde::{Deserialize, Serialize};
@@ -39,7 +39,8 @@ pub(crate) struct GridLevel {
 impl GridLevel {
     pub(crate) fn new(domain: &Domain, parameters: GridParameters) -> Self {
         let GridParameters { spacing_m, order, sigma_m } = parameters;
-        let axes = grid_axes(domain, spacing_m, sigma_m);
+        let sizes = grid_sizes(domain, spacing_m, sigma_m);
+        let axes = Axis::ALL.map(|axis| GridAxis::new(domain, axis, sizes[axis.index()]));
         let influence = Influence::new(&axes, order, sigma_m);
         let solver = Solver::new(&axes, influence);
         let nodes = HaloArray::new(&axes);
@@ -195,9 +196,9 @@ fn with_halo(node: isize) -> usize {
 }
 
 /// The three axes of a grid with nodes at most `spacing` apart.
-pub(crate) fn grid_axes(domain: &Domain, spacing: f64, sigma: f64) -> [GridAxis; 3] {
-    let open = |axis: Axis| domain.faces()[axis.index()].contains(&amberfield_core::Boundary::Open);
+pub(crate) fn grid_sizes(domain: &Domain, spacing: f64, sigma: f64) -> [AxisSize; 3] {
+    let open = |axis: Axis| domain.faces()[axis.index()].contains(&Boundary::Open);
     let slab = Axis::ALL.into_iter().filter(|&axis| open(axis)).count() == 1;
     let tail = if slab { 2.0 * TAIL_WIDTHS * singular_width([spacing; 3], sigma) } else { 0.0 };
-    Axis::ALL.map(|axis| GridAxis::new(domain, axis, spacing, tail))
+    Axis::ALL.map(|axis| AxisSize::new(domain, axis, spacing, tail))
 }
