@@ -2,7 +2,7 @@
 //! M_d = −C_r ω_r.
 //!
 //! M [N·m] torque on i, −M on j; ω_r relative angular velocity ω_i − ω_j [rad/s], rolling and twist about the
-//! normal alike, else a grain could spin like a top forever; k_r = 2.25 S_n (μ_r R*)² rolling stiffness [N·m/rad]; S_n normal stiffness [N/m]; R* effective
+//! normal alike, else a grain could spin like a top forever (with μ_r = 0 it may: a point contact has no drilling torque); k_r = 2.25 S_n (μ_r R*)² rolling stiffness [N·m/rad]; S_n normal stiffness [N/m]; R* effective
 //! radius [m]; μ_r rolling friction coefficient; F_n normal force [N]; C_r = 2 η √(I_r k_r) [N·m·s],
 //! I_r reduced moment of inertia about the contact [kg·m²], η = 0.3. The dashpot acts only while the spring
 //! is below its limit. A constant directional torque (type A) would chatter about zero in a heap at rest; the
