@@ -20,7 +20,7 @@ const SAMPLE: usize = 600;
 /// The second splitting's width over the first.
 const SECOND_WIDTH: f64 = 1.5;
 /// The second splitting's r_c/σ over the first: with less, both leave out the same distant pairs and agree on it.
-const SECOND_CUTOFF: f64 = 1.4;
+const SECOND_CUTOFF: f64 = 2.0;
 /// Rounds of tightening before a tolerance counts as out of reach.
 const ROUNDS: usize = 6;
 /// Nodes of the largest grid considered: 5 GiB.
@@ -233,7 +233,8 @@ impl<'a> Tuner<'a> {
     fn best_by_model(&self, cloud: &Cloud, error: f64) -> Result<P3mParameters, FieldError> {
         self.candidates(cloud, error).first().map(|(_, parameters)| *parameters).ok_or_else(|| {
             FieldError::Settings(format!(
-                "no p3m parameters within {MOST_NODES:e} grid nodes have an error of {error:e} V/m; raise electric_field.tolerance{}",
+                "no p3m parameters within {MOST_NODES:e} grid nodes meet tolerance {:e} (an error of {error:.1e} V/m); raise electric_field.tolerance{}",
+                self.settings.tolerance,
                 self.fixed_keys()
             ))
         })

@@ -90,13 +90,14 @@ fn announce(simulation: &Simulation) {
         rayon::current_num_threads()
     );
     if let Some(field) = simulation.field() {
-        let show =
-            |error: Option<f64>| error.map_or_else(|| "not known".to_owned(), |error| format!("{error:.2e}"));
-        tracing::info!(
-            "electric field: relative error estimated {}, measured {}",
-            show(field.error_estimated()),
-            show(field.error_measured().map(|measured| measured.relative_rms))
-        );
+        match (field.error_estimated(), field.error_measured()) {
+            (Some(estimated), Some(measured)) => tracing::info!(
+                "electric field: relative error estimated {estimated:.2e}, measured {:.2e}",
+                measured.relative_rms
+            ),
+            // An exact or unpromising method, or parameters that a checkpoint brought.
+            _ => tracing::info!("electric field: {:?}", field.choice()),
+        }
     }
 }
 
