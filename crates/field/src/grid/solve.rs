@@ -60,7 +60,7 @@ impl Solver {
         let row_of = |y: usize| (y + HALO) * halo_row + HALO..(y + HALO) * halo_row + HALO + axes[2].nodes;
         let padded_row_of = |y: usize| (y + axes[1].offset) * lz..(y + axes[1].offset + 1) * lz;
         let charged = axes[2].offset..axes[2].offset + axes[2].nodes;
-        let sources = nodes.values.par_chunks(halo_plane).skip(HALO);
+        let sources = nodes.values[HALO * halo_plane..].par_chunks(halo_plane);
         self.planes.par_chunks_mut(plane).zip(sources).for_each(|(plane, source)| {
             with_scratch(scratch, |scratch| {
                 plane.fill(0.0);
@@ -77,7 +77,7 @@ impl Solver {
         self.along_x(axes);
         let scratch = &self.scratch;
         let (lines, lx) = (&self.lines, self.lengths[0]);
-        let targets = nodes.values.par_chunks_mut(halo_plane).skip(HALO);
+        let targets = nodes.values[HALO * halo_plane..].par_chunks_mut(halo_plane);
         self.planes.par_chunks_mut(plane).zip(targets).enumerate().for_each(|(x, (plane, target))| {
             with_scratch(scratch, |scratch| {
                 let at = x + axes[0].offset;
