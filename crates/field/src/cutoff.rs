@@ -73,7 +73,7 @@ impl FieldMethod for Cutoff {
         self.wrapped.clear();
         self.wrapped.extend(positions.iter().map(|position| self.domain.wrap(*position)));
         self.cells.build(&self.lattice, &self.wrapped, charges, self.radius, |_, _| ());
-        coulomb_sums(&self.cells, &self.wrapped, self.radius, &mut self.sums);
+        coulomb_sums(&self.cells, &self.wrapped, &mut self.sums);
         let k = coulomb_constant(self.relative_permittivity);
         out.clear();
         out.e.extend(self.sums.iter().map(|sum| sum.e * k));
@@ -115,24 +115,23 @@ pub(crate) fn check_radius(radius_m: f64) -> Result<(), FieldError> {
     )))
 }
 
-/// Σ q/r within the radius at every particle, itself left out.
-fn coulomb_sums(cells: &ImageCells<()>, positions: &[Vector3<f64>], radius: f64, sums: &mut Vec<CoulombSum>) {
+/// Potential and field over k_e at distance `d` [m] from a charge.
+pub(crate) fn coulomb(charge: f64, d: &Vector3<f64>) -> (f64, Vector3<f64>) {
+    let inverse = 1.0 / d.norm();
+    let potential = charge * inverse;
+    (potential, d * (potential * inverse * inverse))
+}
+
+/// Σ q/r within the cells' radius at every particle, itself left out.
+fn coulomb_sums(cells: &ImageCells<()>, positions: &[Vector3<f64>], sums: &mut Vec<CoulombSum>) {
     sums.resize(positions.len(), CoulombSum::default());
-    let limit = radius * radius;
     sums.par_iter_mut().zip(positions).enumerate().for_each(|(index, (sum, at))| {
         let mut total = CoulombSum::default();
-        cells.for_each_range(at, |range| {
-            for k in range {
-                let d = Vector3::new(at.x - cells.x[k], at.y - cells.y[k], at.z - cells.z[k]);
-                let square = d.norm_squared();
-                if square < limit && cells.real[k] as usize != index {
-                    let inverse = 1.0 / square.sqrt();
-                    let potential = cells.charge[k] * inverse;
-                    total.potential += potential;
-                    total.e += d * (potential * inverse * inverse);
-                    total.partners += 1;
-                }
-            }
+        cells.for_each_partner(index, at, |k, d, _| {
+            let (potential, e) = coulomb(cells.charge[k], &d);
+            total.potential += potential;
+            total.e += e;
+            total.partners += 1;
         });
         *sum = total;
     });

@@ -4,7 +4,7 @@ use crate::boundary_field::BoundaryField;
 use crate::cutoff::Cutoff;
 use crate::direct::Direct;
 use crate::images::{Geometry, ImageLattice};
-use crate::inputs::{check_finite, check_in_box, check_net_charge};
+use crate::inputs::{check_charges_in_box, check_finite};
 use crate::kolehmainen::Kolehmainen;
 use crate::p3m::{P3m, P3mParameters};
 use crate::tuning::Tuner;
@@ -130,7 +130,7 @@ impl ElectricField {
             Method::Direct => Choice::Direct,
             Method::Kolehmainen => Choice::Kolehmainen { cutoff_m: cutoff_radius(settings)? },
             Method::P3m => {
-                check_charges(domain, settings, positions, charges)?;
+                check(domain, settings, positions, charges)?;
                 let tuner = Tuner::new(domain, settings, positions, charges);
                 if Geometry::of(domain)? == Geometry::Open && tuner.all_pairs_are_cheaper(images(domain)) {
                     Choice::AllPairs
@@ -224,8 +224,7 @@ impl ElectricField {
         charges: &[f64],
     ) -> Result<Option<Measured>, FieldError> {
         let Choice::P3m(parameters) = self.choice else { return Ok(None) };
-        check_finite(positions, charges)?;
-        check_charges(&self.domain, &self.settings, positions, charges)?;
+        check(&self.domain, &self.settings, positions, charges)?;
         if charges.iter().all(|charge| *charge == 0.0) {
             return Ok(None);
         }
@@ -275,16 +274,15 @@ impl ElectricField {
     }
 }
 
-/// Refuses what the grid cannot carry: grains outside the box and a net charge that no face takes.
-fn check_charges(
+/// As p3m checks at every evaluation, before anything is tuned.
+fn check(
     domain: &Domain,
     settings: &FieldSettings,
     positions: &[Vector3<f64>],
     charges: &[f64],
 ) -> Result<(), FieldError> {
-    check_in_box(domain, positions)?;
     let permittivity = VACUUM_PERMITTIVITY * settings.relative_permittivity;
-    check_net_charge(domain, permittivity, settings.neutralising_background, charges)
+    check_charges_in_box(domain, permittivity, settings.neutralising_background, positions, charges)
 }
 
 /// The cut-off radius of a method that cannot do without.

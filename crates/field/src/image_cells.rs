@@ -186,6 +186,27 @@ impl<T: Copy + Default> ImageCells<T> {
         }
     }
 
+    /// Calls `visit(k, d, |d|²)` for every entry k within the radius of the particle `index` at `at`, itself
+    /// excepted; d points from the entry to the particle [m].
+    #[inline]
+    pub(crate) fn for_each_partner(
+        &self,
+        index: usize,
+        at: &Vector3<f64>,
+        mut visit: impl FnMut(usize, Vector3<f64>, f64),
+    ) {
+        let limit = self.radius * self.radius;
+        self.for_each_range(at, |range| {
+            for k in range {
+                let d = Vector3::new(at.x - self.x[k], at.y - self.y[k], at.z - self.z[k]);
+                let square = d.norm_squared();
+                if square < limit && self.real[k] as usize != index {
+                    visit(k, d, square);
+                }
+            }
+        });
+    }
+
     /// Number of images.
     pub(crate) fn len(&self) -> usize {
         self.real.len()

@@ -43,7 +43,7 @@ pub(crate) fn check_inside(domain: &Domain, positions: &[Vector3<f64>]) -> Resul
 }
 
 /// Refuses grains beyond any face that is not periodic. `index` is counted from 0.
-pub(crate) fn check_in_box(domain: &Domain, positions: &[Vector3<f64>]) -> Result<(), FieldError> {
+fn check_in_box(domain: &Domain, positions: &[Vector3<f64>]) -> Result<(), FieldError> {
     check_inside(domain, positions)?;
     let outside = |position: &Vector3<f64>| {
         Axis::ALL.into_iter().any(|axis| {
@@ -95,6 +95,20 @@ pub(crate) fn check_net_charge(
         return Err(FieldError::NetCharge { net_charge_c });
     }
     Ok(())
+}
+
+/// Refuses what a grid in the box cannot carry: values that are not finite, grains outside the box, a net charge
+/// that no face takes. `permittivity` is ε0·εr [F/m].
+pub(crate) fn check_charges_in_box(
+    domain: &Domain,
+    permittivity: f64,
+    neutralising_background: bool,
+    positions: &[Vector3<f64>],
+    charges: &[f64],
+) -> Result<(), FieldError> {
+    check_finite(positions, charges)?;
+    check_in_box(domain, positions)?;
+    check_net_charge(domain, permittivity, neutralising_background, charges)
 }
 
 /// Refuses a result that is not finite: two charges, or a charge and an image, in one place.

@@ -3,7 +3,7 @@
 //! 1/r = [1 − erf(r/√2σ)]/r + erf(r/√2σ)/r — pairs within r_c, and the internal grid with the box's faces.
 
 use crate::grid::level::{GridLevel, GridParameters};
-use crate::inputs::{check_finite, check_in_box, check_net_charge, check_result};
+use crate::inputs::{check_charges_in_box, check_result};
 use crate::near::{NearLevel, NearParameters};
 use crate::stopwatch::Stopwatch;
 use crate::{FieldError, FieldMethod, FieldValues, Wanted};
@@ -101,13 +101,6 @@ impl P3m {
         }
     }
 
-    fn check(&self, positions: &[Vector3<f64>], charges: &[f64]) -> Result<(), FieldError> {
-        check_finite(positions, charges)?;
-        check_in_box(&self.domain, positions)?;
-        let permittivity = 1.0 / (4.0 * PI * self.coulomb);
-        check_net_charge(&self.domain, permittivity, self.neutralising_background, charges)
-    }
-
     /// Mean potential of the near level in a box without conductor, where the mean must vanish.
     fn background_potential(&self, charges: &[f64]) -> f64 {
         if !self.domain.needs_neutrality() {
@@ -126,7 +119,9 @@ impl FieldMethod for P3m {
         wanted: Wanted,
         out: &mut FieldValues,
     ) -> Result<(), FieldError> {
-        self.check(positions, charges)?;
+        let permittivity = 1.0 / (4.0 * PI * self.coulomb);
+        let background = self.neutralising_background;
+        check_charges_in_box(&self.domain, permittivity, background, positions, charges)?;
         self.stopwatch.restart();
         self.load(positions);
         self.near.sort(&self.positions, charges);

@@ -95,7 +95,7 @@ impl Direct {
 
     fn ewald(&mut self, charges: &[f64], splitting: &Splitting) -> Vec<Parts> {
         self.cells.build(&self.lattice, &self.wrapped, charges, splitting.radius, |_, _| ());
-        let near = pairs::short_ranged(&self.cells, &self.wrapped, splitting.alpha, splitting.radius);
+        let near = pairs::short_ranged(&self.cells, &self.wrapped, splitting.alpha);
         self.stopwatch.lap("pairs");
         let modes = Modes::new(splitting);
         let amplitudes = modes.amplitudes(&self.wrapped, charges);

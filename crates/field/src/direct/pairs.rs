@@ -15,33 +15,21 @@ const LANES: usize = 4;
 pub(crate) type PairSum = (f64, Vector3<f64>, usize);
 
 /// Σ q erfc(αr)/r and its field at every particle, over all images within the cells' radius but the particle itself.
-pub(crate) fn short_ranged(
-    cells: &ImageCells<()>,
-    positions: &[Vector3<f64>],
-    alpha: f64,
-    radius: f64,
-) -> Vec<PairSum> {
-    let limit = radius * radius;
+pub(crate) fn short_ranged(cells: &ImageCells<()>, positions: &[Vector3<f64>], alpha: f64) -> Vec<PairSum> {
     let gaussian = alpha * FRAC_2_SQRT_PI;
     positions
         .par_iter()
         .enumerate()
         .map(|(index, at)| {
             let (mut potential, mut e, mut partners) = (0.0, Vector3::zeros(), 0);
-            cells.for_each_range(at, |range| {
-                for k in range {
-                    let d = Vector3::new(at.x - cells.x[k], at.y - cells.y[k], at.z - cells.z[k]);
-                    let square = d.norm_squared();
-                    if square < limit && cells.real[k] as usize != index {
-                        let distance = square.sqrt();
-                        let u = alpha * distance;
-                        let inverse = 1.0 / distance;
-                        let value = cells.charge[k] * erfc(u) * inverse;
-                        potential += value;
-                        e += d * ((value + cells.charge[k] * gaussian * (-u * u).exp()) * inverse * inverse);
-                        partners += 1;
-                    }
-                }
+            cells.for_each_partner(index, at, |k, d, square| {
+                let distance = square.sqrt();
+                let u = alpha * distance;
+                let inverse = 1.0 / distance;
+                let value = cells.charge[k] * erfc(u) * inverse;
+                potential += value;
+                e += d * ((value + cells.charge[k] * gaussian * (-u * u).exp()) * inverse * inverse);
+                partners += 1;
             });
             (potential, e, partners)
         })

@@ -2,34 +2,11 @@
 
 use super::bspline::HALO;
 use super::transform::{LineTransform, Symmetry};
-use amberfield_core::{Axis, Boundary, Domain, Side};
+use crate::images::{AxisKind, FaceKind};
+use amberfield_core::{Axis, Domain};
 
 /// Truncated kernels are smoothed by a Gaussian; its tail beyond this many widths is below 2e-9.
 pub(crate) const TAIL_WIDTHS: f64 = 6.0;
-
-/// What lies beyond one end of the nodes.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-enum Beyond {
-    /// The other end.
-    OtherEnd,
-    /// The mirror image with opposite sign.
-    Odd,
-    /// The mirror image.
-    Even,
-    /// Free space: no spline reaches that far.
-    Nothing,
-}
-
-impl Beyond {
-    fn of(face: Boundary) -> Self {
-        match face {
-            Boundary::Periodic => Self::OtherEnd,
-            face if face.is_conductor() => Self::Odd,
-            face if face.is_insulating() => Self::Even,
-            _ => Self::Nothing,
-        }
-    }
-}
 
 /// How many nodes an axis has and where they lie: all that its cost depends on.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -50,15 +27,23 @@ impl AxisSize {
     /// Axis of a domain with nodes at most `spacing` apart. `padding` is what a zero-padded line needs beyond
     /// twice its own length [m].
     pub(crate) fn new(domain: &Domain, axis: Axis, spacing: f64, padding: f64) -> Self {
-        let beyond = ends(domain, axis);
         let length = domain.extent()[axis.index()];
         let lower = domain.min()[axis.index()];
         let whole = (length / spacing).ceil().max(1.0) as usize;
-        if !beyond.contains(&Beyond::Nothing) {
-            let nodes = smooth_even(whole.max(2));
-            return Self { nodes, spacing: length / nodes as f64, padded: nodes, origin: lower, offset: 0 };
-        }
-        let [below, above] = beyond.map(|end| if end == Beyond::Nothing { HALO } else { 0 });
+        let (below, above) = match AxisKind::of(domain, axis) {
+            kind @ AxisKind::Faces(below, above) if kind.is_open() => (below, above),
+            _ => {
+                let nodes = smooth_even(whole.max(2));
+                return Self {
+                    nodes,
+                    spacing: length / nodes as f64,
+                    padded: nodes,
+                    origin: lower,
+                    offset: 0,
+                };
+            }
+        };
+        let [below, above] = [below, above].map(|face| if face == FaceKind::Open { HALO } else { 0 });
         let nodes = whole + below + above;
         let spacing = length / whole as f64;
         let padded = smooth_even(2 * nodes + (padding / spacing).ceil() as usize);
@@ -66,10 +51,6 @@ impl AxisSize {
         let offset = if below > 0 && above == 0 { padded - nodes } else { 0 };
         Self { nodes, spacing, padded, origin: lower - below as f64 * spacing, offset }
     }
-}
-
-fn ends(domain: &Domain, axis: Axis) -> [Beyond; 2] {
-    [Side::Min, Side::Max].map(|side| Beyond::of(domain.face(axis, side)))
 }
 
 /// One axis of the grid. Node i lies at `origin + (i + ½) spacing`.
@@ -86,17 +67,16 @@ pub(crate) struct GridAxis {
     pub(crate) offset: usize,
     /// Whether one or both ends are open: the line is zero-padded.
     pub(crate) open: bool,
-    beyond: [Beyond; 2],
+    kind: AxisKind,
 }
 
 impl GridAxis {
     /// Axis of a domain with the given size.
     pub(crate) fn new(domain: &Domain, axis: Axis, size: AxisSize) -> Self {
         let AxisSize { nodes, spacing, padded, origin, offset } = size;
-        let beyond = ends(domain, axis);
-        let transform = LineTransform::new(symmetry(beyond), padded);
-        let open = beyond.contains(&Beyond::Nothing);
-        Self { nodes, spacing, origin, transform, offset, open, beyond }
+        let kind = AxisKind::of(domain, axis);
+        let transform = LineTransform::new(symmetry(kind), padded);
+        Self { nodes, spacing, origin, transform, offset, open: kind.is_open(), kind }
     }
 
     /// Greatest distance between a charge and a node, images included [m].
@@ -131,24 +111,29 @@ impl GridAxis {
             } else {
                 return Some((index as usize, sign));
             };
-            match self.beyond[side] {
-                Beyond::OtherEnd => index = wrapped,
-                Beyond::Odd => (index, sign) = (mirrored, -sign),
-                Beyond::Even => index = mirrored,
-                Beyond::Nothing => return None,
+            let AxisKind::Faces(lower, upper) = self.kind else {
+                index = wrapped;
+                continue;
+            };
+            match [lower, upper][side] {
+                FaceKind::Conductor => (index, sign) = (mirrored, -sign),
+                FaceKind::Insulator => index = mirrored,
+                FaceKind::Open => return None,
             }
         }
     }
 }
 
-fn symmetry(beyond: [Beyond; 2]) -> Symmetry {
-    match beyond {
-        [Beyond::Odd, Beyond::Even] => Symmetry::OddEven,
-        [Beyond::Even, Beyond::Odd] => Symmetry::EvenOdd,
+/// How the line of an axis is continued by the images in its faces.
+pub(crate) fn symmetry(kind: AxisKind) -> Symmetry {
+    use FaceKind::{Conductor, Insulator, Open};
+    match kind {
+        AxisKind::Periodic | AxisKind::Faces(Open, Open) => Symmetry::Periodic,
+        AxisKind::Faces(Conductor, Insulator) => Symmetry::OddEven,
+        AxisKind::Faces(Insulator, Conductor) => Symmetry::EvenOdd,
         // The far end of a padded line is empty: either parity serves.
-        [Beyond::Odd, _] | [_, Beyond::Odd] => Symmetry::OddOdd,
-        [Beyond::Even, _] | [_, Beyond::Even] => Symmetry::EvenEven,
-        _ => Symmetry::Periodic,
+        AxisKind::Faces(Conductor, _) | AxisKind::Faces(_, Conductor) => Symmetry::OddOdd,
+        AxisKind::Faces(..) => Symmetry::EvenEven,
     }
 }
 
@@ -170,6 +155,7 @@ pub(crate) fn smooth_even(least: usize) -> usize {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use amberfield_core::Boundary;
     use nalgebra::Vector3;
 
     fn axis(lower: Boundary, upper: Boundary) -> GridAxis {

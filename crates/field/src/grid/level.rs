@@ -5,7 +5,8 @@ use super::bspline::{HALO, MAX_ORDER, weights};
 use super::halo::HaloArray;
 use super::influence::{Influence, singular_width};
 use super::solve::Solver;
-use amberfield_core::{Axis, Boundary, Domain};
+use crate::images::axis_kinds;
+use amberfield_core::{Axis, Domain};
 use nalgebra::Vector3;
 use rayon::prelude::*;
 use serde::{Deserialize, Serialize};
@@ -197,8 +198,7 @@ fn with_halo(node: isize) -> usize {
 
 /// The three axes of a grid with nodes at most `spacing` apart.
 pub(crate) fn grid_sizes(domain: &Domain, spacing: f64, sigma: f64) -> [AxisSize; 3] {
-    let open = |axis: Axis| domain.faces()[axis.index()].contains(&Boundary::Open);
-    let slab = Axis::ALL.into_iter().filter(|&axis| open(axis)).count() == 1;
+    let slab = axis_kinds(domain).into_iter().filter(|kind| kind.is_open()).count() == 1;
     let tail = if slab { 2.0 * TAIL_WIDTHS * singular_width([spacing; 3], sigma) } else { 0.0 };
     Axis::ALL.map(|axis| AxisSize::new(domain, axis, spacing, tail))
 }

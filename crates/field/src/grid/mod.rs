@@ -5,5 +5,5 @@ pub(crate) mod bspline;
 mod halo;
 pub(crate) mod influence;
 pub(crate) mod level;
-mod solve;
+pub(crate) mod solve;
 pub(crate) mod transform;

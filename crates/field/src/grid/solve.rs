@@ -9,7 +9,7 @@ use rayon::prelude::*;
 use std::sync::Mutex;
 
 /// Lines that are gathered from strided memory at a time: a cache line of doubles.
-const TILE: usize = 8;
+pub(crate) const TILE: usize = 8;
 
 /// Buffers and plans for the convolution of node charges with the influence function.
 #[derive(Debug)]
@@ -133,8 +133,14 @@ fn with_scratch(scratch: &[Mutex<Scratch>], work: impl FnOnce(&mut Scratch)) {
     work(&mut guard);
 }
 
-/// Applies `transform` to every column of a plane of rows of length `row`, a tile of columns at a time.
-fn across_rows(plane: &mut [f64], row: usize, tile: &mut [f64], mut transform: impl FnMut(&mut [f64])) {
+/// Applies `transform` to every column of a plane of rows of length `row`, a tile of columns at a time; `tile`
+/// holds [`TILE`] columns.
+pub(crate) fn across_rows(
+    plane: &mut [f64],
+    row: usize,
+    tile: &mut [f64],
+    mut transform: impl FnMut(&mut [f64]),
+) {
     let rows = plane.len() / row;
     for start in (0..row).step_by(TILE) {
         let width = TILE.min(row - start);

@@ -3,9 +3,11 @@
 //! Walls are cell faces: a conductor lies half a cell from the cell's centre, an insulator gives its flux.
 
 use super::inverse::Inverse;
-use crate::grid::axis::smooth_even;
+use crate::grid::axis::{smooth_even, symmetry};
+use crate::grid::solve::{TILE, across_rows};
 use crate::grid::transform::{LineScratch, LineTransform, Symmetry};
-use crate::images::{AxisKind, FaceKind, Geometry, axis_kinds};
+use crate::images::FaceKind::{Conductor, Insulator, Open};
+use crate::images::{AxisKind, Geometry, axis_kinds};
 use crate::{BoundaryField, FieldError};
 use amberfield_core::{Axis, Boundary, Domain, Side};
 use nalgebra::Vector3;
@@ -53,26 +55,15 @@ pub(super) struct MeshAxis {
 
 impl MeshAxis {
     fn new(domain: &Domain, axis: Axis, kind: AxisKind, cells: usize) -> Self {
-        use FaceKind::{Conductor, Insulator, Open};
         let spacing = domain.extent()[axis.index()] / cells as f64;
-        // Room for all distances between a cell of the box, or the next one, and a cell or its mirror image.
-        let (symmetry, length, period, at_end) = match kind {
-            AxisKind::Periodic => (Symmetry::Periodic, cells, None, false),
-            AxisKind::Faces(Conductor, Conductor) => (Symmetry::OddOdd, cells, None, false),
-            AxisKind::Faces(Insulator, Insulator) => (Symmetry::EvenEven, cells, None, false),
-            AxisKind::Faces(Conductor, Insulator) => (Symmetry::OddEven, cells, None, false),
-            AxisKind::Faces(Insulator, Conductor) => (Symmetry::EvenOdd, cells, None, false),
-            AxisKind::Faces(Open, Open) => {
-                let length = smooth_even(2 * cells + 2);
-                (Symmetry::Periodic, length, Some(length), false)
-            }
-            AxisKind::Faces(lower, upper) => {
-                let length = smooth_even(2 * cells + 2);
-                let wall = if lower == Open { upper } else { lower };
-                let symmetry = if wall == Conductor { Symmetry::OddOdd } else { Symmetry::EvenEven };
-                (symmetry, length, Some(2 * length), lower == Open)
-            }
-        };
+        let symmetry = symmetry(kind);
+        let (mut length, mut period) = (cells, None);
+        if kind.is_open() {
+            // Room for all distances between a cell of the box, or the next one, and a cell or its mirror image.
+            length = smooth_even(2 * cells + 2);
+            period = Some(if symmetry == Symmetry::Periodic { length } else { 2 * length });
+        }
+        let at_end = matches!(kind, AxisKind::Faces(Open, Conductor | Insulator));
         Self {
             cells,
             spacing,
@@ -99,7 +90,7 @@ impl MeshAxis {
 #[derive(Debug)]
 struct Share {
     scratch: [LineScratch; 3],
-    line: Vec<f64>,
+    tile: Vec<f64>,
 }
 
 /// Cells of a box with their potential.
@@ -146,7 +137,7 @@ impl Mesh {
         let size: usize = lengths.iter().product();
         let share = || Share {
             scratch: axes.each_ref().map(|axis| axis.transform.scratch()),
-            line: vec![0.0; lengths[1]],
+            tile: vec![0.0; TILE * lengths[1]],
         };
         let mut mesh = Self {
             origin: domain.min(),
@@ -280,7 +271,7 @@ impl Mesh {
                 for row in plane.chunks_mut(nz) {
                     along_z.forward(row, &mut share.scratch[2]);
                 }
-                each_column(plane, nz, &mut share.line, |line| along_y.forward(line, &mut share.scratch[1]));
+                across_rows(plane, nz, &mut share.tile, |line| along_y.forward(line, &mut share.scratch[1]));
             }
         });
         let values = &self.potential;
@@ -317,7 +308,7 @@ impl Mesh {
                     for (place, value) in plane.iter_mut().enumerate() {
                         *value = lines[place * nx + x];
                     }
-                    each_column(plane, nz, &mut share.line, |line| {
+                    across_rows(plane, nz, &mut share.tile, |line| {
                         along_y.inverse(line, &mut share.scratch[1])
                     });
                     for row in plane.chunks_mut(nz) {
@@ -332,19 +323,6 @@ impl Mesh {
     pub(super) fn memory_bytes(&self) -> usize {
         let walls = self.walls.as_ref().map_or(0, Vec::len);
         (self.potential.len() + self.lines.len() + self.inverse.len() + walls) * size_of::<f64>()
-    }
-}
-
-/// Applies a transform to every column of a plane with rows of the given length.
-fn each_column(plane: &mut [f64], row: usize, line: &mut [f64], mut transform: impl FnMut(&mut [f64])) {
-    for column in 0..row {
-        for (value, source) in line.iter_mut().zip(plane[column..].iter().step_by(row)) {
-            *value = *source;
-        }
-        transform(line);
-        for (value, target) in line.iter().zip(plane[column..].iter_mut().step_by(row)) {
-            *target = *value;
-        }
     }
 }
 

@@ -4,10 +4,10 @@ mod inverse;
 mod lattice;
 mod mesh;
 
-use crate::cutoff::check_radius;
+use crate::cutoff::{check_radius, coulomb};
 use crate::image_cells::ImageCells;
 use crate::images::ImageLattice;
-use crate::inputs::{check_finite, check_in_box, check_net_charge, check_result};
+use crate::inputs::{check_charges_in_box, check_result};
 use crate::stopwatch::Stopwatch;
 use crate::{FieldError, FieldMethod, FieldValues, Wanted};
 use amberfield_core::Domain;
@@ -96,31 +96,24 @@ impl Kolehmainen {
         self.images.build(&self.lattice, &self.wrapped, charges, self.radius, |index, image| {
             std::array::from_fn(|axis| signed(cells[index][axis]) + image.periods[axis] * count[axis])
         });
-        let (images, spacing, limit) = (&self.images, self.mesh.spacing(), self.radius * self.radius);
+        let (images, spacing) = (&self.images, self.mesh.spacing());
         self.sums.resize(self.wrapped.len(), PairSums::default());
         self.sums.par_iter_mut().zip(&self.wrapped).zip(cells).enumerate().for_each(
             |(index, ((sums, at), cell))| {
                 let own = cell.map(signed);
                 let mut total = PairSums::default();
-                images.for_each_range(at, |range| {
-                    for k in range {
-                        let d = Vector3::new(at.x - images.x[k], at.y - images.y[k], at.z - images.z[k]);
-                        if d.norm_squared() >= limit || images.real[k] as usize == index {
-                            continue;
-                        }
-                        total.partners += 1;
+                images.for_each_partner(index, at, |k, d, _| {
+                    total.partners += 1;
+                    let (potential, e) = coulomb(images.charge[k], &d);
+                    total.near_potential += potential;
+                    total.near += e;
+                    let other = images.extra[k];
+                    if other != own {
+                        let d =
+                            Vector3::from_fn(|axis, _| f64::from(own[axis] - other[axis]) * spacing[axis]);
                         let (potential, e) = coulomb(images.charge[k], &d);
-                        total.near_potential += potential;
-                        total.near += e;
-                        let other = images.extra[k];
-                        if other != own {
-                            let d = Vector3::from_fn(|axis, _| {
-                                f64::from(own[axis] - other[axis]) * spacing[axis]
-                            });
-                            let (potential, e) = coulomb(images.charge[k], &d);
-                            total.correction_potential -= potential;
-                            total.correction -= e;
-                        }
+                        total.correction_potential -= potential;
+                        total.correction -= e;
                     }
                 });
                 *sums = total;
@@ -158,10 +151,9 @@ impl FieldMethod for Kolehmainen {
         wanted: Wanted,
         out: &mut FieldValues,
     ) -> Result<(), FieldError> {
-        check_finite(positions, charges)?;
-        check_in_box(&self.domain, positions)?;
         let permittivity = VACUUM_PERMITTIVITY * self.relative_permittivity;
-        check_net_charge(&self.domain, permittivity, self.neutralising_background, charges)?;
+        let background = self.neutralising_background;
+        check_charges_in_box(&self.domain, permittivity, background, positions, charges)?;
         self.stopwatch.restart();
         self.wrapped.clear();
         self.wrapped.extend(positions.iter().map(|position| self.domain.wrap(*position)));
@@ -194,13 +186,6 @@ impl FieldMethod for Kolehmainen {
             + self.cells.capacity() * size_of::<[usize; 3]>()
             + self.sums.capacity() * size_of::<PairSums>()
     }
-}
-
-/// Potential and field over k_e at distance `d` from a charge.
-fn coulomb(charge: f64, d: &Vector3<f64>) -> (f64, Vector3<f64>) {
-    let inverse = 1.0 / d.norm();
-    let potential = charge * inverse;
-    (potential, d * (potential * inverse * inverse))
 }
 
 #[expect(clippy::cast_possible_truncation, clippy::cast_possible_wrap, reason = "cells per axis, checked")]
