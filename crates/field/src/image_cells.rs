@@ -212,15 +212,6 @@ impl<T: Copy + Default> ImageCells<T> {
         self.real.len()
     }
 
-    /// Appends `count` values that belong to no image to the coordinates and charges, so that runs can be read
-    /// in whole lanes.
-    pub(crate) fn pad(&mut self, count: usize) {
-        let len = self.len() + count;
-        for array in [&mut self.x, &mut self.y, &mut self.z, &mut self.charge] {
-            array.resize(len, 0.0);
-        }
-    }
-
     /// Memory held [bytes].
     pub(crate) fn memory_bytes(&self) -> usize {
         self.staging.capacity() * size_of::<Entry<T>>()

@@ -17,6 +17,7 @@ mod method;
 mod near;
 mod p3m;
 mod plan;
+mod scratch;
 mod stopwatch;
 mod tuning;
 mod values;

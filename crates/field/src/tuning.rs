@@ -33,16 +33,17 @@ const TIMED: usize = 4;
 const FIRST_LOOK: f64 = 0.05;
 /// Cost of the pieces, in nanoseconds on a reference machine; only ratios matter.
 mod cost {
-    /// A pair within the cut-off, the neighbours beyond it that are looked at included.
-    pub(super) const PAIR: f64 = 2.2;
+    /// A pair within the cut-off in single and in double precision, the neighbours beyond it that are looked at
+    /// included.
+    pub(super) const PAIR: [f64; 2] = [4.3, 18.0];
     /// A pair of the direct sum.
-    pub(super) const ALL_PAIRS: f64 = 1.0;
+    pub(super) const ALL_PAIRS: f64 = 3.0;
     /// Spreading and gathering, per node of a spline.
-    pub(super) const NODE: f64 = 0.9;
+    pub(super) const NODE: f64 = 1.9;
     /// Transforms there and back, per padded node and factor log₂(nodes).
-    pub(super) const TRANSFORM: f64 = 0.75;
-    /// Sorting and summing a particle.
-    pub(super) const PARTICLE: f64 = 100.0;
+    pub(super) const TRANSFORM: f64 = 2.2;
+    /// Sorting, looking for partners and summing, per particle.
+    pub(super) const PARTICLE: f64 = 450.0;
 }
 
 /// What a cloud of charges means for the error.
@@ -290,7 +291,7 @@ impl<'a> Tuner<'a> {
 
     /// Polynomials a good deal better than the tolerance, never better than round-off.
     fn kernel_accuracy(&self, error: f64) -> f64 {
-        (0.02 * error / self.cloud.floor.max(error)).clamp(1e-13, 1e-4)
+        (0.05 * error / self.cloud.floor.max(error)).clamp(1e-13, 1e-3)
     }
 
     /// Node spacings worth a look [m].
@@ -319,8 +320,8 @@ impl<'a> Tuner<'a> {
             .iter()
             .map(|size| size.padded as f64)
             .product();
-        let per_particle =
-            cost::PARTICLE + cost::PAIR * pairs + cost::NODE * (parameters.order as f64).powi(3);
+        let pair = cost::PAIR[usize::from(!parameters.near().is_single())];
+        let per_particle = cost::PARTICLE + pair * pairs + cost::NODE * (parameters.order as f64).powi(3);
         cloud.count * per_particle + cost::TRANSFORM * nodes * nodes.max(2.0).log2()
     }
 

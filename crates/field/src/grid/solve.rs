@@ -5,8 +5,8 @@ use super::bspline::HALO;
 use super::halo::HaloArray;
 use super::influence::Influence;
 use super::transform::LineScratch;
+use crate::scratch::PerThread;
 use rayon::prelude::*;
-use std::sync::Mutex;
 
 /// Lines that are gathered from strided memory at a time: a cache line of doubles.
 pub(crate) const TILE: usize = 8;
@@ -21,7 +21,7 @@ pub(crate) struct Solver {
     planes: Vec<f64>,
     /// Lines of x, `[y][z][x]`.
     lines: Vec<f64>,
-    scratch: Vec<Mutex<Scratch>>,
+    scratch: PerThread<Scratch>,
 }
 
 #[derive(Debug, Clone)]
@@ -43,7 +43,7 @@ impl Solver {
             lengths,
             planes: vec![0.0; axes[0].nodes * plane],
             lines: vec![0.0; lengths[0] * plane],
-            scratch: (0..rayon::current_num_threads()).map(|_| Mutex::new(scratch.clone())).collect(),
+            scratch: PerThread::new(|| scratch.clone()),
         }
     }
 
@@ -62,7 +62,7 @@ impl Solver {
         let charged = axes[2].offset..axes[2].offset + axes[2].nodes;
         let sources = nodes.values[HALO * halo_plane..].par_chunks(halo_plane);
         self.planes.par_chunks_mut(plane).zip(sources).for_each(|(plane, source)| {
-            with_scratch(scratch, |scratch| {
+            scratch.with(|scratch| {
                 plane.fill(0.0);
                 for y in 0..axes[1].nodes {
                     let row = &mut plane[padded_row_of(y)];
@@ -79,7 +79,7 @@ impl Solver {
         let (lines, lx) = (&self.lines, self.lengths[0]);
         let targets = nodes.values[HALO * halo_plane..].par_chunks_mut(halo_plane);
         self.planes.par_chunks_mut(plane).zip(targets).enumerate().for_each(|(x, (plane, target))| {
-            with_scratch(scratch, |scratch| {
+            scratch.with(|scratch| {
                 let at = x + axes[0].offset;
                 for (value, line) in plane.iter_mut().zip(lines.chunks_exact(lx)) {
                     *value = line[at];
@@ -102,7 +102,7 @@ impl Solver {
         let (planes, influence, scratch) = (&self.planes, &self.influence, &self.scratch);
         let nodes = axes[0].nodes;
         self.lines.par_chunks_mut(lx * lz).enumerate().for_each(|(y, lines)| {
-            with_scratch(scratch, |scratch| {
+            scratch.with(|scratch| {
                 let wave_y = axes[1].transform.wave_index(y);
                 for (z, tile) in lines.chunks_mut(lx * TILE).enumerate() {
                     let z = z * TILE;
@@ -124,13 +124,6 @@ impl Solver {
             });
         });
     }
-}
-
-/// Runs `work` with the calling thread's own scratch.
-fn with_scratch(scratch: &[Mutex<Scratch>], work: impl FnOnce(&mut Scratch)) {
-    let thread = rayon::current_thread_index().unwrap_or(0) % scratch.len();
-    let mut guard = scratch[thread].lock().expect("no transform panics while it holds its scratch");
-    work(&mut guard);
 }
 
 /// Applies `transform` to every column of a plane of rows of length `row`, a tile of columns at a time; `tile`

@@ -1,50 +1,47 @@
-//! The near kernel: a point charge's field less its cloud's, summed over a run of sources.
+//! The near kernel: a point charge's field less its cloud's, summed over candidates.
 //!
 //! E = Σ q r⃗ [1/r³ − S(r²)],  V = Σ q [1/r − P(r²)], with the cloud's S and P (see
 //! `amberfield_laws::gaussian_cloud`). Both are entire functions of r², so one polynomial each covers
 //! [0, r_c²] to any accuracy, with no table and no trouble at r ≪ r_c.
 //!
-//! Partners are gathered first (see [`super::partners`]): the arithmetic then runs on full vectors.
+//! Every candidate is computed and those beyond the cut-off are masked: with the candidates of a group side by side
+//! that costs less than packing the ones that count.
 
-use super::instructions::Instructions;
-use super::partners::{LANES, Partners};
+use super::candidates::Candidates;
+use super::cells::NearCells;
+use super::chebyshev::{chebyshev, monomials};
+use super::processor::{Instructions, Real, Vector};
 use amberfield_laws::gaussian_cloud::{cloud_field_over_r, cloud_potential};
-use std::f64::consts::PI;
+#[cfg(target_arch = "x86_64")]
+use std::arch::x86_64::{__m256, __m256d, __m512, __m512d};
 
 /// Polynomial degrees for which the loop is unrolled.
-const DEGREES: [usize; 6] = [6, 10, 14, 18, 24, 32];
+const DEGREES: [usize; 8] = [5, 7, 9, 11, 14, 18, 24, 32];
 
-/// Field and potential of a target (4πε = 1), summed lane by lane.
+/// Field (x, y, z) and potential of a target in the kernel's units (4πε = 1), and the square of the distance to the
+/// nearest candidate.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub(crate) struct Sum {
-    lanes: [[f64; LANES]; 4],
+    pub(crate) field: [f64; 3],
+    pub(crate) potential: f64,
+    pub(crate) nearest_squared: f64,
 }
 
-impl Sum {
-    pub(crate) fn field(&self) -> [f64; 3] {
-        [0, 1, 2].map(|axis| self.lanes[axis].iter().sum())
-    }
-
-    pub(crate) fn potential(&self) -> f64 {
-        self.lanes[3].iter().sum()
-    }
-}
-
-/// Polynomials of the cloud in y = 2r²/r_c² − 1, lowest degree first.
+/// Polynomials of the cloud in y = 2r²/r_c² − 1, lowest degree first, in units of r_c.
 #[derive(Clone, Debug)]
-pub(crate) struct NearKernel {
-    cutoff_squared: f64,
-    field: Vec<f64>,
-    potential: Vec<f64>,
+pub(crate) struct NearKernel<T> {
+    field: Vec<T>,
+    potential: Vec<T>,
     instructions: Instructions,
 }
 
-impl NearKernel {
-    /// Kernel for clouds of width `sigma` and cut-off `cutoff` [m], the polynomials good to `accuracy` of
-    /// the cloud's value at its centre.
-    pub(crate) fn new(sigma: f64, cutoff: f64, accuracy: f64) -> Self {
-        let field = chebyshev(|r| cloud_field_over_r(r, sigma), cutoff);
-        let potential = chebyshev(|r| cloud_potential(r, sigma), cutoff);
+impl<T: Real> NearKernel<T> {
+    /// Kernel for clouds of width σ over the cut-off radius, the polynomials good to `accuracy` of the cloud's
+    /// value at its centre.
+    pub(crate) fn new(sigma_over_cutoff: f64, accuracy: f64) -> Self {
+        let highest = DEGREES[DEGREES.len() - 1];
+        let field = chebyshev(|r| cloud_field_over_r(r, sigma_over_cutoff), 2 * highest);
+        let potential = chebyshev(|r| cloud_potential(r, sigma_over_cutoff), 2 * highest);
         let fits = |series: &[f64], degree: usize| {
             let left_out: f64 = series[degree + 1..].iter().map(|c| c.abs()).sum();
             left_out <= accuracy * series.iter().map(|c| c.abs()).sum::<f64>()
@@ -52,236 +49,315 @@ impl NearKernel {
         let degree = DEGREES
             .into_iter()
             .find(|&degree| fits(&field, degree) && fits(&potential, degree))
-            .unwrap_or(DEGREES[DEGREES.len() - 1]);
-        Self {
-            cutoff_squared: cutoff * cutoff,
-            field: monomials(&field[..=degree]),
-            potential: monomials(&potential[..=degree]),
-            instructions: Instructions::detect(),
-        }
+            .unwrap_or(highest);
+        let narrow = |series: &[f64]| monomials(&series[..=degree]).into_iter().map(T::narrow).collect();
+        Self { field: narrow(&field), potential: narrow(&potential), instructions: Instructions::detect() }
     }
 
-    /// Squared cut-off radius [m²].
-    pub(crate) fn cutoff_squared(&self) -> f64 {
-        self.cutoff_squared
-    }
-
-    /// Adds the gathered partners to a sum and forgets them.
-    #[inline]
-    pub(crate) fn add<const POTENTIAL: bool>(&self, partners: &mut Partners, sum: &mut Sum) {
-        partners.fill_last_lanes(self.cutoff_squared.sqrt());
-        match self.field.len() - 1 {
-            6 => self.dispatch::<7, POTENTIAL>(partners, sum),
-            10 => self.dispatch::<11, POTENTIAL>(partners, sum),
-            14 => self.dispatch::<15, POTENTIAL>(partners, sum),
-            18 => self.dispatch::<19, POTENTIAL>(partners, sum),
-            24 => self.dispatch::<25, POTENTIAL>(partners, sum),
-            _ => self.dispatch::<33, POTENTIAL>(partners, sum),
-        }
-        partners.clear();
-    }
-
-    #[inline(always)]
-    fn dispatch<const N: usize, const POTENTIAL: bool>(&self, partners: &Partners, sum: &mut Sum) {
-        match self.instructions {
-            #[cfg(target_arch = "x86_64")]
-            // SAFETY: `detect` found the instructions on this processor.
-            Instructions::Avx512 => unsafe { add_avx512::<N, POTENTIAL>(self, partners, sum) },
-            #[cfg(target_arch = "x86_64")]
-            // SAFETY: as above.
-            Instructions::Avx2 => unsafe { add_avx2::<N, POTENTIAL>(self, partners, sum) },
-            Instructions::Portable => add_lanes::<N, POTENTIAL, false>(self, partners, sum),
-        }
+    /// The kernel for other instructions.
+    #[cfg(test)]
+    pub(crate) fn with_instructions(self, instructions: Instructions) -> Self {
+        Self { instructions, ..self }
     }
 }
 
-#[cfg(target_arch = "x86_64")]
-#[target_feature(enable = "avx512f,fma")]
-fn add_avx512<const N: usize, const POTENTIAL: bool>(
-    kernel: &NearKernel,
-    partners: &Partners,
-    sum: &mut Sum,
-) {
-    add_lanes::<N, POTENTIAL, true>(kernel, partners, sum);
+/// Targets that share their candidates: sources of one row of cells.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Group<'a> {
+    pub(crate) targets: &'a [u32],
+    pub(crate) row: [usize; 2],
 }
 
-#[cfg(target_arch = "x86_64")]
-#[target_feature(enable = "avx2,fma")]
-fn add_avx2<const N: usize, const POTENTIAL: bool>(kernel: &NearKernel, partners: &Partners, sum: &mut Sum) {
-    add_lanes::<N, POTENTIAL, true>(kernel, partners, sum);
+/// Sums over candidates; implemented for both precisions.
+pub(crate) trait SumOver<T> {
+    /// Sums over the sources within the cut-off at every target of a group, each left out at its own place.
+    fn sum(
+        &self,
+        cells: &NearCells,
+        group: Group<'_>,
+        potential: bool,
+        candidates: &mut Candidates<T>,
+        sums: &mut [Sum],
+    );
 }
 
-/// a·b + c, fused where the instructions have it (elsewhere `mul_add` would call a function).
+macro_rules! sum_over {
+    ($number:ty, $portable:ty, $avx2:ty, $avx512:ty, $sum_avx2:ident, $sum_avx512:ident) => {
+        impl SumOver<$number> for NearKernel<$number> {
+            fn sum(
+                &self,
+                cells: &NearCells,
+                group: Group<'_>,
+                potential: bool,
+                candidates: &mut Candidates<$number>,
+                sums: &mut [Sum],
+            ) {
+                macro_rules! run {
+                    ($n:literal, $potential:literal) => {
+                        match self.instructions {
+                            #[cfg(target_arch = "x86_64")]
+                            // SAFETY: `detect` found the instructions on this processor.
+                            Instructions::Avx512 => unsafe {
+                                $sum_avx512::<$n, $potential>(self, cells, group, candidates, sums)
+                            },
+                            #[cfg(target_arch = "x86_64")]
+                            // SAFETY: as above.
+                            Instructions::Avx2 => unsafe {
+                                $sum_avx2::<$n, $potential>(self, cells, group, candidates, sums)
+                            },
+                            Instructions::Portable => {
+                                sum_group::<$portable, $n, $potential>(self, cells, group, candidates, sums)
+                            }
+                        }
+                    };
+                }
+                macro_rules! degree {
+                    ($n:literal) => {
+                        if potential { run!($n, true) } else { run!($n, false) }
+                    };
+                }
+                match self.field.len() {
+                    6 => degree!(6),
+                    8 => degree!(8),
+                    10 => degree!(10),
+                    12 => degree!(12),
+                    15 => degree!(15),
+                    19 => degree!(19),
+                    25 => degree!(25),
+                    _ => degree!(33),
+                }
+            }
+        }
+
+        #[cfg(target_arch = "x86_64")]
+        #[target_feature(enable = "avx512f,fma")]
+        fn $sum_avx512<const N: usize, const POTENTIAL: bool>(
+            kernel: &NearKernel<$number>,
+            cells: &NearCells,
+            group: Group<'_>,
+            candidates: &mut Candidates<$number>,
+            sums: &mut [Sum],
+        ) {
+            sum_group::<$avx512, N, POTENTIAL>(kernel, cells, group, candidates, sums);
+        }
+
+        #[cfg(target_arch = "x86_64")]
+        #[target_feature(enable = "avx2,fma")]
+        fn $sum_avx2<const N: usize, const POTENTIAL: bool>(
+            kernel: &NearKernel<$number>,
+            cells: &NearCells,
+            group: Group<'_>,
+            candidates: &mut Candidates<$number>,
+            sums: &mut [Sum],
+        ) {
+            sum_group::<$avx2, N, POTENTIAL>(kernel, cells, group, candidates, sums);
+        }
+    };
+}
+sum_over!(f32, [f32; 4], __m256, __m512, single_avx2, single_avx512);
+sum_over!(f64, [f64; 2], __m256d, __m512d, double_avx2, double_avx512);
+
 #[inline(always)]
-fn fused<const FUSED: bool>(a: f64, b: f64, c: f64) -> f64 {
-    if FUSED { a.mul_add(b, c) } else { a * b + c }
+fn sum_group<V: Vector, const N: usize, const POTENTIAL: bool>(
+    kernel: &NearKernel<V::Number>,
+    cells: &NearCells,
+    group: Group<'_>,
+    candidates: &mut Candidates<V::Number>,
+    sums: &mut [Sum],
+) {
+    let field: &[V::Number; N] = kernel.field[..].try_into().expect("N coefficients");
+    let potential: &[V::Number; N] = kernel.potential[..].try_into().expect("N coefficients");
+    let shift = gather::<V>(cells, group, candidates);
+    for (&target, sum) in group.targets.iter().zip(sums) {
+        let own = (target as usize).wrapping_add(shift);
+        let place = candidates.hide(own);
+        *sum = sum_at::<V, N, POTENTIAL>(field, potential, candidates, place);
+        candidates.show(own, place);
+    }
+}
+
+/// Lays the sources around a group side by side; a target's number among them is its number plus what is returned.
+#[inline(always)]
+fn gather<V: Vector>(cells: &NearCells, group: Group<'_>, candidates: &mut Candidates<V::Number>) -> usize {
+    let first = group.targets[0] as usize;
+    let mut range = [cells.place(first)[0]; 2];
+    for &target in group.targets {
+        let x = cells.place(target as usize)[0];
+        range = [range[0].min(x), range[1].max(x)];
+    }
+    let (reference, sources) = (cells.place(first), cells.sources());
+    let mut shift = 0;
+    candidates.clear();
+    for row in cells.rows() {
+        let run = cells.run(row, group.row, range);
+        if run.contains(&first) {
+            shift = candidates.len().wrapping_sub(run.start);
+        }
+        candidates.append::<V>(sources, run, reference);
+    }
+    candidates.finish();
+    shift
 }
 
 #[inline(always)]
-fn add_lanes<const N: usize, const POTENTIAL: bool, const FUSED: bool>(
-    kernel: &NearKernel,
-    partners: &Partners,
-    sum: &mut Sum,
-) {
-    let field: &[f64; N] = kernel.field[..].try_into().expect("N coefficients");
-    let potential: &[f64; N] = kernel.potential[..].try_into().expect("N coefficients");
-    let scale = 2.0 / kernel.cutoff_squared;
-    let mut total = sum.lanes;
-    for block in partners.blocks() {
-        // One loop over the lanes for each operation: what the compiler turns into vectors.
-        let [x, y, z, q] = block;
-        let r2 = each(|lane| {
-            let yz = fused::<FUSED>(y[lane], y[lane], z[lane] * z[lane]);
-            fused::<FUSED>(x[lane], x[lane], yz)
-        });
-        let inverse = each(|lane| 1.0 / r2[lane].sqrt());
-        let argument = each(|lane| fused::<FUSED>(r2[lane], scale, -1.0));
-        let cloud = horner::<N, FUSED>(field, &argument);
-        let weight = each(|lane| q[lane] * (inverse[lane] * inverse[lane] * inverse[lane] - cloud[lane]));
-        for (total, d) in total.iter_mut().zip([x, y, z]) {
-            *total = each(|lane| fused::<FUSED>(weight[lane], d[lane], total[lane]));
-        }
+fn sum_at<V: Vector, const N: usize, const POTENTIAL: bool>(
+    field: &[V::Number; N],
+    potential: &[V::Number; N],
+    candidates: &Candidates<V::Number>,
+    place: [V::Number; 3],
+) -> Sum {
+    let number = |value| V::splat(V::Number::narrow(value));
+    let (zero, one, two) = (number(0.0), number(1.0), number(2.0));
+    // Spelled out axis by axis: closures over arrays are not always inlined, and vectors in memory are slow.
+    let [px, py, pz] = place;
+    let (px, py, pz) = (V::splat(px), V::splat(py), V::splat(pz));
+    let [xs, ys, zs, charges] = candidates.arrays();
+    let (mut ex, mut ey, mut ez, mut total) = (zero, zero, zero, zero);
+    let mut nearest = two;
+    for at in (0..candidates.len()).step_by(V::LANES) {
+        let dx = px.sub(V::load(&xs[at..]));
+        let dy = py.sub(V::load(&ys[at..]));
+        let dz = pz.sub(V::load(&zs[at..]));
+        let charge = V::load(&charges[at..]);
+        let r2 = dx.mul_add(dx, dy.mul_add(dy, dz.mul(dz)));
+        nearest = nearest.min(r2);
+        let inverse = r2.inverse_root();
+        let argument = r2.mul_add(two, number(-1.0));
+        let point = inverse.mul(inverse).mul(inverse);
+        let weight = charge.mul(point.sub(horner(field, argument)));
+        let weight = r2.select_below(one, weight);
+        ex = weight.mul_add(dx, ex);
+        ey = weight.mul_add(dy, ey);
+        ez = weight.mul_add(dz, ez);
         if POTENTIAL {
-            let cloud = horner::<N, FUSED>(potential, &argument);
-            total[3] = each(|lane| fused::<FUSED>(q[lane], inverse[lane] - cloud[lane], total[3][lane]));
+            let value = charge.mul(inverse.sub(horner(potential, argument)));
+            total = total.add(r2.select_below(one, value));
         }
     }
-    sum.lanes = total;
-}
-
-/// One value per lane.
-#[inline(always)]
-fn each(value: impl Fn(usize) -> f64) -> [f64; LANES] {
-    let mut lanes = [0.0; LANES];
-    for (lane, slot) in lanes.iter_mut().enumerate() {
-        *slot = value(lane);
+    Sum {
+        field: [ex.total(), ey.total(), ez.total()],
+        potential: total.total(),
+        nearest_squared: nearest.smallest(),
     }
-    lanes
 }
 
 /// Polynomial in every lane, highest power last in `coefficients`.
 #[inline(always)]
-fn horner<const N: usize, const FUSED: bool>(
-    coefficients: &[f64; N],
-    argument: &[f64; LANES],
-) -> [f64; LANES] {
-    let mut value = [coefficients[N - 1]; LANES];
+fn horner<V: Vector, const N: usize>(coefficients: &[V::Number; N], argument: V) -> V {
+    let mut value = V::splat(coefficients[N - 1]);
     for power in (0..N - 1).rev() {
-        value = each(|lane| fused::<FUSED>(value[lane], argument[lane], coefficients[power]));
+        value = value.mul_add(argument, V::splat(coefficients[power]));
     }
     value
-}
-
-/// Chebyshev coefficients of a function of r², in y = 2r²/cutoff² − 1, to twice the highest degree used.
-fn chebyshev(function: impl Fn(f64) -> f64, cutoff: f64) -> Vec<f64> {
-    let count = 2 * DEGREES[DEGREES.len() - 1];
-    let angle = |node: usize| PI * (node as f64 + 0.5) / count as f64;
-    let samples: Vec<f64> =
-        (0..count).map(|node| function(cutoff * (0.5 * (1.0 + angle(node).cos())).sqrt())).collect();
-    let coefficient = |degree: usize| {
-        let sum: f64 =
-            samples.iter().enumerate().map(|(node, value)| value * (degree as f64 * angle(node)).cos()).sum();
-        sum * if degree == 0 { 1.0 } else { 2.0 } / count as f64
-    };
-    (0..count).map(coefficient).collect()
-}
-
-/// Power-series coefficients of a Chebyshev series.
-fn monomials(series: &[f64]) -> Vec<f64> {
-    let mut result = vec![0.0; series.len()];
-    let (mut before, mut current) = (vec![0.0; series.len()], vec![0.0; series.len()]);
-    before[0] = 1.0;
-    if series.len() > 1 {
-        current[1] = 1.0;
-    }
-    for (degree, coefficient) in series.iter().enumerate() {
-        let polynomial = if degree == 0 { &before } else { &current };
-        for (sum, term) in result.iter_mut().zip(polynomial) {
-            *sum += coefficient * term;
-        }
-        if degree > 0 {
-            let mut next: Vec<f64> = before.iter().map(|term| -term).collect();
-            for power in 1..series.len() {
-                next[power] += 2.0 * current[power - 1];
-            }
-            before = std::mem::replace(&mut current, next);
-        }
-    }
-    result
 }
 
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::near::partners::{Gather, PADDING, Sources, Target};
+    use crate::images::ImageLattice;
+    use amberfield_core::{Boundary, Domain};
     use amberfield_laws::gaussian_cloud::{near_field_over_r, near_potential};
+    use nalgebra::Vector3;
 
-    /// Deterministic scatter of sources around the origin, some beyond the cut-off, padded with ones that must
-    /// not count; source `OWN` is the target.
-    fn sources(count: usize) -> [Vec<f64>; 4] {
-        let value = |i: usize, k: f64| if i < count { 1.3 * (i as f64 * k + 0.3).sin() } else { 0.1 };
-        [0.917, 1.731, 2.331, 3.177].map(|k| (0..count + PADDING).map(|i| value(i, k)).collect())
-    }
-
+    /// A term of the sum is good to this many units in the last place of the point charge's term.
+    const UNITS: f64 = 8.0;
     const COUNT: usize = 203;
-    const OWN: usize = 50;
+    const CUTOFF: f64 = 1.2;
 
-    fn sum_of(kernel: &NearKernel, arrays: &[Vec<f64>; 4]) -> Sum {
-        let view = Sources { x: &arrays[0], y: &arrays[1], z: &arrays[2], charge: &arrays[3] };
-        let target = Target { position: [0.0; 3], own: OWN };
-        let (mut partners, mut sum) = (Partners::default(), Sum::default());
-        let gather = Gather::new(kernel.cutoff_squared, kernel.instructions);
-        for run in [0..31, 31..COUNT] {
-            gather
-                .append(target, view, run, &mut partners, |partners| kernel.add::<true>(partners, &mut sum));
-        }
-        kernel.add::<true>(&mut partners, &mut sum);
-        sum
+    struct Scatter {
+        positions: Vec<Vector3<f64>>,
+        charges: Vec<f64>,
+        cells: NearCells,
     }
 
-    fn exact(sigma: f64, cutoff: f64, sources: &[Vec<f64>; 4]) -> ([f64; 3], f64) {
-        let (mut field, mut potential) = ([0.0; 3], 0.0);
-        for i in (0..COUNT).filter(|&i| i != OWN) {
-            let d = [0, 1, 2].map(|axis| -sources[axis][i]);
-            let r = d.iter().map(|c| c * c).sum::<f64>().sqrt();
-            if r < cutoff {
-                for (sum, d) in field.iter_mut().zip(d) {
-                    *sum += sources[3][i] * d * near_field_over_r(r, sigma);
+    fn scatter() -> Scatter {
+        let value = |i: usize, k: f64| 1.3 * (i as f64 * k + 0.3).sin();
+        let positions: Vec<_> =
+            (0..COUNT).map(|i| Vector3::new(value(i, 0.917), value(i, 1.731), value(i, 2.331))).collect();
+        let charges: Vec<f64> = (0..COUNT).map(|i| value(i, 3.177) / 1.3).collect();
+        let domain =
+            Domain::new(Vector3::repeat(-2.0), Vector3::repeat(2.0), [[Boundary::Open; 2]; 3]).unwrap();
+        let mut cells = NearCells::default();
+        cells.build(&domain, &ImageLattice::new(&domain), &positions, &charges, CUTOFF, 1.0);
+        Scatter { positions, charges, cells }
+    }
+
+    /// The sum at every source, in the kernel's units.
+    fn sums<T: Real>(kernel: &NearKernel<T>, scatter: &Scatter) -> Vec<Sum>
+    where
+        NearKernel<T>: SumOver<T>,
+    {
+        let mut candidates = Candidates::default();
+        let one = |source: u32| {
+            let mut sum = [Sum::default()];
+            let group = Group { targets: &[source], row: scatter.cells.row_of(source as usize) };
+            kernel.sum(&scatter.cells, group, true, &mut candidates, &mut sum);
+            sum[0]
+        };
+        (0..COUNT as u32).map(one).collect()
+    }
+
+    /// The scalar twin: field, potential, and the sums of the sizes of their point charges' terms.
+    fn exact(sigma: f64, scatter: &Scatter, target: usize) -> ([f64; 4], [f64; 2]) {
+        let (mut sum, mut size) = ([0.0; 4], [0.0; 2]);
+        for source in (0..COUNT).filter(|&source| source != target) {
+            let d = (scatter.positions[target] - scatter.positions[source]) / CUTOFF;
+            let (r, q) = (d.norm(), scatter.charges[source]);
+            if r < 1.0 {
+                for axis in 0..3 {
+                    sum[axis] += q * d[axis] * near_field_over_r(r, sigma);
                 }
-                potential += sources[3][i] * near_potential(r, sigma);
+                sum[3] += q * near_potential(r, sigma);
+                size[0] += q.abs() / (r * r);
+                size[1] += q.abs() / r;
             }
         }
-        (field, potential)
+        (sum, size)
+    }
+
+    fn check<T: Real>(sigma: f64, accuracy: f64, instructions: Instructions)
+    where
+        NearKernel<T>: SumOver<T>,
+    {
+        let scatter = scatter();
+        let kernel = NearKernel::<T>::new(sigma, accuracy).with_instructions(instructions);
+        let round_off = UNITS * if T::DOUBLE { f64::EPSILON } else { f64::from(f32::EPSILON) };
+        for (source, sum) in sums(&kernel, &scatter).iter().enumerate() {
+            let (exact, size) = exact(sigma, &scatter, scatter.cells.real[source] as usize);
+            // Coordinates are rounded too: that counts by the inverse of the distance to the nearest.
+            let rounding = round_off * (1.0 + 1.0 / sum.nearest_squared.sqrt());
+            let polynomials = accuracy * COUNT as f64;
+            for (value, expected) in sum.field.into_iter().zip(exact) {
+                let bound = rounding * size[0] + polynomials * cloud_field_over_r(0.0, sigma);
+                assert!((value - expected).abs() < bound, "{instructions:?}: {value} for {expected}");
+            }
+            let bound = rounding * size[1] + polynomials * cloud_potential(0.0, sigma);
+            assert!(
+                (sum.potential - exact[3]).abs() < bound,
+                "{instructions:?}: potential {}",
+                sum.potential
+            );
+        }
     }
 
     #[test]
-    fn polynomials_meet_the_closed_form() {
-        let sources = sources(COUNT);
-        for (sigma, cutoff, accuracy) in
-            [(0.4, 1.2, 1e-4), (0.3, 1.2, 1e-7), (0.25, 1.25, 1e-10), (0.2, 1.25, 1e-12), (5.0, 1.2, 1e-13)]
-        {
-            let sum = sum_of(&NearKernel::new(sigma, cutoff, accuracy), &sources);
-            let (field, potential) = exact(sigma, cutoff, &sources);
-            let scale = cloud_potential(0.0, sigma) * COUNT as f64;
-            assert!((sum.potential() - potential).abs() < (accuracy + 1e-13) * scale);
-            let scale = cloud_field_over_r(0.0, sigma) * COUNT as f64 * cutoff;
-            for (computed, expected) in sum.field().into_iter().zip(field) {
-                assert!((computed - expected).abs() < (accuracy + 1e-13) * scale);
+    fn every_instruction_set_meets_the_scalar_twin_in_both_precisions() {
+        let all = [
+            #[cfg(target_arch = "x86_64")]
+            Instructions::Avx2,
+            Instructions::Portable,
+            Instructions::detect(),
+        ];
+        let known = |instructions| {
+            instructions == Instructions::Portable || Instructions::detect() != Instructions::Portable
+        };
+        for instructions in all.into_iter().filter(|&instructions| known(instructions)) {
+            for (sigma, accuracy) in [(0.33, 1e-3), (0.3, 1e-5), (0.25, 1e-6)] {
+                check::<f32>(sigma, accuracy, instructions);
             }
-        }
-    }
-
-    #[test]
-    fn every_instruction_set_gives_the_same_sum() {
-        let sources = sources(COUNT);
-        let mut kernel = NearKernel::new(0.3, 1.2, 1e-9);
-        let native = sum_of(&kernel, &sources);
-        kernel.instructions = Instructions::Portable;
-        let portable = sum_of(&kernel, &sources);
-        // Fused and unfused arithmetic differ by round-off only.
-        assert!((native.potential() - portable.potential()).abs() < 1e-11);
-        for (native, portable) in native.field().into_iter().zip(portable.field()) {
-            assert!((native - portable).abs() < 1e-10);
+            for (sigma, accuracy) in [(0.33, 1e-4), (0.25, 1e-7), (0.2, 1e-10), (0.17, 1e-12), (4.0, 1e-13)] {
+                check::<f64>(sigma, accuracy, instructions);
+            }
         }
     }
 }

@@ -1,21 +1,33 @@
 //! The near level: pairs and images within the cut-off radius.
 
-mod instructions;
+mod candidates;
+mod cells;
+mod chebyshev;
 mod kernel;
-mod partners;
+mod processor;
 
-use crate::image_cells::{IMAGE, ImageCells};
 use crate::images::ImageLattice;
+use crate::scratch::PerThread;
 use amberfield_core::Domain;
-use instructions::Instructions;
-use kernel::{NearKernel, Sum};
+use candidates::Candidates;
+use cells::{IMAGE, NearCells};
+use kernel::{Group, NearKernel, Sum, SumOver};
 use nalgebra::Vector3;
-use partners::{Gather, PADDING, Partners, Sources, Target};
 use rayon::prelude::*;
 use serde::{Deserialize, Serialize};
 
 /// Targets handled by one task.
 const TASK: usize = 64;
+/// Most targets that share their candidates.
+const GROUP: usize = 8;
+/// Largest extent of a group along x, over the cut-off radius.
+const GROUP_LENGTH: f64 = 1.0;
+/// Kernel accuracy above which single precision will do: its round-off at ordinary distances stays below a tenth
+/// of the error.
+const SINGLE_FROM: f64 = 3e-6;
+/// Distance between two charges over r_c, times the kernel accuracy, below which the round-off of their coordinates in single
+/// precision counts: such a target is summed again in double precision.
+const SINGLE_ROUND_OFF: f64 = 2e-7;
 
 /// What the near level is made of.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
@@ -28,40 +40,63 @@ pub(crate) struct NearParameters {
     pub kernel_accuracy: f64,
 }
 
+impl NearParameters {
+    /// Whether single precision is good enough.
+    pub(crate) fn is_single(&self) -> bool {
+        self.kernel_accuracy >= SINGLE_FROM
+    }
+}
+
 /// Sum over real and image charges within the cut-off of a charge's field less its cloud's.
 #[derive(Debug)]
 pub(crate) struct NearLevel {
-    kernel: NearKernel,
-    gather: Gather,
     parameters: NearParameters,
+    /// `None` where the tolerance needs double precision.
+    single: Option<NearKernel<f32>>,
+    double: NearKernel<f64>,
+    domain: Domain,
     lattice: ImageLattice,
-    sources: ImageCells<()>,
+    cells: NearCells,
+    /// Largest charge [C].
+    largest: f64,
     /// Sources that are particles, in cell order.
     targets: Vec<u32>,
     sums: Vec<Sum>,
+    scratch: PerThread<Scratch>,
+}
+
+#[derive(Debug, Default)]
+struct Scratch {
+    single: Candidates<f32>,
+    double: Candidates<f64>,
 }
 
 impl NearLevel {
     pub(crate) fn new(domain: &Domain, parameters: NearParameters) -> Self {
         let NearParameters { sigma_m, cutoff_m, kernel_accuracy } = parameters;
-        let kernel = NearKernel::new(sigma_m, cutoff_m, kernel_accuracy);
+        let width = sigma_m / cutoff_m;
         Self {
-            gather: Gather::new(kernel.cutoff_squared(), Instructions::detect()),
-            kernel,
             parameters,
+            single: parameters.is_single().then(|| NearKernel::new(width, kernel_accuracy)),
+            double: NearKernel::new(width, kernel_accuracy),
+            domain: domain.clone(),
             lattice: ImageLattice::new(domain),
-            sources: ImageCells::default(),
+            cells: NearCells::default(),
+            largest: 0.0,
             targets: Vec::new(),
             sums: Vec::new(),
+            scratch: PerThread::new(Scratch::default),
         }
     }
 
     /// Sorts charges and their images into cells. Positions lie inside the domain.
     pub(crate) fn sort(&mut self, positions: &[Vector3<f64>], charges: &[f64]) {
-        self.sources.build(&self.lattice, positions, charges, self.parameters.cutoff_m, |_, _| ());
-        self.sources.pad(PADDING);
+        self.largest = charges.iter().fold(0.0, |largest, charge| charge.abs().max(largest));
+        let per_charge = if self.largest > 0.0 { 1.0 / self.largest } else { 0.0 };
+        let Self { domain, lattice, parameters, cells, .. } = self;
+        cells.build(domain, lattice, positions, charges, parameters.cutoff_m, per_charge);
         self.targets.clear();
-        let real = self.sources.real.iter().enumerate().filter(|(_, particle)| **particle != IMAGE);
+        let real = self.cells.real.iter().enumerate().filter(|(_, particle)| **particle != IMAGE);
         self.targets.extend(real.map(|(source, _)| source as u32));
     }
 
@@ -71,8 +106,8 @@ impl NearLevel {
         self.evaluate(&self.targets, potential, &mut sums);
         for (&target, sum) in self.targets.iter().zip(&sums) {
             let (e, value) = &mut field[self.particle(target)];
-            *e += Vector3::from(sum.field());
-            *value += sum.potential();
+            *e += Vector3::from(sum.field);
+            *value += sum.potential;
         }
         self.sums = sums;
     }
@@ -86,7 +121,7 @@ impl NearLevel {
         let targets: Vec<u32> = particles.iter().map(|&particle| target_of[particle]).collect();
         let mut sums = Vec::new();
         self.evaluate(&targets, false, &mut sums);
-        sums.iter().map(|sum| Vector3::from(sum.field())).collect()
+        sums.iter().map(|sum| Vector3::from(sum.field)).collect()
     }
 
     /// Mean number of sources within the cut-off of a sample of targets.
@@ -95,55 +130,72 @@ impl NearLevel {
         let step = self.targets.len().div_ceil(SAMPLE).max(1);
         let (mut pairs, mut sampled) = (0_usize, 0_usize);
         for &target in self.targets.iter().step_by(step) {
-            let here = self.position(target as usize);
-            self.sources.for_each_range(&here, |run| {
-                let within = run.filter(|&source| {
-                    let distance = (self.position(source) - here).norm();
-                    source != target as usize && distance < self.parameters.cutoff_m
-                });
-                pairs += within.count();
-            });
+            let place = |source| Vector3::from(self.cells.place(source));
+            let (target, here) = (target as usize, place(target as usize));
+            let run = |row| self.cells.run(row, self.cells.row_of(target), [here.x; 2]);
+            let offered = self.cells.rows().iter().flat_map(run);
+            pairs +=
+                offered.filter(|&source| source != target && (place(source) - here).norm() < 1.0).count();
             sampled += 1;
         }
         if sampled == 0 { 0.0 } else { pairs as f64 / sampled as f64 }
     }
 
     fn particle(&self, target: u32) -> usize {
-        self.sources.real[target as usize] as usize
-    }
-
-    fn position(&self, source: usize) -> Vector3<f64> {
-        Vector3::new(self.sources.x[source], self.sources.y[source], self.sources.z[source])
+        self.cells.real[target as usize] as usize
     }
 
     pub(crate) fn memory_bytes(&self) -> usize {
-        self.sources.memory_bytes() + 4 * self.targets.capacity() + self.sums.capacity() * size_of::<Sum>()
+        self.cells.memory_bytes() + 4 * self.targets.capacity() + self.sums.capacity() * size_of::<Sum>()
     }
 
     fn evaluate(&self, targets: &[u32], potential: bool, sums: &mut Vec<Sum>) {
         sums.clear();
         sums.resize(targets.len(), Sum::default());
-        sums.par_chunks_mut(TASK).zip(targets.par_chunks(TASK)).for_each(|(sums, targets)| {
-            let mut partners = Partners::default();
-            for (sum, &target) in sums.iter_mut().zip(targets) {
-                if potential {
-                    self.sum::<true>(target, &mut partners, sum);
-                } else {
-                    self.sum::<false>(target, &mut partners, sum);
+        if self.largest == 0.0 {
+            return;
+        }
+        sums.par_chunks_mut(TASK).zip(targets.par_chunks(TASK)).for_each(|(mut sums, mut targets)| {
+            self.scratch.with(|scratch| {
+                while let Some(&first) = targets.first() {
+                    let (length, row) = self.group(first, targets);
+                    let (group, others) = targets.split_at(length);
+                    let (of_group, of_others) = sums.split_at_mut(length);
+                    self.sum(Group { targets: group, row }, potential, scratch, of_group);
+                    (targets, sums) = (others, of_others);
                 }
-            }
+            });
         });
     }
 
-    fn sum<const POTENTIAL: bool>(&self, target: u32, partners: &mut Partners, sum: &mut Sum) {
-        let place = self.position(target as usize);
-        let target = Target { position: place.into(), own: target as usize };
-        let ImageCells { x, y, z, charge, .. } = &self.sources;
-        let sources = Sources { x, y, z, charge };
-        self.sources.for_each_range(&place, |run| {
-            self.gather
-                .append(target, sources, run, partners, |full| self.kernel.add::<POTENTIAL>(full, sum));
-        });
-        self.kernel.add::<POTENTIAL>(partners, sum);
+    /// How many of the first targets share a row of cells and lie close together, and the row.
+    fn group(&self, first: u32, targets: &[u32]) -> (usize, [usize; 2]) {
+        let (row, start) = (self.cells.row_of(first as usize), self.cells.place(first as usize)[0]);
+        let together = |&&target: &&u32| {
+            let x = self.cells.place(target as usize)[0];
+            (x - start).abs() < GROUP_LENGTH && self.cells.row_of(target as usize) == row
+        };
+        (targets.iter().take(GROUP).take_while(together).count(), row)
+    }
+
+    /// Sums of one group, in m and C.
+    fn sum(&self, group: Group<'_>, potential: bool, scratch: &mut Scratch, sums: &mut [Sum]) {
+        let Scratch { single, double } = scratch;
+        if let Some(kernel) = &self.single {
+            kernel.sum(&self.cells, group, potential, single, sums);
+            let closest = SINGLE_ROUND_OFF / self.parameters.kernel_accuracy;
+            if sums.iter().any(|sum| sum.nearest_squared < closest * closest) {
+                self.double.sum(&self.cells, group, potential, double, sums);
+            }
+        } else {
+            self.double.sum(&self.cells, group, potential, double, sums);
+        }
+        let per_length = 1.0 / self.parameters.cutoff_m;
+        let (unit_potential, unit_field) =
+            (self.largest * per_length, self.largest * per_length * per_length);
+        for sum in sums {
+            sum.field = sum.field.map(|value| value * unit_field);
+            sum.potential *= unit_potential;
+        }
     }
 }
