@@ -17,6 +17,7 @@ mod method;
 mod near;
 mod p3m;
 mod plan;
+mod processor;
 mod scratch;
 mod stopwatch;
 mod tuning;

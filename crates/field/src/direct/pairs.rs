@@ -2,14 +2,12 @@
 
 use crate::image_cells::ImageCells;
 use crate::images::ImageLattice;
+use crate::processor::{Instructions, Vector, dispatched};
 use libm::erfc;
 use nalgebra::Vector3;
 use rayon::prelude::*;
 use std::f64::consts::FRAC_2_SQRT_PI;
 use std::ops::Range;
-
-/// Terms summed side by side.
-const LANES: usize = 4;
 
 /// Potential and field over k_e, and the number of partners.
 pub(crate) type PairSum = (f64, Vector3<f64>, usize);
@@ -58,45 +56,57 @@ pub(crate) fn open(lattice: &ImageLattice, positions: &[Vector3<f64>], charges: 
             place += count;
         });
     }
+    let instructions = Instructions::detect();
     positions
         .par_iter()
         .enumerate()
         .map(|(index, at)| {
-            let below = coulomb(&sources, 0..index, at);
-            let above = coulomb(&sources, index + 1..count * images, at);
+            let below = coulomb(instructions, &sources, 0..index, at);
+            let above = coulomb(instructions, &sources, index + 1..count * images, at);
             let sum: [f64; 4] = std::array::from_fn(|k| below[k] + above[k]);
             (sum[0], Vector3::new(sum[1], sum[2], sum[3]), count * images - 1)
         })
         .collect()
 }
 
-/// Potential and field over k_e by a range of the sources.
-fn coulomb(sources: &Sources, range: Range<usize>, at: &Vector3<f64>) -> [f64; 4] {
-    let [x, y, z] = [0, 1, 2].map(|axis| &sources.coordinates[axis][range.clone()]);
-    let charge = &sources.charge[range];
-    let term = |k: usize| {
+dispatched! {
+    /// Potential and field over k_e by a range of the sources.
+    fn coulomb(sources: &Sources, range: Range<usize>, at: &Vector3<f64>) -> [f64; 4] = coulomb_in
+}
+
+#[inline(always)]
+fn coulomb_in<V: Vector<Number = f64>>(
+    sources: &Sources,
+    range: Range<usize>,
+    at: &Vector3<f64>,
+) -> [f64; 4] {
+    let [x, y, z] = &sources.coordinates;
+    let (x, y, z, charge) = (&x[range.clone()], &y[range.clone()], &z[range.clone()], &sources.charge[range]);
+    let (px, py, pz) = (V::splat(at.x), V::splat(at.y), V::splat(at.z));
+    let zero = V::splat(0.0);
+    let (mut total, mut ex, mut ey, mut ez) = (zero, zero, zero, zero);
+    let whole = charge.len() / V::LANES * V::LANES;
+    for first in (0..whole).step_by(V::LANES) {
+        let dx = px.sub(V::load(&x[first..]));
+        let dy = py.sub(V::load(&y[first..]));
+        let dz = pz.sub(V::load(&z[first..]));
+        let inverse = dx.mul_add(dx, dy.mul_add(dy, dz.mul(dz))).inverse_root();
+        let potential = V::load(&charge[first..]).mul(inverse);
+        let factor = potential.mul(inverse).mul(inverse);
+        total = total.add(potential);
+        ex = factor.mul_add(dx, ex);
+        ey = factor.mul_add(dy, ey);
+        ez = factor.mul_add(dz, ez);
+    }
+    let mut sums = [total.total(), ex.total(), ey.total(), ez.total()];
+    for k in whole..charge.len() {
         let d = [at.x - x[k], at.y - y[k], at.z - z[k]];
-        let square = d[0] * d[0] + d[1] * d[1] + d[2] * d[2];
-        let inverse = 1.0 / square.sqrt();
+        let inverse = 1.0 / (d[0] * d[0] + d[1] * d[1] + d[2] * d[2]).sqrt();
         let potential = charge[k] * inverse;
         let factor = potential * inverse * inverse;
-        [potential, factor * d[0], factor * d[1], factor * d[2]]
-    };
-    let mut lanes = [[0.0; LANES]; 4];
-    let whole = charge.len() / LANES * LANES;
-    for first in (0..whole).step_by(LANES) {
-        for lane in 0..LANES {
-            let value = term(first + lane);
-            for (sum, value) in lanes.iter_mut().zip(value) {
-                sum[lane] += value;
-            }
-        }
-    }
-    let mut total = lanes.map(|sum| (sum[0] + sum[1]) + (sum[2] + sum[3]));
-    for k in whole..charge.len() {
-        for (sum, value) in total.iter_mut().zip(term(k)) {
+        for (sum, value) in sums.iter_mut().zip([potential, factor * d[0], factor * d[1], factor * d[2]]) {
             *sum += value;
         }
     }
-    total
+    sums
 }

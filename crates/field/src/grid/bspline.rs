@@ -10,38 +10,88 @@ pub(crate) const MAX_ORDER: usize = 8;
 /// for positions that round onto a face.
 pub(crate) const HALO: usize = MAX_ORDER / 2 + 1;
 
-/// Lowest node that a spline of order `P` at `u` (in node spacings, node i at i) touches, and the weights
-/// and derivatives with respect to `u` at the `P` nodes from there.
+/// Axes handled side by side: a vector of four.
+const AXES: usize = 4;
+
+/// What a spline of order `P` does at one place, by axis.
+pub(crate) struct Weights<const P: usize> {
+    /// Lowest node touched.
+    pub(crate) first: [isize; 3],
+    /// Weights at the `P` nodes from there.
+    pub(crate) value: [[f64; P]; 3],
+    /// Derivatives of the weights with respect to the place.
+    pub(crate) slope: [[f64; P]; 3],
+}
+
+/// Lowest node that a spline of order `P` at `u` (in node spacings, node i at i) touches.
 #[inline(always)]
-pub(crate) fn weights<const P: usize>(u: f64) -> (isize, [f64; P], [f64; P]) {
-    let shift = if P.is_multiple_of(2) { 0.0 } else { 0.5 };
-    let cell = (u + shift).floor();
-    let first = cell as isize - (P as isize - 1) / 2;
+pub(crate) fn first_node<const P: usize>(u: f64) -> isize {
+    knot::<P>(u) as isize - (P as isize - 1) / 2
+}
+
+/// The knot below `u`.
+#[inline(always)]
+fn knot<const P: usize>(u: f64) -> f64 {
+    (u + shift::<P>()).floor()
+}
+
+#[inline(always)]
+fn shift<const P: usize>() -> f64 {
+    if P.is_multiple_of(2) { 0.0 } else { 0.5 }
+}
+
+/// Weights and derivatives of the splines of order `P` at the place `u` (in node spacings, node i at i).
+#[inline(always)]
+pub(crate) fn weights<const P: usize>(u: [f64; 3]) -> Weights<P> {
     // Distance past the lowest knot of the last spline that is non-zero here, in [0, 1).
-    let t = u + shift - cell;
-    let mut value = [0.0; P];
-    let mut slope = [0.0; P];
-    value[0] = 1.0 - t;
+    let mut t = [0.0; AXES];
+    for axis in 0..3 {
+        t[axis] = u[axis] + shift::<P>() - knot::<P>(u[axis]);
+    }
+    let mut value = [[0.0; AXES]; P];
+    let mut slope = [[0.0; AXES]; P];
+    value[0] = each(|axis| 1.0 - t[axis]);
     value[1] = t;
     for order in 3..=P {
         if order == P {
-            slope[0] = -value[0];
+            slope[0] = each(|axis| -value[0][axis]);
             for i in 1..P - 1 {
-                slope[i] = value[i - 1] - value[i];
+                slope[i] = each(|axis| value[i - 1][axis] - value[i][axis]);
             }
             slope[P - 1] = value[P - 2];
         }
         let scale = 1.0 / (order as f64 - 1.0);
         let top = order - 1;
-        value[top] = scale * t * value[top - 1];
+        value[top] = each(|axis| scale * t[axis] * value[top - 1][axis]);
         for i in (1..top).rev() {
-            let from_left = t + (top - i) as f64;
-            let from_right = (i + 1) as f64 - t;
-            value[i] = scale * (from_left * value[i - 1] + from_right * value[i]);
+            let (left, right) = ((top - i) as f64, (i + 1) as f64);
+            value[i] = each(|axis| {
+                scale * ((t[axis] + left) * value[i - 1][axis] + (right - t[axis]) * value[i][axis])
+            });
         }
-        value[0] *= scale * (1.0 - t);
+        value[0] = each(|axis| scale * (1.0 - t[axis]) * value[0][axis]);
     }
-    (first, value, slope)
+    // Spelled out: closures over arrays are not always inlined.
+    let [ux, uy, uz] = u;
+    let first = [first_node::<P>(ux), first_node::<P>(uy), first_node::<P>(uz)];
+    let mut weights = Weights { first, value: [[0.0; P]; 3], slope: [[0.0; P]; 3] };
+    for axis in 0..3 {
+        for i in 0..P {
+            weights.value[axis][i] = value[i][axis];
+            weights.slope[axis][i] = slope[i][axis];
+        }
+    }
+    weights
+}
+
+/// One value per axis.
+#[inline(always)]
+fn each(value: impl Fn(usize) -> f64) -> [f64; AXES] {
+    let mut lanes = [0.0; AXES];
+    for (axis, lane) in lanes.iter_mut().enumerate() {
+        *lane = value(axis);
+    }
+    lanes
 }
 
 #[cfg(test)]
@@ -53,7 +103,8 @@ mod tests {
     fn check<const P: usize>() {
         for step in 0..40 {
             let u = -1.3 + 0.077 * f64::from(step);
-            let (first, value, slope) = weights::<P>(u);
+            let Weights { first: [first, ..], value: [value, ..], slope: [slope, ..] } =
+                weights::<P>([u, 0.3, -0.2]);
             assert!((value.iter().sum::<f64>() - 1.0).abs() < ROUND_OFF);
             assert!(slope.iter().sum::<f64>().abs() < ROUND_OFF);
             // Linear functions are reproduced, and so is their slope.
@@ -65,7 +116,8 @@ mod tests {
             assert!((first as f64 - u) > -(P as f64) / 2.0 - ROUND_OFF);
             assert!((first + P as isize - 1) as f64 - u < P as f64 / 2.0 + ROUND_OFF);
             let delta = 1e-6;
-            let (first_after, after, _) = weights::<P>(u + delta);
+            let Weights { first: [.., first_after], value: [.., after], .. } =
+                weights::<P>([0.1, 0.7, u + delta]);
             if first_after == first {
                 for i in 0..P {
                     assert!(((after[i] - value[i]) / delta - slope[i]).abs() < 1e-5);

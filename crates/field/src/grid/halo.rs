@@ -26,6 +26,11 @@ impl HaloArray {
         self.dimensions[2]
     }
 
+    /// Values from one node to the next along x and along y.
+    pub(crate) fn steps(&self) -> [usize; 2] {
+        [self.plane_len(), self.row_len()]
+    }
+
     /// Adds what was spread beyond the faces to the nodes that it belongs to.
     pub(crate) fn fold(&mut self, axes: &[GridAxis; 3]) {
         for axis in 0..3 {

@@ -1,11 +1,12 @@
 //! The smooth level on the internal grid: spread charge with B-splines, convolve, gather potential and field.
 
 use super::axis::{AxisSize, GridAxis, TAIL_WIDTHS};
-use super::bspline::{HALO, MAX_ORDER, weights};
+use super::bspline::{HALO, MAX_ORDER, Weights, first_node, weights};
 use super::halo::HaloArray;
 use super::influence::{Influence, singular_width};
 use super::solve::Solver;
 use crate::images::axis_kinds;
+use crate::processor::{Instructions, Vector, dispatched};
 use amberfield_core::{Axis, Domain};
 use nalgebra::Vector3;
 use rayon::prelude::*;
@@ -35,6 +36,7 @@ pub(crate) struct GridLevel {
     nodes: HaloArray,
     solver: Solver,
     slabs: SlabOrder,
+    instructions: Instructions,
 }
 
 impl GridLevel {
@@ -45,7 +47,8 @@ impl GridLevel {
         let influence = Influence::new(&axes, order, sigma_m);
         let solver = Solver::new(&axes, influence);
         let nodes = HaloArray::new(&axes);
-        Self { axes, order, nodes, solver, slabs: SlabOrder::default() }
+        let instructions = Instructions::detect();
+        Self { axes, order, nodes, solver, slabs: SlabOrder::default(), instructions }
     }
 
     /// Nodes that carry charge, per axis.
@@ -87,72 +90,154 @@ impl GridLevel {
     /// that every node adds its charges in an order that does not depend on the number of threads.
     fn spread<const P: usize>(&mut self, positions: &[Vector3<f64>], charges: &[f64]) {
         let axes = &self.axes;
-        self.slabs.sort(positions.len(), axes[0].nodes, |i| weights::<P>(axes[0].to_nodes(positions[i].x)).0);
-        let (plane, row) = (self.nodes.plane_len(), self.nodes.row_len());
-        let slabs = &self.slabs;
+        self.slabs
+            .sort(positions.len(), axes[0].nodes, |i| first_node::<P>(axes[0].to_nodes(positions[i].x)));
+        let plane = self.nodes.plane_len();
+        let (slabs, instructions, steps) = (&self.slabs, self.instructions, self.nodes.steps());
         for parity in 0..2 {
             let start = (parity * SLAB * plane).min(self.nodes.values.len());
             let chunks = self.nodes.values[start..].par_chunks_mut(2 * SLAB * plane);
             chunks.enumerate().for_each(|(chunk, nodes)| {
                 let slab = 2 * chunk + parity;
-                let first_plane = (slab * SLAB) as isize - HALO as isize;
+                let origin = slab * SLAB * plane;
                 for &particle in slabs.of(slab) {
                     let particle = particle as usize;
-                    let position = positions[particle];
-                    let (x, wx, _) = weights::<P>(axes[0].to_nodes(position.x));
-                    let (y, wy, _) = weights::<P>(axes[1].to_nodes(position.y));
-                    let (z, wz, _) = weights::<P>(axes[2].to_nodes(position.z));
-                    let corner = (x - first_plane) as usize * plane + with_halo(y) * row + with_halo(z);
-                    for (i, wx) in wx.into_iter().enumerate() {
-                        let qx = charges[particle] * wx;
-                        for (j, wy) in wy.into_iter().enumerate() {
-                            let qxy = qx * wy;
-                            let start = corner + i * plane + j * row;
-                            let target: &mut [f64; P] =
-                                (&mut nodes[start..start + P]).try_into().expect("P nodes");
-                            for (node, wz) in target.iter_mut().zip(wz) {
-                                *node += qxy * wz;
-                            }
-                        }
-                    }
+                    let place = node_place(axes, &positions[particle]);
+                    spread_one::<P>(instructions, place, charges[particle], steps, origin, nodes);
                 }
             });
         }
     }
 
     fn gather_order<const P: usize>(&self, positions: &[Vector3<f64>], field: &mut [(Vector3<f64>, f64)]) {
-        let (plane, row) = (self.nodes.plane_len(), self.nodes.row_len());
-        let inverse = self.axes.each_ref().map(|axis| 1.0 / axis.spacing);
+        let (nodes, steps) = (&self.nodes.values[..], self.nodes.steps());
+        let inverse = self.axes.each_ref().map(|axis| -1.0 / axis.spacing);
         field.par_chunks_mut(GATHER).zip(positions.par_chunks(GATHER)).for_each(|(field, positions)| {
-            for ((e, potential), position) in field.iter_mut().zip(positions) {
-                let (x, wx, dx) = weights::<P>(self.axes[0].to_nodes(position.x));
-                let (y, wy, dy) = weights::<P>(self.axes[1].to_nodes(position.y));
-                let (z, wz, dz) = weights::<P>(self.axes[2].to_nodes(position.z));
-                let corner = with_halo(x) * plane + with_halo(y) * row + with_halo(z);
-                let (mut value, mut slope) = (0.0, Vector3::zeros());
-                for i in 0..P {
-                    let (mut flat, mut along_y, mut along_z) = (0.0, 0.0, 0.0);
-                    for j in 0..P {
-                        let start = corner + i * plane + j * row;
-                        let nodes: &[f64; P] =
-                            (&self.nodes.values[start..start + P]).try_into().expect("P nodes");
-                        let (mut sum, mut rise) = (0.0, 0.0);
-                        for k in 0..P {
-                            sum += nodes[k] * wz[k];
-                            rise += nodes[k] * dz[k];
-                        }
-                        flat += wy[j] * sum;
-                        along_y += dy[j] * sum;
-                        along_z += wy[j] * rise;
-                    }
-                    value += wx[i] * flat;
-                    slope += Vector3::new(dx[i] * flat, wx[i] * along_y, wx[i] * along_z);
-                }
-                *potential = value;
-                *e = Vector3::from_fn(|axis, _| -slope[axis] * inverse[axis]);
+            for (field, position) in field.iter_mut().zip(positions) {
+                let place = node_place(&self.axes, position);
+                let mut found = [0.0; 4];
+                gather_one::<P>(self.instructions, place, steps, nodes, &mut found);
+                let [slope_x, slope_y, slope_z, potential] = found;
+                let e = Vector3::new(slope_x * inverse[0], slope_y * inverse[1], slope_z * inverse[2]);
+                *field = (e, potential);
             }
         });
     }
+}
+
+/// Place of a position in node units.
+#[inline(always)]
+fn node_place(axes: &[GridAxis; 3], position: &Vector3<f64>) -> [f64; 3] {
+    [axes[0].to_nodes(position.x), axes[1].to_nodes(position.y), axes[2].to_nodes(position.z)]
+}
+
+/// Index in an array with a halo of the first node that a spline touches.
+#[inline(always)]
+fn corner<const P: usize>(weights: &Weights<P>, [plane, row]: [usize; 2]) -> usize {
+    let [x, y, z] = weights.first;
+    with_halo(x) * plane + with_halo(y) * row + with_halo(z)
+}
+
+dispatched! {
+    /// Adds a charge at a place (in node units) to the nodes of an array that begins at `origin`.
+    fn spread_one<const P: usize>(place: [f64; 3], charge: f64, steps: [usize; 2], origin: usize, nodes: &mut [f64])
+    = spread_charge
+}
+
+#[inline(always)]
+fn spread_charge<const P: usize, V: Vector<Number = f64>>(
+    place: [f64; 3],
+    charge: f64,
+    steps: [usize; 2],
+    origin: usize,
+    nodes: &mut [f64],
+) {
+    let weights = weights::<P>(place);
+    let corner = corner(&weights, steps) - origin;
+    let [wx, wy, wz] = weights.value;
+    let wz = vectors::<P, V>(&wz);
+    for i in 0..P {
+        for j in 0..P {
+            let row = &mut nodes[corner + i * steps[0] + j * steps[1]..][..MAX_ORDER];
+            let weight = V::splat(charge * wx[i] * wy[j]);
+            for v in 0..P.div_ceil(V::LANES) {
+                let part = &mut row[v * V::LANES..];
+                weight.mul_add(wz[v], V::load(part)).write(part);
+            }
+        }
+    }
+}
+
+/// Vectors of at most [`MAX_ORDER`] numbers.
+type Row<V> = [V; MAX_ORDER / 2];
+
+/// Numbers in vectors, zeros behind the last. Rows of nodes are read and written in whole vectors too: the halo has room
+/// for what lies beyond an order's last node.
+#[inline(always)]
+fn vectors<const P: usize, V: Vector<Number = f64>>(numbers: &[f64; P]) -> Row<V> {
+    let mut padded = [0.0; MAX_ORDER];
+    padded[..P].copy_from_slice(numbers);
+    let mut row = [V::splat(0.0); MAX_ORDER / 2];
+    for (v, vector) in row.iter_mut().enumerate().take(P.div_ceil(V::LANES)) {
+        *vector = V::load(&padded[v * V::LANES..]);
+    }
+    row
+}
+
+dispatched! {
+    /// Slopes along x, y and z (per node spacing) and potential at a place (in node units).
+    fn gather_one<const P: usize>(place: [f64; 3], steps: [usize; 2], nodes: &[f64], found: &mut [f64; 4]) = gather_field
+}
+
+#[inline(always)]
+fn gather_field<const P: usize, V: Vector<Number = f64>>(
+    place: [f64; 3],
+    steps: [usize; 2],
+    nodes: &[f64],
+    found: &mut [f64; 4],
+) {
+    let weights = weights::<P>(place);
+    let corner = corner(&weights, steps);
+    let ([wx, wy, wz], [dx, dy, dz]) = (weights.value, weights.slope);
+    let zero: Row<V> = [V::splat(0.0); MAX_ORDER / 2];
+    let count = P.div_ceil(V::LANES);
+    // Every node of a row along z in a lane of its own; the lanes are joined at the end.
+    let (mut value, mut along_x, mut along_y) = (zero, zero, zero);
+    for i in 0..P {
+        let (mut flat, mut tilted) = (zero, zero);
+        for j in 0..P {
+            let row = &nodes[corner + i * steps[0] + j * steps[1]..][..MAX_ORDER];
+            let (weight, slope) = (V::splat(wy[j]), V::splat(dy[j]));
+            for v in 0..count {
+                let part = V::load(&row[v * V::LANES..]);
+                flat[v] = weight.mul_add(part, flat[v]);
+                tilted[v] = slope.mul_add(part, tilted[v]);
+            }
+        }
+        let (weight, slope) = (V::splat(wx[i]), V::splat(dx[i]));
+        for v in 0..count {
+            value[v] = weight.mul_add(flat[v], value[v]);
+            along_x[v] = slope.mul_add(flat[v], along_x[v]);
+            along_y[v] = weight.mul_add(tilted[v], along_y[v]);
+        }
+    }
+    let (wz, dz) = (vectors::<P, V>(&wz), vectors::<P, V>(&dz));
+    *found = [
+        joined(&along_x, &wz, count),
+        joined(&along_y, &wz, count),
+        joined(&value, &dz, count),
+        joined(&value, &wz, count),
+    ];
+}
+
+/// Sum of the products of the first vectors.
+#[inline(always)]
+fn joined<V: Vector<Number = f64>>(values: &Row<V>, weights: &Row<V>, count: usize) -> f64 {
+    let mut sum = V::splat(0.0);
+    for v in 0..count {
+        sum = values[v].mul_add(weights[v], sum);
+    }
+    sum.total()
 }
 
 /// Particles in the order in which their slabs of x spread them.

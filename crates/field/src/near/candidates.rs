@@ -1,6 +1,6 @@
 //! The sources around a group of targets, side by side, in units of the cut-off radius.
 
-use super::processor::{BLOCK, PADDING, Real, Vector};
+use crate::processor::{BLOCK, PADDING, Real, Vector};
 use std::ops::Range;
 
 /// Where a candidate that must not count is put: beyond the cut-off of every target of a group, and near enough for

@@ -1,8 +1,8 @@
 //! Charges and those of their images that lie near, sorted into long cells, in units of the cut-off radius.
 
 use super::candidates::Sources;
-use super::processor::PADDING;
 use crate::images::{BoundingBox, ImageLattice};
+use crate::processor::PADDING;
 use amberfield_core::Domain;
 use nalgebra::Vector3;
 use std::ops::Range;

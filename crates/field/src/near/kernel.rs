@@ -10,7 +10,7 @@
 use super::candidates::Candidates;
 use super::cells::NearCells;
 use super::chebyshev::{chebyshev, monomials};
-use super::processor::{Instructions, Real, Vector};
+use crate::processor::{Instructions, Real, Vector};
 use amberfield_laws::gaussian_cloud::{cloud_field_over_r, cloud_potential};
 #[cfg(target_arch = "x86_64")]
 use std::arch::x86_64::{__m256, __m256d, __m512, __m512d};

@@ -4,7 +4,6 @@ mod candidates;
 mod cells;
 mod chebyshev;
 mod kernel;
-mod processor;
 
 use crate::images::ImageLattice;
 use crate::scratch::PerThread;

@@ -31,6 +31,34 @@ impl Instructions {
     }
 }
 
+/// Compiles a function for every set of instructions, and calls the one of this processor. The function that it is made
+/// from has one parameter more, the vector of f64 to compute with; a const parameter `P` is handed on.
+macro_rules! dispatched {
+    ($(#[$doc:meta])* $visibility:vis fn $name:ident $(<const $p:ident: usize>)? ($($argument:ident: $type:ty),* $(,)?)
+     $(-> $result:ty)? = $body:ident) => {
+        $(#[$doc])*
+        #[inline(always)]
+        $visibility fn $name $(<const $p: usize>)? (
+            instructions: $crate::processor::Instructions, $($argument: $type),*
+        ) $(-> $result)? {
+            #[cfg(target_arch = "x86_64")]
+            #[target_feature(enable = "avx2,fma")]
+            fn avx2 $(<const $p: usize>)? ($($argument: $type),*) $(-> $result)? {
+                $body::<$($p,)? std::arch::x86_64::__m256d>($($argument),*)
+            }
+            match instructions {
+                #[cfg(target_arch = "x86_64")]
+                // SAFETY: `Instructions::detect` found AVX2 on this processor, which AVX-512 implies.
+                $crate::processor::Instructions::Avx2 | $crate::processor::Instructions::Avx512 => unsafe {
+                    avx2 $(::<$p>)? ($($argument),*)
+                },
+                $crate::processor::Instructions::Portable => $body::<$($p,)? [f64; 2]>($($argument),*),
+            }
+        }
+    };
+}
+pub(crate) use dispatched;
+
 /// A number that the kernel computes with.
 pub(crate) trait Real: nalgebra::RealField + Copy + Default {
     /// Whether it has 53 bits.
@@ -96,6 +124,8 @@ pub(crate) trait Vector: Copy {
     fn estimate_inverse_root(self) -> Self;
     /// The first [`BLOCK`] numbers of a slice less a reference, to the beginning of another.
     fn narrow(from: &[f64], reference: f64, to: &mut [Self::Number]);
+    /// Writes the numbers to the beginning of a slice.
+    fn write(self, to: &mut [Self::Number]);
     /// The numbers, at the beginning of an array.
     fn store(self) -> [Self::Number; PADDING];
 
@@ -194,6 +224,10 @@ macro_rules! portable {
                 *to = std::array::from_fn(|lane| <$number>::narrow(from[lane] - reference));
             }
             #[inline(always)]
+            fn write(self, to: &mut [$number]) {
+                to[..$lanes].copy_from_slice(&self);
+            }
+            #[inline(always)]
             fn store(self) -> [$number; PADDING] {
                 let mut values = [0.0; PADDING];
                 values[..$lanes].copy_from_slice(&self);
@@ -269,6 +303,12 @@ mod x86 {
                     let (from, to) = (&from[..BLOCK], &mut to[..BLOCK]);
                     // SAFETY: the caller's processor has the instructions; a block lies on either side.
                     unsafe { $narrow(from.as_ptr(), reference, to.as_mut_ptr()) }
+                }
+                #[inline(always)]
+                fn write(self, to: &mut [$number]) {
+                    let to = &mut to[..$lanes];
+                    // SAFETY: room for every lane was just sliced.
+                    unsafe { $store(to.as_mut_ptr(), self) };
                 }
                 #[inline(always)]
                 fn store(self) -> [$number; PADDING] {
