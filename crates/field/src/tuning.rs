@@ -37,7 +37,7 @@ mod cost {
     /// included.
     pub(super) const PAIR: [f64; 2] = [4.3, 18.0];
     /// A pair of the direct sum.
-    pub(super) const ALL_PAIRS: f64 = 3.0;
+    pub(super) const ALL_PAIRS: f64 = 3.7;
     /// Spreading and gathering, per node of a spline.
     pub(super) const NODE: f64 = 1.9;
     /// Transforms there and back, per padded node and factor log₂(nodes).
