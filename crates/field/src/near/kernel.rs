@@ -12,8 +12,6 @@ use super::cells::NearCells;
 use super::chebyshev::{chebyshev, monomials};
 use crate::processor::{Instructions, Real, Vector};
 use amberfield_laws::gaussian_cloud::{cloud_field_over_r, cloud_potential};
-#[cfg(target_arch = "x86_64")]
-use std::arch::x86_64::{__m256, __m256d, __m512, __m512d};
 
 /// Polynomial degrees for which the loop is unrolled.
 const DEGREES: [usize; 8] = [5, 7, 9, 11, 14, 18, 24, 32];
@@ -64,110 +62,100 @@ impl<T: Real> NearKernel<T> {
 /// Targets that share their candidates: sources of one row of cells.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Group<'a> {
+    pub(crate) cells: &'a NearCells,
     pub(crate) targets: &'a [u32],
     pub(crate) row: [usize; 2],
 }
 
-/// Sums over candidates; implemented for both precisions.
-pub(crate) trait SumOver<T> {
+impl<T: Real> NearKernel<T> {
     /// Sums over the sources within the cut-off at every target of a group, each left out at its own place.
-    fn sum(
+    pub(crate) fn sum(
         &self,
-        cells: &NearCells,
         group: Group<'_>,
         potential: bool,
         candidates: &mut Candidates<T>,
         sums: &mut [Sum],
-    );
-}
+    ) {
+        match self.field.len() {
+            6 => self.unrolled::<6>(group, potential, candidates, sums),
+            8 => self.unrolled::<8>(group, potential, candidates, sums),
+            10 => self.unrolled::<10>(group, potential, candidates, sums),
+            12 => self.unrolled::<12>(group, potential, candidates, sums),
+            15 => self.unrolled::<15>(group, potential, candidates, sums),
+            19 => self.unrolled::<19>(group, potential, candidates, sums),
+            25 => self.unrolled::<25>(group, potential, candidates, sums),
+            _ => self.unrolled::<33>(group, potential, candidates, sums),
+        }
+    }
 
-macro_rules! sum_over {
-    ($number:ty, $portable:ty, $avx2:ty, $avx512:ty, $sum_avx2:ident, $sum_avx512:ident) => {
-        impl SumOver<$number> for NearKernel<$number> {
-            fn sum(
-                &self,
-                cells: &NearCells,
-                group: Group<'_>,
-                potential: bool,
-                candidates: &mut Candidates<$number>,
-                sums: &mut [Sum],
-            ) {
-                macro_rules! run {
-                    ($n:literal, $potential:literal) => {
-                        match self.instructions {
-                            #[cfg(target_arch = "x86_64")]
-                            // SAFETY: `detect` found the instructions on this processor.
-                            Instructions::Avx512 => unsafe {
-                                $sum_avx512::<$n, $potential>(self, cells, group, candidates, sums)
-                            },
-                            #[cfg(target_arch = "x86_64")]
-                            // SAFETY: as above.
-                            Instructions::Avx2 => unsafe {
-                                $sum_avx2::<$n, $potential>(self, cells, group, candidates, sums)
-                            },
-                            Instructions::Portable => {
-                                sum_group::<$portable, $n, $potential>(self, cells, group, candidates, sums)
-                            }
-                        }
-                    };
-                }
-                macro_rules! degree {
-                    ($n:literal) => {
-                        if potential { run!($n, true) } else { run!($n, false) }
-                    };
-                }
-                match self.field.len() {
-                    6 => degree!(6),
-                    8 => degree!(8),
-                    10 => degree!(10),
-                    12 => degree!(12),
-                    15 => degree!(15),
-                    19 => degree!(19),
-                    25 => degree!(25),
-                    _ => degree!(33),
-                }
+    /// The sums with polynomials of `N` coefficients.
+    fn unrolled<const N: usize>(
+        &self,
+        group: Group<'_>,
+        potential: bool,
+        candidates: &mut Candidates<T>,
+        sums: &mut [Sum],
+    ) {
+        if potential {
+            self.dispatched::<N, true>(group, candidates, sums);
+        } else {
+            self.dispatched::<N, false>(group, candidates, sums);
+        }
+    }
+
+    /// The sums by the instructions of this processor.
+    fn dispatched<const N: usize, const POTENTIAL: bool>(
+        &self,
+        group: Group<'_>,
+        candidates: &mut Candidates<T>,
+        sums: &mut [Sum],
+    ) {
+        match self.instructions {
+            #[cfg(target_arch = "x86_64")]
+            // SAFETY: `detect` found the instructions on this processor.
+            Instructions::Avx512 => unsafe { avx512::<T, N, POTENTIAL>(self, group, candidates, sums) },
+            #[cfg(target_arch = "x86_64")]
+            // SAFETY: as above.
+            Instructions::Avx2 => unsafe { avx2::<T, N, POTENTIAL>(self, group, candidates, sums) },
+            Instructions::Portable => {
+                sum_group::<T::Portable, N, POTENTIAL>(self, group, candidates, sums);
             }
         }
-
-        #[cfg(target_arch = "x86_64")]
-        #[target_feature(enable = "avx512f,fma")]
-        fn $sum_avx512<const N: usize, const POTENTIAL: bool>(
-            kernel: &NearKernel<$number>,
-            cells: &NearCells,
-            group: Group<'_>,
-            candidates: &mut Candidates<$number>,
-            sums: &mut [Sum],
-        ) {
-            sum_group::<$avx512, N, POTENTIAL>(kernel, cells, group, candidates, sums);
-        }
-
-        #[cfg(target_arch = "x86_64")]
-        #[target_feature(enable = "avx2,fma")]
-        fn $sum_avx2<const N: usize, const POTENTIAL: bool>(
-            kernel: &NearKernel<$number>,
-            cells: &NearCells,
-            group: Group<'_>,
-            candidates: &mut Candidates<$number>,
-            sums: &mut [Sum],
-        ) {
-            sum_group::<$avx2, N, POTENTIAL>(kernel, cells, group, candidates, sums);
-        }
-    };
+    }
 }
-sum_over!(f32, [f32; 4], __m256, __m512, single_avx2, single_avx512);
-sum_over!(f64, [f64; 2], __m256d, __m512d, double_avx2, double_avx512);
+
+#[cfg(target_arch = "x86_64")]
+#[target_feature(enable = "avx512f,fma")]
+fn avx512<T: Real, const N: usize, const POTENTIAL: bool>(
+    kernel: &NearKernel<T>,
+    group: Group<'_>,
+    candidates: &mut Candidates<T>,
+    sums: &mut [Sum],
+) {
+    sum_group::<T::Avx512, N, POTENTIAL>(kernel, group, candidates, sums);
+}
+
+#[cfg(target_arch = "x86_64")]
+#[target_feature(enable = "avx2,fma")]
+fn avx2<T: Real, const N: usize, const POTENTIAL: bool>(
+    kernel: &NearKernel<T>,
+    group: Group<'_>,
+    candidates: &mut Candidates<T>,
+    sums: &mut [Sum],
+) {
+    sum_group::<T::Avx2, N, POTENTIAL>(kernel, group, candidates, sums);
+}
 
 #[inline(always)]
 fn sum_group<V: Vector, const N: usize, const POTENTIAL: bool>(
     kernel: &NearKernel<V::Number>,
-    cells: &NearCells,
     group: Group<'_>,
     candidates: &mut Candidates<V::Number>,
     sums: &mut [Sum],
 ) {
     let field: &[V::Number; N] = kernel.field[..].try_into().expect("N coefficients");
     let potential: &[V::Number; N] = kernel.potential[..].try_into().expect("N coefficients");
-    let shift = gather::<V>(cells, group, candidates);
+    let shift = gather::<V>(group, candidates);
     for (&target, sum) in group.targets.iter().zip(sums) {
         let own = (target as usize).wrapping_add(shift);
         let place = candidates.hide(own);
@@ -178,7 +166,8 @@ fn sum_group<V: Vector, const N: usize, const POTENTIAL: bool>(
 
 /// Lays the sources around a group side by side; a target's number among them is its number plus what is returned.
 #[inline(always)]
-fn gather<V: Vector>(cells: &NearCells, group: Group<'_>, candidates: &mut Candidates<V::Number>) -> usize {
+fn gather<V: Vector>(group: Group<'_>, candidates: &mut Candidates<V::Number>) -> usize {
+    let cells = group.cells;
     let first = group.targets[0] as usize;
     let mut range = [cells.place(first)[0]; 2];
     for &target in group.targets {
@@ -283,15 +272,16 @@ mod tests {
     }
 
     /// The sum at every source, in the kernel's units.
-    fn sums<T: Real>(kernel: &NearKernel<T>, scatter: &Scatter) -> Vec<Sum>
-    where
-        NearKernel<T>: SumOver<T>,
-    {
+    fn sums<T: Real>(kernel: &NearKernel<T>, scatter: &Scatter) -> Vec<Sum> {
         let mut candidates = Candidates::default();
         let one = |source: u32| {
             let mut sum = [Sum::default()];
-            let group = Group { targets: &[source], row: scatter.cells.row_of(source as usize) };
-            kernel.sum(&scatter.cells, group, true, &mut candidates, &mut sum);
+            let group = Group {
+                cells: &scatter.cells,
+                targets: &[source],
+                row: scatter.cells.row_of(source as usize),
+            };
+            kernel.sum(group, true, &mut candidates, &mut sum);
             sum[0]
         };
         (0..COUNT as u32).map(one).collect()
@@ -315,10 +305,7 @@ mod tests {
         (sum, size)
     }
 
-    fn check<T: Real>(sigma: f64, accuracy: f64, instructions: Instructions)
-    where
-        NearKernel<T>: SumOver<T>,
-    {
+    fn check<T: Real>(sigma: f64, accuracy: f64, instructions: Instructions) {
         let scatter = scatter();
         let kernel = NearKernel::<T>::new(sigma, accuracy).with_instructions(instructions);
         let round_off = UNITS * if T::DOUBLE { f64::EPSILON } else { f64::from(f32::EPSILON) };

@@ -10,7 +10,7 @@ use crate::scratch::PerThread;
 use amberfield_core::Domain;
 use candidates::Candidates;
 use cells::{IMAGE, NearCells};
-use kernel::{Group, NearKernel, Sum, SumOver};
+use kernel::{Group, NearKernel, Sum};
 use nalgebra::Vector3;
 use rayon::prelude::*;
 use serde::{Deserialize, Serialize};
@@ -160,7 +160,7 @@ impl NearLevel {
                     let (length, row) = self.group(first, targets);
                     let (group, others) = targets.split_at(length);
                     let (of_group, of_others) = sums.split_at_mut(length);
-                    self.sum(Group { targets: group, row }, potential, scratch, of_group);
+                    self.sum(Group { cells: &self.cells, targets: group, row }, potential, scratch, of_group);
                     (targets, sums) = (others, of_others);
                 }
             });
@@ -181,13 +181,13 @@ impl NearLevel {
     fn sum(&self, group: Group<'_>, potential: bool, scratch: &mut Scratch, sums: &mut [Sum]) {
         let Scratch { single, double } = scratch;
         if let Some(kernel) = &self.single {
-            kernel.sum(&self.cells, group, potential, single, sums);
+            kernel.sum(group, potential, single, sums);
             let closest = SINGLE_ROUND_OFF / self.parameters.kernel_accuracy;
             if sums.iter().any(|sum| sum.nearest_squared < closest * closest) {
-                self.double.sum(&self.cells, group, potential, double, sums);
+                self.double.sum(group, potential, double, sums);
             }
         } else {
-            self.double.sum(&self.cells, group, potential, double, sums);
+            self.double.sum(group, potential, double, sums);
         }
         let per_length = 1.0 / self.parameters.cutoff_m;
         let (unit_potential, unit_field) =
