@@ -25,7 +25,7 @@ mod walls;
 
 pub use energy::Energies;
 pub use error::DemError;
-pub use field_stage::Limited;
+pub use field_stage::{Intervals, Limited};
 pub use guards::Guard;
 pub use setup::{FieldStageSetup, Setup};
 pub use simulation::Simulation;

@@ -101,16 +101,14 @@ impl Simulation {
         let mut evaluated = false;
         if let Some(field) = &mut self.field {
             // The forces at the start come with a step of zero: the field was evaluated just before.
-            if step > 0.0 {
-                if field.is_due(step, self.speed, &self.grains) {
-                    field.evaluate(&self.domain, &self.grains, &self.particles, self.skin, self.step_s)?;
-                    self.limits.set_plasma(field.plasma_limit);
-                    evaluated = true;
-                }
-                field.book_step();
+            if step > 0.0 && field.is_due(step, self.speed) {
+                field.evaluate(&self.domain, &self.grains, &self.particles, self.step_s)?;
+                self.limits.set_plasma(field.plasma_limit);
+                evaluated = true;
             }
-            for (force, electric) in self.new_force.iter_mut().zip(&field.force) {
-                *force += electric;
+            field.add_forces(&self.grains, self.skin, self.step_s, &mut self.new_force);
+            if step > 0.0 {
+                field.book_step();
             }
             self.watch.lap(Stage::Field);
         }
@@ -148,7 +146,7 @@ impl Simulation {
         self.grains.spatial_order(&mut self.keys, &mut self.order);
         self.grains.reorder(&self.order);
         if let Some(field) = &mut self.field {
-            crate::grains::pick(&mut field.force, &self.order, &mut self.grains.spare.vectors);
+            field.reorder(&self.order);
         }
         self.neighbours.build(&self.domain, &self.grains, &self.order);
         if let Some(walls) = &mut self.walls {
@@ -196,7 +194,7 @@ impl Simulation {
         keep.retain(|&i| gone.binary_search(&(i as usize)).is_err());
         self.grains.reorder(&keep);
         if let Some(field) = &mut self.field {
-            crate::grains::pick(&mut field.force, &keep, &mut self.grains.spare.vectors);
+            field.reorder(&keep);
         }
         self.resize_scratch();
         self.neighbours.build(&self.domain, &self.grains, &keep);
@@ -208,7 +206,7 @@ impl Simulation {
     /// Evaluates the field now.
     fn evaluate_field(&mut self) -> Result<(), DemError> {
         if let Some(field) = &mut self.field {
-            field.evaluate(&self.domain, &self.grains, &self.particles, self.skin, self.step_s)?;
+            field.evaluate(&self.domain, &self.grains, &self.particles, self.step_s)?;
         }
         Ok(())
     }

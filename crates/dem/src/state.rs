@@ -40,14 +40,23 @@ pub(crate) struct WallHistory {
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub(crate) struct FieldState {
     pub(crate) choice: Choice,
-    /// Electric force held on each grain [N], sorted order.
+    pub(crate) forecast: crate::field_stage::Forecast,
+    /// Charges of its slots [C].
+    pub(crate) charge: Vec<f64>,
+    pub(crate) control: crate::field_stage::IntervalControl,
+    /// Electric force on each grain in the last step [N], sorted order.
     pub(crate) force: Vec<Vector3<f64>>,
     pub(crate) travel: f64,
-    pub(crate) relative_travel: f64,
-    pub(crate) steps_since: u64,
     pub(crate) plasma_steps: u64,
     pub(crate) plasma_limit: f64,
     pub(crate) limited: crate::field_stage::Limited,
+}
+
+impl FieldState {
+    /// Whether it is one of `count` grains.
+    pub(crate) fn fits(&self, count: usize) -> bool {
+        self.force.len() == count && self.forecast.fits(count, self.charge.len())
+    }
 }
 
 /// Everything that a run needs to go on bit for bit, given the same [`crate::Setup`]. Opaque; serialise it

@@ -3,7 +3,7 @@
 use super::Simulation;
 use crate::energy::{self, Energies};
 use crate::error::DemError;
-use crate::field_stage::Limited;
+use crate::field_stage::{FieldStage, Intervals, Limited};
 use crate::guards::Guard;
 use crate::timing::STAGE_NAMES;
 use amberfield_core::{Particles, Plan, Vector3};
@@ -64,7 +64,7 @@ impl Simulation {
             .collect()
     }
 
-    /// Electric force held on each grain [N], in the order of [`Self::particles`]; `None` without a field.
+    /// Electric force on each grain in the last step [N], in the order of [`Self::particles`]; `None` without a field.
     #[must_use]
     pub fn electric_forces(&self) -> Option<Vec<Vector3<f64>>> {
         let field = self.field.as_ref()?;
@@ -107,6 +107,12 @@ impl Simulation {
     #[must_use]
     pub fn limited(&self) -> Option<Limited> {
         self.field.as_ref().map(|field| field.limited)
+    }
+
+    /// Evaluations of the field and the error made between them; `None` without a field.
+    #[must_use]
+    pub fn intervals(&self) -> Option<Intervals> {
+        self.field.as_ref().map(FieldStage::intervals)
     }
 
     /// Stages that run and stages that are left out.

@@ -219,7 +219,7 @@ fn check_state(setup: &Setup, state: &State) -> Result<(), DemError> {
     if state.torque.len() != if rotation { count } else { 0 } {
         return Err(DemError::State("its torques do not match the materials' friction".to_owned()));
     }
-    if state.field.as_ref().is_some_and(|f| f.force.len() != count) {
+    if state.field.as_ref().is_some_and(|f| !f.fits(count)) {
         return Err(DemError::State("its field forces differ in length".to_owned()));
     }
     Ok(())

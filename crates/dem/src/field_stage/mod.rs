@@ -1,0 +1,374 @@
+//! The electric force on the grains: E is evaluated now and then and extrapolated in between.
+//!
+//! `coupling_interval = "auto"`: E is evaluated anew
+//!
+//! * when the interval ends that keeps the error of the extrapolation, measured at every evaluation, at a share
+//!   of the tolerance ([`interval`]);
+//! * as soon as any grain may have moved by half the smallest member's radius since: what was measured says
+//!   little about grains that are elsewhere by now;
+//! * at the latest after 0.2/ω_p.
+//!
+//! A number of steps is kept as it is. All depends on the grains only, never on a clock.
+
+mod forecast;
+mod interval;
+
+pub(crate) use forecast::Forecast;
+pub(crate) use interval::IntervalControl;
+pub use interval::Intervals;
+
+use crate::chunks::{CHUNK, chunk_count, for_each_chunk, is_parallel};
+use crate::error::DemError;
+use crate::grains::Grains;
+use crate::setup::FieldStageSetup;
+use crate::state::FieldState;
+use amberfield_core::constants::{VACUUM_PERMITTIVITY, coulomb_constant};
+use amberfield_core::{CouplingInterval, Domain, FieldSettings, Particles, Vector3};
+use amberfield_field::{ElectricField, FieldValues, Wanted};
+use amberfield_laws::{force_limit, time_step_limits};
+use forecast::NO_SLOT;
+use serde::{Deserialize, Serialize};
+
+/// Largest travel of any grain between evaluations, over the smallest radius.
+const MOST_TRAVEL: f64 = 0.5;
+
+/// What the force limit did.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
+pub struct Limited {
+    /// Grains limited in the last step.
+    pub grains: u64,
+    /// Steps in which any grain was limited.
+    pub steps: u64,
+    /// Steps × grains limited in them.
+    pub grain_steps: u64,
+    /// Largest electric force before limiting, over the whole run [N].
+    pub largest_force_n: f64,
+}
+
+/// Members of the field: sorted indices, positions inside the domain, charges.
+#[derive(Debug, Default)]
+struct Members {
+    index: Vec<u32>,
+    position: Vec<Vector3<f64>>,
+    charge: Vec<f64>,
+}
+
+impl Members {
+    fn collect(&mut self, member: &[bool], domain: &Domain, grains: &Grains, particles: &Particles) {
+        self.index.clear();
+        self.position.clear();
+        self.charge.clear();
+        for (i, &original) in grains.original.iter().enumerate() {
+            if member[original as usize] {
+                self.index.push(i as u32);
+                self.position.push(domain.wrap(grains.position(i)));
+                self.charge.push(particles.charge[original as usize]);
+            }
+        }
+    }
+}
+
+/// What the force limiter finds in a chunk: grains limited, largest force before limiting [N].
+type ChunkLimited = (u64, f64);
+
+/// The field and the forces that it makes.
+#[derive(Debug)]
+pub(crate) struct FieldStage {
+    pub(crate) field: ElectricField,
+    settings: FieldSettings,
+    /// By the set-up's order.
+    pub(crate) member: Vec<bool>,
+    smallest_radius: f64,
+    /// At the last evaluation.
+    members: Members,
+    /// At the last look at the energy.
+    onlookers: Members,
+    values: FieldValues,
+    forecast: Forecast,
+    control: IntervalControl,
+    /// Electric force on each grain in the last step [N], sorted order.
+    pub(crate) force: Vec<Vector3<f64>>,
+    /// Travel of the fastest grain since the last evaluation [m].
+    travel: f64,
+    /// Most steps between evaluations under the plasma limit.
+    plasma_steps: u64,
+    /// Longest stable step at the present interval [s].
+    pub(crate) plasma_limit: f64,
+    pub(crate) limited: Limited,
+    found: Vec<ChunkLimited>,
+}
+
+impl FieldStage {
+    /// Builds the stage; the field chooses its parameters unless the set-up or a state knows them.
+    pub(crate) fn new(
+        domain: &Domain,
+        setup: FieldStageSetup,
+        particles: &Particles,
+        state: Option<&FieldState>,
+    ) -> Result<Self, DemError> {
+        let FieldStageSetup { settings, member, choice } = setup;
+        let members = || (0..particles.len()).filter(|&i| member[i]);
+        let smallest_radius = members().map(|i| particles.radius[i]).fold(f64::INFINITY, f64::min);
+        let field = match state.map(|s| &s.choice).or(choice.as_ref()) {
+            Some(choice) => ElectricField::with_choice(domain, &settings, choice)?,
+            None => {
+                let position: Vec<_> = members().map(|i| domain.wrap(particles.position[i])).collect();
+                let charge: Vec<_> = members().map(|i| particles.charge[i]).collect();
+                ElectricField::new(domain, &settings, &position, &charge)?
+            }
+        };
+        let mut stage = Self {
+            field,
+            settings,
+            member,
+            smallest_radius,
+            members: Members::default(),
+            onlookers: Members::default(),
+            values: FieldValues::default(),
+            forecast: Forecast::default(),
+            control: IntervalControl::new(),
+            force: vec![Vector3::zeros(); particles.len()],
+            travel: 0.0,
+            plasma_steps: 1,
+            plasma_limit: f64::INFINITY,
+            limited: Limited::default(),
+            found: Vec::new(),
+        };
+        if let Some(state) = state {
+            stage.forecast.clone_from(&state.forecast);
+            stage.members.charge.clone_from(&state.charge);
+            stage.control = state.control;
+            stage.force.clone_from(&state.force);
+            stage.travel = state.travel;
+            stage.plasma_steps = state.plasma_steps;
+            stage.plasma_limit = state.plasma_limit;
+            stage.limited = state.limited;
+        }
+        Ok(stage)
+    }
+
+    pub(crate) fn state(&self) -> FieldState {
+        FieldState {
+            choice: self.field.choice().clone(),
+            forecast: self.forecast.clone(),
+            charge: self.members.charge.clone(),
+            control: self.control,
+            force: self.force.clone(),
+            travel: self.travel,
+            plasma_steps: self.plasma_steps,
+            plasma_limit: self.plasma_limit,
+            limited: self.limited,
+        }
+    }
+
+    /// Permittivity of the medium [F/m].
+    pub(crate) fn permittivity(&self) -> f64 {
+        VACUUM_PERMITTIVITY * self.settings.relative_permittivity
+    }
+
+    /// Evaluations so far and the error made between them.
+    pub(crate) fn intervals(&self) -> Intervals {
+        self.control.intervals
+    }
+
+    /// Follows grains that are reordered to `order[new] = old`; grains that are not named are gone. What they
+    /// did to the field stays until the next evaluation, and counts in the error that it measures.
+    pub(crate) fn reorder(&mut self, order: &[u32]) {
+        self.forecast.reorder(order);
+    }
+
+    /// Books a step of length `step` [s] at largest speed `speed` [m/s]; whether E is due.
+    pub(crate) fn is_due(&mut self, step: f64, speed: f64) -> bool {
+        self.travel += step * speed;
+        let far = self.settings.coupling_interval == CouplingInterval::Auto
+            && self.travel > MOST_TRAVEL * self.smallest_radius;
+        self.control.is_due() || far
+    }
+
+    /// Evaluates E.
+    pub(crate) fn evaluate(
+        &mut self,
+        domain: &Domain,
+        grains: &Grains,
+        particles: &Particles,
+        step: f64,
+    ) -> Result<(), DemError> {
+        self.members.collect(&self.member, domain, grains, particles);
+        let Members { index, position, charge } = &self.members;
+        self.field.evaluate(position, charge, Wanted::default(), &mut self.values)?;
+        let scale = self.scale(domain);
+        let age = self.control.age;
+        let check = self.forecast.renew(index, grains.len(), &self.values.e, age, scale);
+        self.watch_plasma(grains, step);
+        let FieldSettings { coupling_interval, tolerance, .. } = self.settings;
+        self.control.evaluated(check, coupling_interval, tolerance, self.plasma_steps);
+        self.travel = 0.0;
+        Ok(())
+    }
+
+    /// What errors of E are relative to [V/m]: the RMS of E less the external field, or q_rms n^{2/3}/(4πε)
+    /// where symmetry makes E vanish.
+    fn scale(&self, domain: &Domain) -> f64 {
+        let Members { position, charge, .. } = &self.members;
+        let count = position.len().max(1) as f64;
+        let external = self.settings.external_field_v_m;
+        let e2 = self.values.e.iter().map(|e| (e - external).norm_squared()).sum::<f64>() / count;
+        let q2 = charge.iter().map(|q| q * q).sum::<f64>() / count;
+        let density = count / domain.volume();
+        let floor =
+            coulomb_constant(self.settings.relative_permittivity) * q2.sqrt() * density.powf(2.0 / 3.0);
+        e2.sqrt().max(floor)
+    }
+
+    /// Adds the electric force of this step to `total` [N], for the list's `skin` [m] and the `step` [s].
+    pub(crate) fn add_forces(&mut self, grains: &Grains, skin: f64, step: f64, total: &mut [Vector3<f64>]) {
+        let count = grains.len();
+        self.force.resize(count, Vector3::zeros());
+        self.found.clear();
+        self.found.resize(chunk_count(count), (0, 0.0));
+        let limit = self.settings.force_limit.map(|limit| limit.factor);
+        let (forecast, charge, age) = (&self.forecast, &self.members.charge, self.control.age as f64);
+        let (force, found) = (&mut self.force, &mut self.found);
+        for_each_chunk!(is_parallel(count), chunk_count(count), (force / CHUNK, total / CHUNK, found / 1), |k: usize,
+            (force, total, found): (&mut [Vector3<f64>], &mut [Vector3<f64>], &mut [ChunkLimited])| {
+            let first = k * CHUNK;
+            let slots = &forecast.slot[first..first + force.len()];
+            for (force, &slot) in force.iter_mut().zip(slots) {
+                let slot = slot as usize;
+                *force = if slot == NO_SLOT as usize { Vector3::zeros() } else { forecast.at(slot, age) * charge[slot] };
+            }
+            if let Some(factor) = limit {
+                let inverse_mass = &grains.inverse_mass[first..first + force.len()];
+                found[0] = shorten(force, inverse_mass, |mass| force_limit::largest(factor, mass, skin, step));
+            }
+            total.iter_mut().zip(force.iter()).for_each(|(total, force)| *total += force);
+        });
+        if limit.is_some() {
+            self.limited.grains = self.found.iter().map(|found| found.0).sum();
+            self.limited.largest_force_n =
+                self.found.iter().map(|found| found.1).fold(self.limited.largest_force_n, f64::max);
+        }
+    }
+
+    /// Books the limiter's work of one step.
+    pub(crate) fn book_step(&mut self) {
+        self.limited.steps += u64::from(self.limited.grains > 0);
+        self.limited.grain_steps += self.limited.grains;
+    }
+
+    /// ω_p of the members in their bounding box.
+    fn watch_plasma(&mut self, grains: &Grains, step: f64) {
+        let Members { index, position, charge } = &self.members;
+        let mut min = Vector3::repeat(f64::INFINITY);
+        let mut max = Vector3::repeat(f64::NEG_INFINITY);
+        let mut sum = 0.0;
+        for ((&i, x), q) in index.iter().zip(position).zip(charge) {
+            let radius = Vector3::repeat(grains.centre[i as usize][3]);
+            min = min.inf(&(x - radius));
+            max = max.sup(&(x + radius));
+            sum += q * q * grains.inverse_mass[i as usize];
+        }
+        if index.is_empty() {
+            return;
+        }
+        let volume = (max - min).product();
+        let frequency = time_step_limits::plasma_frequency(sum, volume, self.permittivity());
+        let accurate = (time_step_limits::PLASMA_ACCURATE / (frequency * step)).floor();
+        self.plasma_steps = (accurate as u64).max(1);
+        let interval = match self.settings.coupling_interval {
+            CouplingInterval::Steps(steps) => u64::from(steps.max(1)),
+            CouplingInterval::Auto => 1,
+        };
+        self.plasma_limit = time_step_limits::PLASMA_STABLE / (frequency * interval as f64);
+    }
+
+    /// ½ Σ q (V + V_external) [J] at the present positions. The potential of the field contains the external
+    /// field's once, whose energy has no factor ½. Changes nothing that the motion sees.
+    pub(crate) fn energy(
+        &mut self,
+        domain: &Domain,
+        grains: &Grains,
+        particles: &Particles,
+    ) -> Result<f64, DemError> {
+        self.onlookers.collect(&self.member, domain, grains, particles);
+        let Members { position, charge, .. } = &self.onlookers;
+        let wanted = Wanted { potential: true, ..Wanted::default() };
+        self.field.evaluate(position, charge, wanted, &mut self.values)?;
+        let (external, centre) = (self.settings.external_field_v_m, domain.centre());
+        let terms = position.iter().zip(charge).zip(&self.values.potential);
+        Ok(0.5 * terms.map(|((x, q), v)| q * (v - external.dot(&(x - centre)))).sum::<f64>())
+    }
+}
+
+/// Shortens forces [N] to the bound [N] that `largest` gives for a mass [kg].
+fn shorten(force: &mut [Vector3<f64>], inverse_mass: &[f64], largest: impl Fn(f64) -> f64) -> ChunkLimited {
+    let mut found = (0, 0.0_f64);
+    for (force, inverse) in force.iter_mut().zip(inverse_mass) {
+        found.1 = found.1.max(force.norm());
+        let (limited, cut) = force_limit::limited(*force, largest(1.0 / inverse));
+        *force = limited;
+        found.0 += u64::from(cut);
+    }
+    found
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use amberfield_core::{Boundary, Grain, GroupId, MaterialId, Method};
+
+    const RADIUS: f64 = 1e-3;
+    const STEP: f64 = 1e-5;
+
+    /// Four charges at rest.
+    fn stage() -> (FieldStage, Grains, Particles, Domain) {
+        let domain = Domain::new(Vector3::repeat(-1.0), Vector3::repeat(1.0), [[Boundary::Open; 2]; 3])
+            .expect("a good scene");
+        let particles: Particles = (0..4)
+            .map(|k| Grain {
+                id: k,
+                position: Vector3::new(k as f64 * 4.0 * RADIUS, 0.0, 0.0),
+                velocity: Vector3::zeros(),
+                angular_velocity: Vector3::zeros(),
+                radius: RADIUS,
+                density: 2500.0,
+                charge: 1e-12,
+                material: MaterialId(0),
+                group: GroupId(0),
+            })
+            .collect();
+        let settings = FieldSettings { method: Method::Direct, tolerance: 1e-2, ..FieldSettings::default() };
+        let setup = FieldStageSetup { settings, member: vec![true; 4], choice: None };
+        let mut stage = FieldStage::new(&domain, setup, &particles, None).expect("a good scene");
+        let grains = Grains::new(&particles, vec![0; 4], false);
+        stage.evaluate(&domain, &grains, &particles, STEP).expect("a good scene");
+        (stage, grains, particles, domain)
+    }
+
+    /// Steps until E is due.
+    fn interval(stage: &mut FieldStage, speed: f64) -> u64 {
+        (1..).find(|_| stage.is_due(STEP, speed)).expect("it is due one day")
+    }
+
+    #[test]
+    fn grains_that_move_are_due_after_half_a_radius_and_all_under_the_plasma_limit() {
+        let (mut stage, grains, particles, domain) = stage();
+        let evaluate = |stage: &mut FieldStage| {
+            stage.evaluate(&domain, &grains, &particles, STEP).expect("a good scene");
+        };
+        // The first interval is one step; grains at rest then double theirs up to the plasma limit.
+        assert_eq!(interval(&mut stage, 0.0), 1);
+        let mut last = 1;
+        for _ in 0..24 {
+            evaluate(&mut stage);
+            let now = interval(&mut stage, 0.0);
+            assert_eq!(now, (2 * last).min(stage.plasma_steps));
+            last = now;
+        }
+        assert!(last == stage.plasma_steps && last > 200, "{last}");
+        // 0.1 m/s: half a radius takes 500 steps, or 501 by round-off.
+        evaluate(&mut stage);
+        let moving = interval(&mut stage, 0.1);
+        assert!((500..=501).contains(&moving), "{moving}");
+    }
+}
