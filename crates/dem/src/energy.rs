@@ -22,6 +22,18 @@ pub struct Energies {
     pub electric: Option<f64>,
 }
 
+/// How the electric energy is found.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum ElectricEnergy {
+    /// Not at all.
+    LeftOut,
+    /// Extrapolated in time from the last two evaluations of the field: costs nothing, and is as good as the
+    /// force. A grain that has left counts until the next evaluation.
+    Forecast,
+    /// By one more evaluation of the field, at the present positions.
+    Evaluated,
+}
+
 /// ½ m v² + ½ I ω², I = (2/5) m r².
 pub(crate) fn kinetic(grains: &Grains) -> f64 {
     (0..grains.len())

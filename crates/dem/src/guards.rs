@@ -108,6 +108,27 @@ impl Limits {
     }
 }
 
+/// Lower bounds of the limits of pair and wall image [s]: the lightest, smallest and most charged grain in one.
+pub(crate) fn electric_stiffness_bound(
+    grains: &Grains,
+    particles: &Particles,
+    member: &[bool],
+    permittivity: f64,
+) -> (f64, f64) {
+    let (mut charge, mut inverse_mass, mut radius) = (0.0_f64, 0.0_f64, f64::INFINITY);
+    for (i, &original) in grains.original.iter().enumerate() {
+        if member[original as usize] {
+            charge = charge.max(particles.charge[original as usize].abs());
+            inverse_mass = inverse_mass.max(grains.inverse_mass[i]);
+            radius = radius.min(grains.centre[i][3]);
+        }
+    }
+    let mass = 1.0 / inverse_mass;
+    let pair = time_step_limits::pair_stiffness(charge, charge, permittivity, 2.0 * radius);
+    let wall = time_step_limits::wall_image_stiffness(charge, permittivity, radius);
+    (time_step_limits::stiffness_limit(0.5 * mass, pair), time_step_limits::stiffness_limit(mass, wall))
+}
+
 /// Limits of pair and wall image. Pairs: every member with its like, and the listed pairs, all at contact.
 pub(crate) fn electric_stiffness(
     domain: &Domain,

@@ -23,7 +23,7 @@ mod state;
 mod timing;
 mod walls;
 
-pub use energy::Energies;
+pub use energy::{ElectricEnergy, Energies};
 pub use error::DemError;
 pub use field_stage::{Intervals, Limited};
 pub use guards::Guard;

@@ -7,7 +7,7 @@ mod start;
 use crate::error::DemError;
 use crate::field_stage::FieldStage;
 use crate::grains::Grains;
-use crate::guards::{ElectricLimits, Limits, electric_stiffness};
+use crate::guards::{ElectricLimits, Limits, electric_stiffness, electric_stiffness_bound};
 use crate::integrate::{Bounds, ChunkMotion, drift, kick};
 use crate::material_pairs::{Features, PairTable};
 use crate::neighbours::Neighbours;
@@ -218,9 +218,9 @@ impl Simulation {
         self.motion.resize(crate::chunks::chunk_count(count), ChunkMotion::default());
     }
 
-    /// Computes the electric guards anew.
-    fn update_electric_limits(&mut self) {
-        let Some(field) = &self.field else { return };
+    /// Electric limits of the present pairs; `None` without a field.
+    fn electric_limits(&self) -> Option<ElectricLimits> {
+        let field = self.field.as_ref()?;
         let (pair, wall_image) = electric_stiffness(
             &self.domain,
             &self.grains,
@@ -229,13 +229,29 @@ impl Simulation {
             field.permittivity(),
             self.neighbours.pairs(),
         );
-        self.limits.set_electric(ElectricLimits { pair, wall_image, plasma: field.plasma_limit });
+        Some(ElectricLimits { pair, wall_image, plasma: field.plasma_limit })
     }
 
-    /// Computes the guards anew and checks them at the present speed.
+    /// Checks the guards anew at the present speed. The pairs are looked at only where a bound for any of
+    /// them does not do.
     fn watch_guards(&mut self) -> Result<(), DemError> {
-        self.update_electric_limits();
+        if let Some(field) = &self.field {
+            let (grains, particles) = (&self.grains, &self.particles);
+            let (pair, wall_image) =
+                electric_stiffness_bound(grains, particles, &field.member, field.permittivity());
+            self.limits.set_electric(ElectricLimits { pair, wall_image, plasma: field.plasma_limit });
+            if self.limits.broken(self.step_s, self.speed, self.time_s()).is_some() {
+                self.update_electric_limits();
+            }
+        }
         self.watch_limits()
+    }
+
+    /// Computes the electric guards of the present pairs.
+    fn update_electric_limits(&mut self) {
+        if let Some(limits) = self.electric_limits() {
+            self.limits.set_electric(limits);
+        }
     }
 
     /// Checks the guards as they are at the present speed.

@@ -41,11 +41,8 @@ pub(crate) struct WallHistory {
 pub(crate) struct FieldState {
     pub(crate) choice: Choice,
     pub(crate) forecast: crate::field_stage::Forecast,
-    /// Charges of its slots [C].
-    pub(crate) charge: Vec<f64>,
+    pub(crate) energy: crate::field_stage::EnergyForecast,
     pub(crate) control: crate::field_stage::IntervalControl,
-    /// Electric force on each grain in the last step [N], sorted order.
-    pub(crate) force: Vec<Vector3<f64>>,
     pub(crate) travel: f64,
     pub(crate) plasma_steps: u64,
     pub(crate) plasma_limit: f64,
@@ -55,7 +52,7 @@ pub(crate) struct FieldState {
 impl FieldState {
     /// Whether it is one of `count` grains.
     pub(crate) fn fits(&self, count: usize) -> bool {
-        self.force.len() == count && self.forecast.fits(count, self.charge.len())
+        self.forecast.fits(count)
     }
 }
 

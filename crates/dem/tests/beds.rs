@@ -3,7 +3,7 @@
 mod common;
 
 use amberfield_core::{Boundary, Domain, Vector3};
-use amberfield_dem::Simulation;
+use amberfield_dem::{ElectricEnergy, Simulation};
 use common::{DENSITY, RADIUS, floor, grain, lattice, mass, material, run, setup};
 
 #[test]
@@ -21,7 +21,8 @@ fn heap_comes_to_rest_and_stays() {
     let settled = simulation.particles();
     // Energy to lift a grain by its own radius: the scale on which a heap can still move.
     let lift = mass(RADIUS) * 9.81 * RADIUS;
-    let kinetic = |s: &mut Simulation| s.energies(false).unwrap().kinetic / count as f64 / lift;
+    let kinetic =
+        |s: &mut Simulation| s.energies(ElectricEnergy::LeftOut).unwrap().kinetic / count as f64 / lift;
     let early = kinetic(&mut simulation);
     run(&mut simulation, 25_000);
     let late = kinetic(&mut simulation);

@@ -5,7 +5,7 @@ mod common;
 use amberfield_core::{
     Boundary, CouplingInterval, Domain, FieldSettings, ForceLimit, Method, OnExit, Particles, Vector3,
 };
-use amberfield_dem::{DemError, FieldStageSetup, Setup, Simulation};
+use amberfield_dem::{DemError, ElectricEnergy, FieldStageSetup, Setup, Simulation};
 use common::{RADIUS, floor, grain, lattice, material, mesh_floor, run, setup};
 use proptest::prelude::*;
 
@@ -95,12 +95,13 @@ fn few_grains_in_the_smallest_periodic_box_keep_momentum_and_energy() {
     let mut simulation = Simulation::new(scene).expect("a good scene");
     let momentum = |p: &Particles| p.velocity.iter().sum::<Vector3<f64>>();
     let start = simulation.particles();
-    let energy = simulation.energies(false).expect("a good scene").kinetic;
+    let energy = simulation.energies(ElectricEnergy::LeftOut).expect("a good scene").kinetic;
     let mut met = 0;
     for _ in 0..300 {
         run(&mut simulation, 100);
         met += simulation.contacts();
-        let (p, e) = (simulation.particles(), simulation.energies(false).expect("a good scene"));
+        let (p, e) =
+            (simulation.particles(), simulation.energies(ElectricEnergy::LeftOut).expect("a good scene"));
         assert_eq!(simulation.contacts(), brute_contacts(&domain, &p));
         assert!((momentum(&p) - momentum(&start)).norm() < 1e-12);
         // Elastic: second order at some 300 steps in a collision, a few dozen collisions.

@@ -3,7 +3,7 @@
 mod common;
 
 use amberfield_core::Vector3;
-use amberfield_dem::Simulation;
+use amberfield_dem::{ElectricEnergy, Simulation};
 use amberfield_laws::{hertz_mindlin as hertz, restitution};
 use common::{RADIUS, floor, grain, mass, material, run, setup};
 
@@ -143,11 +143,11 @@ fn elastic_energy_drift_is_bounded_and_of_second_order() {
             vec![grain(1, [-x, 0.0, 0.0], [0.1, 0.0, 0.0]), grain(2, [x, 0.0, 0.0], [-0.1, 0.0, 0.0])];
         let mut simulation =
             Simulation::new(setup(grains, material(1.0, 0.0, 0.0), duration / steps)).unwrap();
-        let start = simulation.energies(false).unwrap().kinetic;
+        let start = simulation.energies(ElectricEnergy::LeftOut).unwrap().kinetic;
         let mut worst = 0.0_f64;
         for _ in 0..(1.2 * steps) as u64 {
             run(&mut simulation, 1);
-            let e = simulation.energies(false).unwrap();
+            let e = simulation.energies(ElectricEnergy::LeftOut).unwrap();
             worst = worst.max(((e.kinetic + e.contact) / start - 1.0).abs());
         }
         worst

@@ -4,7 +4,7 @@ mod common;
 
 use amberfield_core::constants::coulomb_constant;
 use amberfield_core::{CouplingInterval, FieldSettings, ForceLimit, Method, Vector3};
-use amberfield_dem::{FieldStageSetup, Setup, Simulation};
+use amberfield_dem::{ElectricEnergy, FieldStageSetup, Setup, Simulation};
 use common::{RADIUS, grain, lattice, mass, material, run, setup};
 
 const CHARGE: f64 = 1e-10;
@@ -33,20 +33,27 @@ fn opposite_charges_fall_towards_each_other_with_coulombs_force() {
     // The grains have come closer by 1e-5 of their distance.
     assert!((p.velocity[0].x / expected - 1.0).abs() < 1e-4, "{} {expected}", p.velocity[0].x);
     assert!((p.velocity[0] + p.velocity[1]).norm() < 1e-12 * expected);
-    let energy = simulation.energies(true).unwrap();
+    let energy = simulation.energies(ElectricEnergy::Evaluated).unwrap();
     let electric = -coulomb_constant(1.0) * CHARGE * CHARGE / (p.position[1] - p.position[0]).norm();
     assert!((energy.electric.unwrap() / electric - 1.0).abs() < 1e-9);
+    assert_eq!(simulation.energies(ElectricEnergy::Forecast).unwrap(), energy);
 }
 
 #[test]
-fn held_field_conserves_energy_to_the_interval() {
+fn extrapolated_field_conserves_energy_and_tells_it_between_evaluations() {
     let mut simulation = Simulation::new(charged(6.0 * RADIUS, CouplingInterval::Auto)).unwrap();
     let total = |s: &mut Simulation| {
-        let e = s.energies(true).unwrap();
+        let e = s.energies(ElectricEnergy::Evaluated).unwrap();
         (e.kinetic + e.electric.unwrap(), e.kinetic)
     };
     let (start, _) = total(&mut simulation);
-    run(&mut simulation, 60_000);
+    for _ in 0..6 {
+        run(&mut simulation, 10_000);
+        let fresh = simulation.energies(ElectricEnergy::Evaluated).unwrap();
+        let forecast = simulation.energies(ElectricEnergy::Forecast).unwrap();
+        let (fresh, forecast) = (fresh.electric.unwrap(), forecast.electric.unwrap());
+        assert!((forecast / fresh - 1.0).abs() < 1e-2, "{forecast:e} {fresh:e}");
+    }
     let (end, kinetic) = total(&mut simulation);
     // Travel between evaluations: a hundredth of a radius.
     assert!((end - start).abs() < 0.01 * kinetic, "{start:e} {end:e} {kinetic:e}");
@@ -73,7 +80,7 @@ fn scene_without_charge_has_no_field_stage() {
     let mut simulation = Simulation::new(scene).unwrap();
     assert!(!simulation.plan().has("field") && simulation.field().is_none());
     assert!(simulation.plan().left_out().iter().any(|e| e.stage == "field" && e.reason.contains("zero")));
-    assert_eq!(simulation.energies(true).unwrap().electric, None);
+    assert_eq!(simulation.energies(ElectricEnergy::Evaluated).unwrap().electric, None);
 }
 
 #[test]

@@ -3,7 +3,7 @@
 mod common;
 
 use amberfield_core::{Boundary, Domain, Grain, TriangleMesh, Vector3, Wall, WallShape};
-use amberfield_dem::Simulation;
+use amberfield_dem::{ElectricEnergy, Simulation};
 use common::{RADIUS, floor, grain, material, mesh_floor, run, setup, wall};
 
 /// Round-off of closest points, amplified over some thousand steps.
@@ -142,11 +142,11 @@ fn energy_along(ball: Grain, walls: Vec<Wall>, steps: u64) -> (f64, usize, Grain
     scene.time.gravity_m_s2 = Vector3::new(0.0, 0.0, -9.81);
     let mut simulation = Simulation::new(scene).expect("a good scene");
     let total = |s: &mut Simulation| {
-        let e = s.energies(false).expect("a good scene");
+        let e = s.energies(ElectricEnergy::LeftOut).expect("a good scene");
         e.kinetic + e.contact + e.gravity
     };
     let start = total(&mut simulation);
-    let kinetic = simulation.energies(false).expect("a good scene").kinetic;
+    let kinetic = simulation.energies(ElectricEnergy::LeftOut).expect("a good scene").kinetic;
     let (mut worst, mut most) = (0.0_f64, 0);
     for _ in 0..steps {
         run(&mut simulation, 1);

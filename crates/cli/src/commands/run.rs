@@ -104,6 +104,7 @@ fn announce(simulation: &Simulation) {
 fn finish(session: &Session<'_>, scene_path: &Path, first: u64, ending: Ending) -> Result<(), Failure> {
     let simulation = &session.simulation;
     warn_about_limits(session, first);
+    tell_intervals(simulation);
     draw(session, scene_path);
     let seconds = session.begun.elapsed().as_secs_f64();
     #[expect(clippy::cast_precision_loss, reason = "a rate for the eye")]
@@ -124,6 +125,20 @@ fn finish(session: &Session<'_>, scene_path: &Path, first: u64, ending: Ending) 
         ));
     }
     Ok(())
+}
+
+/// Says how often the field was evaluated, and what it cost in accuracy not to do so every step.
+fn tell_intervals(simulation: &Simulation) {
+    if let Some(intervals) = simulation.intervals().filter(|intervals| intervals.checked_steps > 0) {
+        tracing::info!(
+            "electric field: evaluated {} times in {} steps; relative error of the forecasts between, measured {:.2e}, \
+             over the worst interval {:.2e}",
+            intervals.evaluations,
+            simulation.step_index(),
+            intervals.error(),
+            intervals.largest_error,
+        );
+    }
 }
 
 fn warn_about_limits(session: &Session<'_>, first: u64) {

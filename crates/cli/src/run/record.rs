@@ -3,7 +3,7 @@
 use super::folder::RunFolder;
 use super::schedule::Schedule;
 use crate::failure::Failure;
-use amberfield_dem::Simulation;
+use amberfield_dem::{ElectricEnergy, Simulation};
 use amberfield_scene::{Cell, History, PvdSeries, Scene, write_particles_csv, write_vtu};
 
 /// What a run writes while it goes.
@@ -98,7 +98,7 @@ impl Record {
             return Ok(());
         }
         let energies =
-            simulation.energies(self.columns.field).map_err(|error| Failure::while_running(&error))?;
+            simulation.energies(ElectricEnergy::Forecast).map_err(|error| Failure::while_running(&error))?;
         let mut row = vec![
             Cell::Count(step),
             Cell::Number(simulation.time_s()),

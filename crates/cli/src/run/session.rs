@@ -7,7 +7,7 @@ use super::summary::{Ending, write_summary};
 use crate::failure::Failure;
 use crate::interrupt;
 use crate::progress::Progress;
-use amberfield_dem::{Energies, Simulation, State};
+use amberfield_dem::{ElectricEnergy, Energies, Simulation, State};
 use amberfield_scene::{Scene, write_checkpoint};
 use serde::{Deserialize, Serialize};
 use std::path::PathBuf;
@@ -144,7 +144,7 @@ impl<'a> Session<'a> {
 
     /// Energies now [J].
     pub(crate) fn energies(&mut self) -> Result<Energies, Failure> {
-        self.simulation.energies(true).map_err(|error| Failure::while_running(&error))
+        self.simulation.energies(ElectricEnergy::Evaluated).map_err(|error| Failure::while_running(&error))
     }
 }
 

@@ -88,6 +88,12 @@ pub(crate) fn write_summary(
         "energies_at_start": energies(before),
         "energies_at_end": after.as_ref().map(energies),
         "field": field,
+        "field_intervals": simulation.intervals().map(|intervals| json!({
+            "evaluations": intervals.evaluations,
+            "steps_now": intervals.steps_now,
+            "error_measured": intervals.error(),
+            "largest_error_measured": intervals.largest_error,
+        })),
         "limited": simulation.limited().map(|limited| json!({
             "grains_now": limited.grains,
             "steps": limited.steps,

@@ -5,46 +5,51 @@
 //! s steps after the last evaluation, which came S steps after the one before it. Why not impulses or a field
 //! that is held: `docs/decisions/several-rates.md`.
 
+use super::Members;
 use super::interval::Check;
+use crate::grains::pick;
 use amberfield_core::Vector3;
 use serde::{Deserialize, Serialize};
 
-/// Slot of a grain that neither makes nor feels the field.
-pub(crate) const NO_SLOT: u32 = u32::MAX;
-
-/// E and its change, by slots: the members in the order of the last evaluation.
+/// E, its change and the charge of every grain, in sorted order; zero for grains that are no members.
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
 pub(crate) struct Forecast {
-    /// Slot of each grain, sorted order.
-    pub(crate) slot: Vec<u32>,
     /// E at the last evaluation [V/m].
     e: Vec<Vector3<f64>>,
     /// Its change per step [V/m].
     slope: Vec<Vector3<f64>>,
-    /// Memory of the next evaluation.
+    /// [C].
+    charge: Vec<f64>,
+    /// Memory of the next reordering.
     #[serde(skip)]
-    spare: (Vec<u32>, Vec<Vector3<f64>>),
+    spare: (Vec<Vector3<f64>>, Vec<f64>),
 }
 
 impl Forecast {
-    /// E [V/m] of a slot, `age` steps after the last evaluation.
+    /// E [V/m] of a grain, `age` steps after the last evaluation.
     #[inline(always)]
-    pub(crate) fn at(&self, slot: usize, age: f64) -> Vector3<f64> {
-        self.e[slot] + self.slope[slot] * age
+    pub(crate) fn at(&self, grain: usize, age: f64) -> Vector3<f64> {
+        self.e[grain] + self.slope[grain] * age
     }
 
-    /// Whether it is one of `count` grains and `slots` slots.
-    pub(crate) fn fits(&self, count: usize, slots: usize) -> bool {
-        let known = |slot: &u32| *slot == NO_SLOT || (*slot as usize) < slots;
-        let lengths = [self.e.len(), self.slope.len()];
-        self.slot.len() == count && lengths == [slots; 2] && self.slot.iter().all(known)
+    /// Electric force on a grain [N], `age` steps after the last evaluation.
+    #[inline(always)]
+    pub(crate) fn force(&self, grain: usize, age: f64) -> Vector3<f64> {
+        self.at(grain, age) * self.charge[grain]
     }
 
-    /// Moves the slots along with grains that are reordered to `order[new] = old`.
+    /// Whether it is one of `count` grains.
+    pub(crate) fn fits(&self, count: usize) -> bool {
+        [self.e.len(), self.slope.len(), self.charge.len()] == [count; 3]
+    }
+
+    /// Follows grains that are reordered to `order[new] = old`.
     pub(crate) fn reorder(&mut self, order: &[u32]) {
         // Nothing is known before the first evaluation.
-        if !self.slot.is_empty() {
-            crate::grains::pick(&mut self.slot, order, &mut self.spare.0);
+        if !self.e.is_empty() {
+            pick(&mut self.e, order, &mut self.spare.0);
+            pick(&mut self.slope, order, &mut self.spare.0);
+            pick(&mut self.charge, order, &mut self.spare.1);
         }
     }
 
@@ -53,38 +58,54 @@ impl Forecast {
     /// and when no step was taken.
     pub(crate) fn renew(
         &mut self,
-        index: &[u32],
-        count: usize,
+        members: &Members,
         fresh: &[Vector3<f64>],
         age: u64,
         scale: f64,
     ) -> Option<Check> {
-        let known = !self.slot.is_empty() && age > 0;
+        let Members { index, charge, count, .. } = members;
+        let known = !self.e.is_empty() && age > 0;
+        self.e.resize(*count, Vector3::zeros());
+        self.slope.resize(*count, Vector3::zeros());
+        self.charge.resize(*count, 0.0);
         let age = age as f64;
         let (mut squares, mut largest2) = (0.0, 0.0_f64);
-        let mut slope = std::mem::take(&mut self.spare.1);
-        slope.clear();
-        slope.extend(index.iter().zip(fresh).map(|(&i, fresh)| {
-            if !known {
-                return Vector3::zeros();
-            }
-            let slot = self.slot[i as usize] as usize;
-            let error2 = (fresh - self.at(slot, age)).norm_squared();
+        for ((&i, fresh), charge) in index.iter().zip(fresh).zip(charge) {
+            let i = i as usize;
+            let error2 = (fresh - self.at(i, age)).norm_squared();
             squares += error2;
             largest2 = largest2.max(error2);
-            (fresh - self.e[slot]) / age
-        }));
-        self.spare.1 = std::mem::replace(&mut self.slope, slope);
-        self.e.clear();
-        self.e.extend_from_slice(fresh);
-        self.slot.clear();
-        self.slot.resize(count, NO_SLOT);
-        for (slot, &i) in index.iter().enumerate() {
-            self.slot[i as usize] = slot as u32;
+            self.slope[i] = if known { (fresh - self.e[i]) / age } else { Vector3::zeros() };
+            self.e[i] = *fresh;
+            self.charge[i] = *charge;
         }
         let over = |value: f64| if value == 0.0 { 0.0 } else { value / scale };
         let mean2 = squares / index.len().max(1) as f64;
         known.then(|| Check { rms: over(mean2.sqrt()), largest: over(largest2.sqrt()) })
+    }
+}
+
+/// The electric energy between two evaluations, on the line through the last two.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
+pub(crate) struct EnergyForecast {
+    /// At the last evaluation [J].
+    last: f64,
+    /// Its change per step [J].
+    slope: f64,
+    evaluated: bool,
+}
+
+impl EnergyForecast {
+    /// Energy [J] `age` steps after the last evaluation.
+    pub(crate) fn at(&self, age: u64) -> f64 {
+        self.last + self.slope * age as f64
+    }
+
+    /// Takes a fresh energy [J], `age` steps after the last evaluation.
+    pub(crate) fn renew(&mut self, fresh: f64, age: u64) {
+        let known = self.evaluated && age > 0;
+        let slope = if known { (fresh - self.last) / age as f64 } else { 0.0 };
+        *self = Self { last: fresh, slope, evaluated: true };
     }
 }
 
@@ -104,24 +125,32 @@ mod tests {
         grains.iter().map(|&g| parabola(g, time)).collect()
     }
 
+    fn members(index: &[u32], count: usize) -> Members {
+        let (position, charge) = (vec![Vector3::zeros(); index.len()], vec![2.0; index.len()]);
+        Members { index: index.to_vec(), position, charge, count }
+    }
+
     #[test]
     fn forecast_is_held_first_then_follows_the_line_and_is_checked() {
         let mut forecast = Forecast::default();
         // Grain 1 of 0…3 is no member.
-        let members = [0_u32, 2, 3];
-        assert_eq!(forecast.renew(&members, 4, &fresh(&members, 0.0), 0, 1.0), None);
-        assert_eq!(forecast.at(1, 5.0), parabola(2, 0.0));
-        let check = forecast.renew(&members, 4, &fresh(&members, 2.0), 2, 10.0).expect("steps were taken");
+        let inside = [0_u32, 2, 3];
+        assert_eq!(forecast.renew(&members(&inside, 4), &fresh(&inside, 0.0), 0, 1.0), None);
+        assert_eq!(forecast.at(2, 5.0), parabola(2, 0.0));
+        assert_eq!(forecast.force(2, 5.0), 2.0 * parabola(2, 0.0));
+        let check =
+            forecast.renew(&members(&inside, 4), &fresh(&inside, 2.0), 2, 10.0).expect("steps were taken");
         let largest = (parabola(3, 2.0) - parabola(3, 0.0)).norm() / 10.0;
         assert!((check.largest - largest).abs() < 1e-15);
         // The line through times 0 and 2, three steps on, misses the parabola by g·3·5.
-        assert!((forecast.at(2, 3.0) - parabola(3, 5.0) + Vector3::x() * 45.0).norm() < 1e-12);
+        assert!((forecast.at(3, 3.0) - parabola(3, 5.0) + Vector3::x() * 45.0).norm() < 1e-12);
 
         // The grains are sorted anew as 3, 2, 1, 0, and the last one leaves.
         forecast.reorder(&[3, 2, 1, 0]);
         forecast.reorder(&[0, 1, 2]);
-        assert_eq!(forecast.slot, [2, 1, NO_SLOT]);
-        let check = forecast.renew(&[0, 1], 3, &fresh(&[3, 2], 5.0), 3, 1.0).expect("steps were taken");
+        assert!(forecast.fits(3) && forecast.force(2, 3.0) == Vector3::zeros());
+        let check =
+            forecast.renew(&members(&[0, 1], 3), &fresh(&[3, 2], 5.0), 3, 1.0).expect("steps were taken");
         assert!((check.rms - f64::sqrt((45.0 * 45.0 + 30.0 * 30.0) / 2.0)).abs() < 1e-12);
         assert!((forecast.at(0, 0.0) - parabola(3, 5.0)).norm() < 1e-12);
     }
@@ -129,8 +158,17 @@ mod tests {
     #[test]
     fn second_evaluation_at_the_same_time_starts_afresh() {
         let mut forecast = Forecast::default();
-        forecast.renew(&[0], 1, &fresh(&[0], 0.0), 0, 1.0);
-        assert_eq!(forecast.renew(&[0], 1, &fresh(&[1], 0.0), 0, 1.0), None);
+        forecast.renew(&members(&[0], 1), &fresh(&[0], 0.0), 0, 1.0);
+        assert_eq!(forecast.renew(&members(&[0], 1), &fresh(&[1], 0.0), 0, 1.0), None);
         assert_eq!(forecast.at(0, 9.0), parabola(1, 0.0));
+    }
+
+    #[test]
+    fn energy_follows_its_line() {
+        let mut energy = EnergyForecast::default();
+        energy.renew(3.0, 0);
+        assert_eq!(energy.at(5), 3.0);
+        energy.renew(5.0, 4);
+        assert_eq!(energy.at(2), 6.0);
     }
 }

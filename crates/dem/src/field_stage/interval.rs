@@ -20,9 +20,9 @@ use serde::{Deserialize, Serialize};
 const EXTRAPOLATED: f64 = 0.508;
 /// The same of a field that is held: √(1/3).
 const HELD: f64 = 0.577;
-/// RMS error over an interval that is aimed at, over the tolerance: with a field that just meets the tolerance
-/// the two together, whose squares add, miss it by a fifth.
-const AIM: f64 = 0.7;
+/// RMS error over an interval that is aimed at, over the tolerance. The tuned field leaves about as much to spare:
+/// the two together, whose squares add, meet the tolerance.
+const AIM: f64 = 0.8;
 /// Largest difference of any grain that is aimed at, over the RMS difference that is: grains that few others
 /// resemble, such as a lone one that falls on a conductor, are held to this.
 const WORST: f64 = 30.0;

@@ -13,7 +13,7 @@
 mod forecast;
 mod interval;
 
-pub(crate) use forecast::Forecast;
+pub(crate) use forecast::{EnergyForecast, Forecast};
 pub(crate) use interval::IntervalControl;
 pub use interval::Intervals;
 
@@ -23,10 +23,9 @@ use crate::grains::Grains;
 use crate::setup::FieldStageSetup;
 use crate::state::FieldState;
 use amberfield_core::constants::{VACUUM_PERMITTIVITY, coulomb_constant};
-use amberfield_core::{CouplingInterval, Domain, FieldSettings, Particles, Vector3};
+use amberfield_core::{CouplingInterval, Domain, FieldSettings, ForceLimit, Particles, Vector3};
 use amberfield_field::{ElectricField, FieldValues, Wanted};
 use amberfield_laws::{force_limit, time_step_limits};
-use forecast::NO_SLOT;
 use serde::{Deserialize, Serialize};
 
 /// Largest travel of any grain between evaluations, over the smallest radius.
@@ -47,10 +46,12 @@ pub struct Limited {
 
 /// Members of the field: sorted indices, positions inside the domain, charges.
 #[derive(Debug, Default)]
-struct Members {
+pub(crate) struct Members {
     index: Vec<u32>,
     position: Vec<Vector3<f64>>,
     charge: Vec<f64>,
+    /// Grains, members or not.
+    count: usize,
 }
 
 impl Members {
@@ -58,6 +59,7 @@ impl Members {
         self.index.clear();
         self.position.clear();
         self.charge.clear();
+        self.count = grains.len();
         for (i, &original) in grains.original.iter().enumerate() {
             if member[original as usize] {
                 self.index.push(i as u32);
@@ -85,9 +87,8 @@ pub(crate) struct FieldStage {
     onlookers: Members,
     values: FieldValues,
     forecast: Forecast,
+    energy: EnergyForecast,
     control: IntervalControl,
-    /// Electric force on each grain in the last step [N], sorted order.
-    pub(crate) force: Vec<Vector3<f64>>,
     /// Travel of the fastest grain since the last evaluation [m].
     travel: f64,
     /// Most steps between evaluations under the plasma limit.
@@ -126,8 +127,8 @@ impl FieldStage {
             onlookers: Members::default(),
             values: FieldValues::default(),
             forecast: Forecast::default(),
+            energy: EnergyForecast::default(),
             control: IntervalControl::new(),
-            force: vec![Vector3::zeros(); particles.len()],
             travel: 0.0,
             plasma_steps: 1,
             plasma_limit: f64::INFINITY,
@@ -136,9 +137,8 @@ impl FieldStage {
         };
         if let Some(state) = state {
             stage.forecast.clone_from(&state.forecast);
-            stage.members.charge.clone_from(&state.charge);
+            stage.energy = state.energy;
             stage.control = state.control;
-            stage.force.clone_from(&state.force);
             stage.travel = state.travel;
             stage.plasma_steps = state.plasma_steps;
             stage.plasma_limit = state.plasma_limit;
@@ -151,9 +151,8 @@ impl FieldStage {
         FieldState {
             choice: self.field.choice().clone(),
             forecast: self.forecast.clone(),
-            charge: self.members.charge.clone(),
+            energy: self.energy,
             control: self.control,
-            force: self.force.clone(),
             travel: self.travel,
             plasma_steps: self.plasma_steps,
             plasma_limit: self.plasma_limit,
@@ -194,11 +193,14 @@ impl FieldStage {
         step: f64,
     ) -> Result<(), DemError> {
         self.members.collect(&self.member, domain, grains, particles);
-        let Members { index, position, charge } = &self.members;
-        self.field.evaluate(position, charge, Wanted::default(), &mut self.values)?;
+        let Members { position, charge, .. } = &self.members;
+        // The potential costs little on top, and spares the energies' rows an evaluation each.
+        let wanted = Wanted { potential: true, ..Wanted::default() };
+        self.field.evaluate(position, charge, wanted, &mut self.values)?;
         let scale = self.scale(domain);
         let age = self.control.age;
-        let check = self.forecast.renew(index, grains.len(), &self.values.e, age, scale);
+        self.energy.renew(self.energy_of(&self.members, domain), age);
+        let check = self.forecast.renew(&self.members, &self.values.e, age, scale);
         self.watch_plasma(grains, step);
         let FieldSettings { coupling_interval, tolerance, .. } = self.settings;
         self.control.evaluated(check, coupling_interval, tolerance, self.plasma_steps);
@@ -223,31 +225,45 @@ impl FieldStage {
     /// Adds the electric force of this step to `total` [N], for the list's `skin` [m] and the `step` [s].
     pub(crate) fn add_forces(&mut self, grains: &Grains, skin: f64, step: f64, total: &mut [Vector3<f64>]) {
         let count = grains.len();
-        self.force.resize(count, Vector3::zeros());
         self.found.clear();
         self.found.resize(chunk_count(count), (0, 0.0));
-        let limit = self.settings.force_limit.map(|limit| limit.factor);
-        let (forecast, charge, age) = (&self.forecast, &self.members.charge, self.control.age as f64);
-        let (force, found) = (&mut self.force, &mut self.found);
-        for_each_chunk!(is_parallel(count), chunk_count(count), (force / CHUNK, total / CHUNK, found / 1), |k: usize,
-            (force, total, found): (&mut [Vector3<f64>], &mut [Vector3<f64>], &mut [ChunkLimited])| {
-            let first = k * CHUNK;
-            let slots = &forecast.slot[first..first + force.len()];
-            for (force, &slot) in force.iter_mut().zip(slots) {
-                let slot = slot as usize;
-                *force = if slot == NO_SLOT as usize { Vector3::zeros() } else { forecast.at(slot, age) * charge[slot] };
+        let mut found = std::mem::take(&mut self.found);
+        let (forecast, age) = (&self.forecast, self.control.age as f64);
+        let largest = largest_force(self.settings.force_limit, grains, skin, step);
+        for_each_chunk!(is_parallel(count), chunk_count(count), (total / CHUNK, found / 1), |k: usize,
+                                                                                             (
+            total,
+            found,
+        ): (
+            &mut [Vector3<f64>],
+            &mut [ChunkLimited]
+        )| {
+            let grains = (k * CHUNK..).zip(total);
+            match &largest {
+                None => grains.for_each(|(i, total)| *total += forecast.force(i, age)),
+                Some(largest) => grains.for_each(|(i, total)| {
+                    let force = forecast.force(i, age);
+                    let (limited, cut) = force_limit::limited(force, largest(i));
+                    found[0].0 += u64::from(cut);
+                    found[0].1 = found[0].1.max(force.norm());
+                    *total += limited;
+                }),
             }
-            if let Some(factor) = limit {
-                let inverse_mass = &grains.inverse_mass[first..first + force.len()];
-                found[0] = shorten(force, inverse_mass, |mass| force_limit::largest(factor, mass, skin, step));
-            }
-            total.iter_mut().zip(force.iter()).for_each(|(total, force)| *total += force);
         });
-        if limit.is_some() {
-            self.limited.grains = self.found.iter().map(|found| found.0).sum();
-            self.limited.largest_force_n =
-                self.found.iter().map(|found| found.1).fold(self.limited.largest_force_n, f64::max);
-        }
+        self.limited.grains = found.iter().map(|found| found.0).sum();
+        self.limited.largest_force_n =
+            found.iter().map(|found| found.1).fold(self.limited.largest_force_n, f64::max);
+        self.found = found;
+    }
+
+    /// Electric force on each grain in the last step [N], sorted order.
+    pub(crate) fn forces(&self, grains: &Grains, skin: f64, step: f64) -> Vec<Vector3<f64>> {
+        let largest = largest_force(self.settings.force_limit, grains, skin, step);
+        let force = |i| {
+            let force = self.forecast.force(i, self.control.age as f64);
+            largest.as_ref().map_or(force, |largest| force_limit::limited(force, largest(i)).0)
+        };
+        (0..grains.len()).map(force).collect()
     }
 
     /// Books the limiter's work of one step.
@@ -258,7 +274,7 @@ impl FieldStage {
 
     /// ω_p of the members in their bounding box.
     fn watch_plasma(&mut self, grains: &Grains, step: f64) {
-        let Members { index, position, charge } = &self.members;
+        let Members { index, position, charge, .. } = &self.members;
         let mut min = Vector3::repeat(f64::INFINITY);
         let mut max = Vector3::repeat(f64::NEG_INFINITY);
         let mut sum = 0.0;
@@ -282,9 +298,8 @@ impl FieldStage {
         self.plasma_limit = time_step_limits::PLASMA_STABLE / (frequency * interval as f64);
     }
 
-    /// ½ Σ q (V + V_external) [J] at the present positions. The potential of the field contains the external
-    /// field's once, whose energy has no factor ½. Changes nothing that the motion sees.
-    pub(crate) fn energy(
+    /// ½ Σ q (V + V_external) [J] at the present positions, from an evaluation that the motion does not see.
+    pub(crate) fn fresh_energy(
         &mut self,
         domain: &Domain,
         grains: &Grains,
@@ -294,22 +309,33 @@ impl FieldStage {
         let Members { position, charge, .. } = &self.onlookers;
         let wanted = Wanted { potential: true, ..Wanted::default() };
         self.field.evaluate(position, charge, wanted, &mut self.values)?;
+        Ok(self.energy_of(&self.onlookers, domain))
+    }
+
+    /// The same, extrapolated from the last two evaluations.
+    pub(crate) fn forecast_energy(&self) -> f64 {
+        self.energy.at(self.control.age)
+    }
+
+    /// ½ Σ q (V + V_external) [J] of the field's last values. The potential of the field contains the external
+    /// field's once, whose energy has no factor ½.
+    fn energy_of(&self, members: &Members, domain: &Domain) -> f64 {
+        let Members { position, charge, .. } = members;
         let (external, centre) = (self.settings.external_field_v_m, domain.centre());
         let terms = position.iter().zip(charge).zip(&self.values.potential);
-        Ok(0.5 * terms.map(|((x, q), v)| q * (v - external.dot(&(x - centre)))).sum::<f64>())
+        0.5 * terms.map(|((x, q), v)| q * (v - external.dot(&(x - centre)))).sum::<f64>()
     }
 }
 
-/// Shortens forces [N] to the bound [N] that `largest` gives for a mass [kg].
-fn shorten(force: &mut [Vector3<f64>], inverse_mass: &[f64], largest: impl Fn(f64) -> f64) -> ChunkLimited {
-    let mut found = (0, 0.0_f64);
-    for (force, inverse) in force.iter_mut().zip(inverse_mass) {
-        found.1 = found.1.max(force.norm());
-        let (limited, cut) = force_limit::limited(*force, largest(1.0 / inverse));
-        *force = limited;
-        found.0 += u64::from(cut);
-    }
-    found
+/// Largest electric force on a grain [N]; `None` without a limit.
+fn largest_force(
+    limit: Option<ForceLimit>,
+    grains: &Grains,
+    skin: f64,
+    step: f64,
+) -> Option<impl Fn(usize) -> f64 + Sync> {
+    let factor = limit?.factor;
+    Some(move |i: usize| force_limit::largest(factor, 1.0 / grains.inverse_mass[i], skin, step))
 }
 
 #[cfg(test)]

@@ -1,7 +1,7 @@
 //! What a run tells about itself.
 
 use super::Simulation;
-use crate::energy::{self, Energies};
+use crate::energy::{self, ElectricEnergy, Energies};
 use crate::error::DemError;
 use crate::field_stage::{FieldStage, Intervals, Limited};
 use crate::guards::Guard;
@@ -70,18 +70,21 @@ impl Simulation {
         let field = self.field.as_ref()?;
         let mut sorted: Vec<usize> = (0..self.grains.len()).collect();
         sorted.sort_unstable_by_key(|&i| self.grains.original[i]);
-        Some(sorted.into_iter().map(|i| field.force[i]).collect())
+        let force = field.forces(&self.grains, self.skin, self.step_s);
+        Some(sorted.into_iter().map(|i| force[i]).collect())
     }
 
-    /// Energies [J]. With `electric` the field is evaluated once more, with potentials, at the present
-    /// positions; the motion does not change.
+    /// Energies [J]; the motion does not change.
     ///
     /// # Errors
     /// A field that fails.
-    pub fn energies(&mut self, electric: bool) -> Result<Energies, DemError> {
-        let electric = match &mut self.field {
-            Some(field) if electric => Some(field.energy(&self.domain, &self.grains, &self.particles)?),
-            _ => None,
+    pub fn energies(&mut self, electric: ElectricEnergy) -> Result<Energies, DemError> {
+        let electric = match (&mut self.field, electric) {
+            (None, _) | (_, ElectricEnergy::LeftOut) => None,
+            (Some(field), ElectricEnergy::Forecast) => Some(field.forecast_energy()),
+            (Some(field), ElectricEnergy::Evaluated) => {
+                Some(field.fresh_energy(&self.domain, &self.grains, &self.particles)?)
+            }
         };
         Ok(Energies {
             kinetic: energy::kinetic(&self.grains),
@@ -127,10 +130,14 @@ impl Simulation {
         STAGE_NAMES.into_iter().zip(self.watch.seconds).filter(|(name, _)| self.plan.has(name)).collect()
     }
 
-    /// Limits on the time step at the present speeds.
+    /// Limits on the time step at the present speeds and of the present pairs.
     #[must_use]
     pub fn guards(&self) -> Vec<Guard> {
-        self.limits.guards(self.step_s, self.speed).collect()
+        let mut limits = self.limits.clone();
+        if let Some(electric) = self.electric_limits() {
+            limits.set_electric(electric);
+        }
+        limits.guards(self.step_s, self.speed).collect()
     }
 
     /// The field; `None` without a field stage.
