@@ -1,7 +1,7 @@
 //! Errors of the DEM crate.
 
+use crate::field_crate::FieldError;
 use amberfield_core::Vector3;
-use amberfield_field::FieldError;
 
 /// Why a scene cannot start or a run cannot go on.
 #[derive(Debug, Clone, PartialEq, thiserror::Error)]

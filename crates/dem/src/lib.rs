@@ -22,6 +22,13 @@ mod start_checks;
 mod state;
 mod timing;
 mod walls;
+#[cfg(not(feature = "field"))]
+mod without_field;
+
+#[cfg(feature = "field")]
+use amberfield_field as field_crate;
+#[cfg(not(feature = "field"))]
+use without_field as field_crate;
 
 pub use energy::{ElectricEnergy, Energies};
 pub use error::DemError;

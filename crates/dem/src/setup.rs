@@ -1,7 +1,7 @@
 //! What a simulation is made of.
 
+use crate::field_crate::Choice;
 use amberfield_core::{Domain, FieldSettings, Material, Particles, TimeSettings, Wall};
-use amberfield_field::Choice;
 
 /// The electric field of a scene.
 #[derive(Clone, Debug)]

@@ -1,7 +1,7 @@
 //! The complete state of a run, for checkpoints.
 
+use crate::field_crate::Choice;
 use amberfield_core::Vector3;
-use amberfield_field::Choice;
 use serde::{Deserialize, Serialize};
 
 /// History of a touching pair.

@@ -1,21 +1,26 @@
-//! A step between two rebuilds allocates nothing.
+//! What is allocated, and when: nothing in a step between two rebuilds, nothing for a field that is not there.
 
 mod common;
 
 use amberfield_core::{Boundary, Domain, Vector3};
-use amberfield_dem::Simulation;
+use amberfield_dem::{Setup, Simulation};
 use common::{RADIUS, lattice, material, mesh_floor, run, setup};
 use std::alloc::{GlobalAlloc, Layout, System};
 use std::sync::atomic::{AtomicU64, Ordering};
+use std::sync::{Mutex, PoisonError};
 
 struct Counting;
 
 static ALLOCATIONS: AtomicU64 = AtomicU64::new(0);
+static BYTES: AtomicU64 = AtomicU64::new(0);
+/// Held by the test that counts.
+static TURN: Mutex<()> = Mutex::new(());
 
 // SAFETY: every call is handed to the system's allocator unchanged.
 unsafe impl GlobalAlloc for Counting {
     unsafe fn alloc(&self, layout: Layout) -> *mut u8 {
         ALLOCATIONS.fetch_add(1, Ordering::Relaxed);
+        BYTES.fetch_add(layout.size() as u64, Ordering::Relaxed);
         // SAFETY: same contract as this function's.
         unsafe { System.alloc(layout) }
     }
@@ -29,32 +34,92 @@ unsafe impl GlobalAlloc for Counting {
 #[global_allocator]
 static ALLOCATOR: Counting = Counting;
 
-#[test]
-fn steady_step_allocates_nothing() {
+/// Runs a body on one thread (rayon's own queues may grow) while no other test allocates.
+fn alone(body: impl FnOnce() + Send) {
+    let _turn = TURN.lock().unwrap_or_else(PoisonError::into_inner);
+    rayon::ThreadPoolBuilder::new().num_threads(1).build().unwrap().install(body);
+}
+
+/// Allocations and their bytes in a body.
+fn counted(body: impl FnOnce()) -> (u64, u64) {
+    let before = (ALLOCATIONS.load(Ordering::Relaxed), BYTES.load(Ordering::Relaxed));
+    body();
+    (ALLOCATIONS.load(Ordering::Relaxed) - before.0, BYTES.load(Ordering::Relaxed) - before.1)
+}
+
+/// Grains that fall on a floor of triangles in a box that is periodic in x and y, `top` its face at z max.
+fn bed(top: Boundary) -> Setup {
     let half = 12.0 * RADIUS;
     let grains = lattice([-half, -half, 0.0], [half, half, 20.0 * RADIUS], 2.05 * RADIUS, 0.1, 5);
     let mut scene = setup(grains, material(0.6, 0.4, 0.05), 5e-6);
     let mut faces = [[Boundary::Periodic; 2]; 3];
-    faces[2] = [Boundary::Open; 2];
-    scene.domain =
-        Domain::new(Vector3::new(-half, -half, -RADIUS), Vector3::new(half, half, 1.0), faces).unwrap();
+    faces[2] = [top; 2];
+    let (min, max) = (Vector3::new(-half, -half, -RADIUS), Vector3::new(half, half, 40.0 * RADIUS));
+    scene.domain = Domain::new(min, max, faces).unwrap();
     scene.walls = vec![mesh_floor(half, 7)];
     scene.time.gravity_m_s2 = Vector3::new(0.0, 0.0, -9.81);
-    // One thread: rayon's own queues may grow.
-    let pool = rayon::ThreadPoolBuilder::new().num_threads(1).build().unwrap();
-    pool.install(|| {
-        let mut simulation = Simulation::new(scene).unwrap();
-        run(&mut simulation, 500);
-        let counts: Vec<u64> = (0..200)
-            .map(|_| {
-                let before = ALLOCATIONS.load(Ordering::Relaxed);
-                run(&mut simulation, 1);
-                ALLOCATIONS.load(Ordering::Relaxed) - before
-            })
-            .collect();
-        let silent = counts.iter().filter(|&&n| n == 0).count();
+    scene
+}
+
+/// Steps of 200 in which nothing is allocated, after the beginning.
+fn silent_steps(scene: Setup) -> (usize, Simulation) {
+    let mut simulation = Simulation::new(scene).unwrap();
+    run(&mut simulation, 500);
+    let silent = (0..200).filter(|_| counted(|| run(&mut simulation, 1)).0 == 0).count();
+    (silent, simulation)
+}
+
+#[test]
+fn steady_step_allocates_nothing() {
+    alone(|| {
+        let (silent, simulation) = silent_steps(bed(Boundary::Open));
         // Steps with a rebuild may let a list grow; they are rare.
-        assert!(silent >= 180, "{counts:?}");
+        assert!(silent >= 180, "{silent}");
         assert!(simulation.contacts() > 20, "{}", simulation.contacts());
     });
+}
+
+#[cfg(feature = "field")]
+mod charged {
+    use super::*;
+    use amberfield_core::{FieldSettings, Tuning};
+    use amberfield_dem::FieldStageSetup;
+
+    fn with_field(mut scene: Setup, charge: f64) -> Setup {
+        let count = scene.particles.len();
+        let settings = FieldSettings { tuning: Tuning::Model, ..FieldSettings::default() };
+        scene.particles.charge = (0..count).map(|i| if i % 2 == 0 { charge } else { -charge }).collect();
+        scene.field = Some(FieldStageSetup { settings, member: vec![true; count], choice: None });
+        scene
+    }
+
+    #[test]
+    fn steady_charged_step_allocates_nothing() {
+        alone(|| {
+            let (silent, simulation) = silent_steps(with_field(bed(Boundary::Grounded), 1e-12));
+            assert!(silent >= 180, "{silent}");
+            let intervals = simulation.intervals().unwrap();
+            assert!(intervals.evaluations > 10, "{intervals:?}");
+        });
+    }
+
+    #[test]
+    fn field_that_is_not_needed_allocates_nothing() {
+        /// For the sentences of the plan.
+        const TEXT: u64 = 500;
+        alone(|| {
+            let bytes = |scene: Setup| {
+                counted(|| {
+                    let mut simulation = Simulation::new(scene).unwrap();
+                    run(&mut simulation, 100);
+                })
+                .1
+            };
+            let plain = bytes(bed(Boundary::Grounded));
+            let without_charge = bytes(with_field(bed(Boundary::Grounded), 0.0));
+            let charged = bytes(with_field(bed(Boundary::Grounded), 1e-12));
+            assert!(without_charge.abs_diff(plain) < TEXT, "{without_charge} {plain}");
+            assert!(charged > 2 * plain, "{charged} {plain}: the comparison would say nothing");
+        });
+    }
 }

@@ -1,7 +1,7 @@
 //! Everything that must hold before a change is merged.
 
 use crate::shell::{cargo, run as execute};
-use crate::{deny, test, tidy};
+use crate::{deny, leaving_out, test, tidy};
 use anyhow::{Result, bail};
 use std::path::Path;
 use std::time::Instant;
@@ -25,8 +25,13 @@ pub(crate) fn run(root: &Path, with_tests: bool) -> Result<()> {
     step("clippy", &|| {
         execute(&mut cargo(root, &["clippy", "--workspace", "--all-targets", "--", "-D", "warnings"]))
     });
+    step("clippy without the field", &|| {
+        let dem = ["clippy", "-p", "amberfield-dem", "--no-default-features", "--all-targets"];
+        execute(cargo(root, &dem).args(["--", "-D", "warnings"]))
+    });
     step("docs", &|| documentation(root));
     step("deny", &|| deny::run(root));
+    step("leaving out", &|| leaving_out::run(root));
     if with_tests {
         step("tests", &|| test::run(root));
     }

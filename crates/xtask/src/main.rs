@@ -1,8 +1,9 @@
-//! Developer commands: `cargo xtask check`, `tidy`, `test`, `deny`.
+//! Developer commands: `cargo xtask check`, `tidy`, `test`, `deny`, `leaving-out`.
 #![expect(clippy::print_stdout, reason = "a program for developers that reports to the terminal")]
 
 mod check;
 mod deny;
+mod leaving_out;
 mod shell;
 mod test;
 mod tidy;
@@ -17,7 +18,9 @@ cargo xtask test                      every test: documentation examples, units,
                                       installs nothing, uses cargo-nextest where it is installed
 cargo xtask tidy                      the repository's own rules
 cargo xtask deny                      licences and sources of everything that is linked; installs cargo-deny where
-                                      it is missing";
+                                      it is missing
+cargo xtask leaving-out               what a plain scene pays for the field: instructions with and without the field
+                                      crate under callgrind; installs valgrind where it is missing";
 
 fn main() -> ExitCode {
     match run() {
@@ -42,6 +45,7 @@ fn run() -> Result<()> {
         ["test"] => test::run(root),
         ["tidy"] => tidy::run(root),
         ["deny"] => deny::run(root),
+        ["leaving-out"] => leaving_out::run(root),
         [] | ["help" | "--help" | "-h"] => {
             println!("{USAGE}");
             Ok(())

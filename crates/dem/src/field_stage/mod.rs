@@ -19,17 +19,20 @@ pub use interval::Intervals;
 
 use crate::chunks::{CHUNK, chunk_count, for_each_chunk, is_parallel};
 use crate::error::DemError;
+use crate::field_crate::{ElectricField, FieldValues, Wanted};
 use crate::grains::Grains;
 use crate::setup::FieldStageSetup;
 use crate::state::FieldState;
 use amberfield_core::constants::{VACUUM_PERMITTIVITY, coulomb_constant};
 use amberfield_core::{CouplingInterval, Domain, FieldSettings, ForceLimit, Particles, Vector3};
-use amberfield_field::{ElectricField, FieldValues, Wanted};
 use amberfield_laws::{force_limit, time_step_limits};
 use serde::{Deserialize, Serialize};
 
 /// Largest travel of any grain between evaluations, over the smallest radius.
 const MOST_TRAVEL: f64 = 0.5;
+
+/// The potential costs little on top of E, and spares the energy an evaluation of its own.
+const WANTED: Wanted = Wanted { potential: true, components: false };
 
 /// What the force limit did.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
@@ -194,9 +197,7 @@ impl FieldStage {
     ) -> Result<(), DemError> {
         self.members.collect(&self.member, domain, grains, particles);
         let Members { position, charge, .. } = &self.members;
-        // The potential costs little on top, and spares the energies' rows an evaluation each.
-        let wanted = Wanted { potential: true, ..Wanted::default() };
-        self.field.evaluate(position, charge, wanted, &mut self.values)?;
+        self.field.evaluate(position, charge, WANTED, &mut self.values)?;
         let scale = self.scale(domain);
         let age = self.control.age;
         self.energy.renew(self.energy_of(&self.members, domain), age);
@@ -307,8 +308,7 @@ impl FieldStage {
     ) -> Result<f64, DemError> {
         self.onlookers.collect(&self.member, domain, grains, particles);
         let Members { position, charge, .. } = &self.onlookers;
-        let wanted = Wanted { potential: true, ..Wanted::default() };
-        self.field.evaluate(position, charge, wanted, &mut self.values)?;
+        self.field.evaluate(position, charge, WANTED, &mut self.values)?;
         Ok(self.energy_of(&self.onlookers, domain))
     }
 
@@ -338,7 +338,7 @@ fn largest_force(
     Some(move |i: usize| force_limit::largest(factor, 1.0 / grains.inverse_mass[i], skin, step))
 }
 
-#[cfg(test)]
+#[cfg(all(test, feature = "field"))]
 mod tests {
     use super::*;
     use amberfield_core::{Boundary, Grain, GroupId, MaterialId, Method};

@@ -3,11 +3,11 @@
 use super::Simulation;
 use crate::energy::{self, ElectricEnergy, Energies};
 use crate::error::DemError;
+use crate::field_crate::ElectricField;
 use crate::field_stage::{FieldStage, Intervals, Limited};
 use crate::guards::Guard;
 use crate::timing::STAGE_NAMES;
 use amberfield_core::{Particles, Plan, Vector3};
-use amberfield_field::ElectricField;
 
 impl Simulation {
     /// Simulated time [s].

@@ -1,0 +1,66 @@
+//! What stands for the field crate in a build without it (`--no-default-features`): types that have no values. To ask
+//! for a field is an error there, and everything that would need one is left out by the compiler.
+
+use amberfield_core::{Domain, FieldSettings, Plan, Vector3};
+use serde::{Deserialize, Serialize};
+
+/// Parameters of a field.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+pub enum Choice {}
+
+/// Why there is no field.
+#[derive(Clone, Debug, PartialEq, thiserror::Error)]
+#[error("this build has no electric field; build amberfield-dem with its feature `field`")]
+pub struct FieldError;
+
+/// A field.
+#[derive(Debug)]
+pub enum ElectricField {}
+
+/// What an evaluation is asked for.
+#[derive(Clone, Copy, Debug, Default)]
+#[expect(dead_code, reason = "nothing evaluates it")]
+pub(crate) struct Wanted {
+    pub(crate) potential: bool,
+    pub(crate) components: bool,
+}
+
+/// What an evaluation returns.
+#[derive(Debug, Default)]
+pub(crate) struct FieldValues {
+    pub(crate) e: Vec<Vector3<f64>>,
+    pub(crate) potential: Vec<f64>,
+}
+
+impl ElectricField {
+    pub(crate) fn new(
+        _: &Domain,
+        _: &FieldSettings,
+        _: &[Vector3<f64>],
+        _: &[f64],
+    ) -> Result<Self, FieldError> {
+        Err(FieldError)
+    }
+
+    pub(crate) fn with_choice(_: &Domain, _: &FieldSettings, choice: &Choice) -> Result<Self, FieldError> {
+        match *choice {}
+    }
+
+    pub(crate) fn evaluate(
+        &mut self,
+        _: &[Vector3<f64>],
+        _: &[f64],
+        _: Wanted,
+        _: &mut FieldValues,
+    ) -> Result<(), FieldError> {
+        match *self {}
+    }
+
+    pub(crate) fn choice(&self) -> &Choice {
+        match *self {}
+    }
+
+    pub(crate) fn plan(&self) -> Plan {
+        match *self {}
+    }
+}
