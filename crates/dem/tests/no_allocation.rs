@@ -37,7 +37,7 @@ static ALLOCATOR: Counting = Counting;
 /// Runs a body on one thread (rayon's own queues may grow) while no other test allocates.
 fn alone(body: impl FnOnce() + Send) {
     let _turn = TURN.lock().unwrap_or_else(PoisonError::into_inner);
-    rayon::ThreadPoolBuilder::new().num_threads(1).build().unwrap().install(body);
+    rayon::ThreadPoolBuilder::new().num_threads(1).build().expect("a pool of one thread").install(body);
 }
 
 /// Allocations and their bytes in a body.
@@ -55,7 +55,7 @@ fn bed(top: Boundary) -> Setup {
     let mut faces = [[Boundary::Periodic; 2]; 3];
     faces[2] = [top; 2];
     let (min, max) = (Vector3::new(-half, -half, -RADIUS), Vector3::new(half, half, 40.0 * RADIUS));
-    scene.domain = Domain::new(min, max, faces).unwrap();
+    scene.domain = Domain::new(min, max, faces).expect("a good box");
     scene.walls = vec![mesh_floor(half, 7)];
     scene.time.gravity_m_s2 = Vector3::new(0.0, 0.0, -9.81);
     scene
@@ -63,7 +63,7 @@ fn bed(top: Boundary) -> Setup {
 
 /// Steps of 200 in which nothing is allocated, after the beginning.
 fn silent_steps(scene: Setup) -> (usize, Simulation) {
-    let mut simulation = Simulation::new(scene).unwrap();
+    let mut simulation = Simulation::new(scene).expect("a good scene");
     run(&mut simulation, 500);
     let silent = (0..200).filter(|_| counted(|| run(&mut simulation, 1)).0 == 0).count();
     (silent, simulation)
@@ -98,7 +98,7 @@ mod charged {
         alone(|| {
             let (silent, simulation) = silent_steps(with_field(bed(Boundary::Grounded), 1e-12));
             assert!(silent >= 180, "{silent}");
-            let intervals = simulation.intervals().unwrap();
+            let intervals = simulation.intervals().expect("a field");
             assert!(intervals.evaluations > 10, "{intervals:?}");
         });
     }
@@ -110,7 +110,7 @@ mod charged {
         alone(|| {
             let bytes = |scene: Setup| {
                 counted(|| {
-                    let mut simulation = Simulation::new(scene).unwrap();
+                    let mut simulation = Simulation::new(scene).expect("a good scene");
                     run(&mut simulation, 100);
                 })
                 .1
