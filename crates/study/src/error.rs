@@ -14,4 +14,12 @@ pub enum StudyError {
         /// What the system says.
         source: std::io::Error,
     },
+    /// A plot cannot be drawn.
+    #[error("cannot draw {}: {reason}", path.display())]
+    Plot {
+        /// The file.
+        path: PathBuf,
+        /// Why.
+        reason: String,
+    },
 }

@@ -1,4 +1,4 @@
-//! Draws what was computed: pictures of the bed.
+//! Draws what was computed: pictures of the bed, curves.
 //!
 //! [`write_picture`] carries its font with it and needs nothing from the machine. The feature `plots` (on by
 //! default) holds it.
@@ -11,6 +11,8 @@ mod font;
 #[cfg(feature = "plots")]
 mod picture;
 #[cfg(feature = "plots")]
+mod plot;
+#[cfg(feature = "plots")]
 mod raster;
 #[cfg(feature = "plots")]
 mod ticks;
@@ -18,3 +20,5 @@ mod ticks;
 pub use error::StudyError;
 #[cfg(feature = "plots")]
 pub use picture::{PictureScene, write_picture};
+#[cfg(feature = "plots")]
+pub use plot::{Plot, Series, write_plot};

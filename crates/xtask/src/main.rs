@@ -1,6 +1,7 @@
-//! Developer commands: `cargo xtask check`, `tidy`, `test`, `deny`, `leaving-out`.
+//! Developer commands: `cargo xtask check`, `tidy`, `test`, `deny`, `bench`, `leaving-out`.
 #![expect(clippy::print_stdout, reason = "a program for developers that reports to the terminal")]
 
+mod bench;
 mod check;
 mod deny;
 mod leaving_out;
@@ -19,6 +20,9 @@ cargo xtask test                      every test: documentation examples, units,
 cargo xtask tidy                      the repository's own rules
 cargo xtask deny                      licences and sources of everything that is linked; installs cargo-deny where
                                       it is missing
+cargo xtask bench [--quick] [--peers] [SECTION…]
+                                      measures speed and memory, with --peers beside LAMMPS and FMM3D, which it installs
+                                      into target/peers; writes docs/reports/speed.md
 cargo xtask leaving-out               what a plain scene pays for the field: instructions with and without the field
                                       crate under callgrind; installs valgrind where it is missing";
 
@@ -46,6 +50,7 @@ fn run() -> Result<()> {
         ["tidy"] => tidy::run(root),
         ["deny"] => deny::run(root),
         ["leaving-out"] => leaving_out::run(root),
+        ["bench", rest @ ..] => bench::run(root, rest),
         [] | ["help" | "--help" | "-h"] => {
             println!("{USAGE}");
             Ok(())

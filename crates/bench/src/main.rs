@@ -1,0 +1,86 @@
+//! `cargo xtask bench`: measures speed and memory, ours and the peers', and writes the report of them.
+//!
+//! A section measures one thing and writes its rows to `docs/reports/data/DATE-SECTION.csv`; the page is made from
+//! the newest file of every section.
+#![expect(clippy::print_stdout, reason = "a program for developers that reports to the terminal")]
+
+mod beds;
+mod machine;
+mod page;
+mod peers;
+mod sections;
+mod store;
+mod timing;
+
+use anyhow::Result;
+use clap::{Parser, ValueEnum};
+use peers::Peers;
+use std::path::{Path, PathBuf};
+use std::process::ExitCode;
+use store::Store;
+
+/// Measures speed and memory and writes docs/reports/speed.md.
+#[derive(Debug, Parser)]
+struct Arguments {
+    /// What to measure (default: everything)
+    #[arg(value_enum)]
+    sections: Vec<Section>,
+    /// Small sizes: shows that everything runs, says nothing about speed
+    #[arg(long)]
+    quick: bool,
+    /// Installs the peers into target/peers and measures them in the same run
+    #[arg(long)]
+    peers: bool,
+    /// Folder of the report
+    #[arg(long, default_value = "docs/reports")]
+    out: PathBuf,
+}
+
+#[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
+enum Section {
+    Dem,
+    Field,
+    Open,
+    Scaling,
+    Rates,
+}
+
+/// What a section needs to know.
+struct Context {
+    quick: bool,
+    peers: Option<Peers>,
+    store: Store,
+}
+
+fn main() -> ExitCode {
+    match run(&Arguments::parse()) {
+        Ok(()) => ExitCode::SUCCESS,
+        Err(error) => {
+            println!("error: {error:#}");
+            ExitCode::FAILURE
+        }
+    }
+}
+
+fn run(arguments: &Arguments) -> Result<()> {
+    let root = Path::new(env!("CARGO_MANIFEST_DIR"))
+        .ancestors()
+        .nth(2)
+        .expect("this crate lies two folders below the repository's root");
+    let peers = if arguments.peers { Some(Peers::install(root)?) } else { None };
+    let context = Context { quick: arguments.quick, peers, store: Store::new(root.join(&arguments.out))? };
+    let all = Section::value_variants();
+    let wanted = if arguments.sections.is_empty() { all } else { &arguments.sections };
+    for section in wanted {
+        println!("== {section:?}");
+        match section {
+            Section::Dem => sections::dem::measure(&context)?,
+            Section::Field => sections::field::measure(&context)?,
+            Section::Open => sections::open::measure(&context)?,
+            Section::Scaling => sections::scaling::measure(&context)?,
+            Section::Rates => sections::rates::measure(&context, root)?,
+        }
+    }
+    context.store.save("machine", &[machine::Machine::read(context.peers.as_ref())])?;
+    page::write(&context.store)
+}

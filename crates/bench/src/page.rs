@@ -1,0 +1,80 @@
+//! The page `docs/reports/speed.md`, made from rows only.
+
+use crate::machine::Machine;
+use crate::sections::{dem, field, open, rates, scaling};
+use crate::store::Store;
+use amberfield_study::{Plot, Series, write_plot};
+use anyhow::{Context as _, Result};
+use std::fmt;
+
+/// A Markdown table.
+#[derive(Debug)]
+pub(crate) struct Table(String);
+
+impl Table {
+    pub(crate) fn new(head: &[&str]) -> Self {
+        Self(format!("| {} |\n|{}\n", head.join(" | "), "---|".repeat(head.len())))
+    }
+
+    pub(crate) fn row(&mut self, cells: &[String]) {
+        self.0 += &format!("| {} |\n", cells.join(" | "));
+    }
+}
+
+impl fmt::Display for Table {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.write_str(&self.0)
+    }
+}
+
+/// A number with so many decimals, or a dash.
+pub(crate) fn figure(value: Option<f64>, decimals: usize) -> String {
+    value.map_or_else(|| "–".to_owned(), |value| format!("{value:.decimals$}"))
+}
+
+/// Whether a goal is met, as a word.
+pub(crate) fn verdict(met: Option<bool>) -> &'static str {
+    match met {
+        Some(true) => "**met**",
+        Some(false) => "**missed**",
+        None => "not measured",
+    }
+}
+
+/// Draws a picture of the report unless there is nothing to draw.
+pub(crate) fn plot(store: &Store, name: &str, title: &str, axes: [&str; 2], all: &[Series]) -> Result<()> {
+    let series: Vec<Series> = all.iter().filter(|series| !series.points.is_empty()).cloned().collect();
+    if series.is_empty() {
+        return Ok(());
+    }
+    let plot = Plot { title, x: axes[0], y: axes[1], series: &series };
+    Ok(write_plot(&store.path(&format!("pictures/{name}.svg")), &plot)?)
+}
+
+/// Writes the page from the newest rows of every section.
+pub(crate) fn write(store: &Store) -> Result<()> {
+    let parts = [
+        field::report(store)?,
+        open::report(store)?,
+        dem::report(store)?,
+        rates::report(store)?,
+        scaling::report(store)?,
+    ];
+    let mut page = "# How fast it is\n\nThis page is written by `cargo xtask bench`; its rows are in [data](data). Machines differ: only ratios \
+                    of the same run mean something.\n\n"
+        .to_owned();
+    if let Some((date, machines)) = store.newest::<Machine>("machine")? {
+        for Machine { cpu, cores, vectors, peers } in machines {
+            let peers = if peers.is_empty() { "no peers in the last run".to_owned() } else { peers };
+            page += &format!("Machine of {date}: {cpu}, {cores} cores, vectors {vectors}; {peers}.\n\n");
+        }
+    }
+    page += &parts.into_iter().flatten().collect::<Vec<_>>().join("\n");
+    let notes = store.path("notes.md");
+    if notes.exists() {
+        page += "\n";
+        page += &std::fs::read_to_string(&notes)?;
+    }
+    let path = store.path("speed.md");
+    std::fs::write(&path, page).with_context(|| format!("cannot write {}", path.display()))
+}

@@ -1,0 +1,278 @@
+//! One evaluation of the field in a periodic box, against LAMMPS `pppm` at equal error.
+
+use crate::Context;
+use crate::beds::{self, Cloud, RADIUS, relative_error};
+use crate::page::{Table, figure, verdict};
+use crate::store::Store;
+use crate::timing::{median_seconds, on_threads};
+use amberfield_core::{Boundary, FieldSettings, Method, Tuning, Vector3};
+use amberfield_field::{ElectricField, FieldValues, Wanted};
+use amberfield_study::Series;
+use anyhow::Result;
+use serde::{Deserialize, Serialize};
+
+const NAME: &str = "field";
+const TOLERANCES: [f64; 4] = [1e-2, 1e-3, 1e-4, 1e-6];
+const PEER: &str = "LAMMPS pppm";
+pub(crate) const OURS: &str = "amberfield";
+/// Insulating and grounded boxes over the periodic one, at most.
+const FACES_GOAL: f64 = 1.5;
+
+#[derive(Clone, Debug, Serialize, Deserialize)]
+pub(crate) struct Row {
+    pub(crate) program: String,
+    pub(crate) faces: String,
+    pub(crate) fraction: f64,
+    pub(crate) grains: usize,
+    pub(crate) tolerance: f64,
+    /// Measured, relative RMS of E.
+    pub(crate) error: f64,
+    pub(crate) ns_per_grain: f64,
+    /// With the neighbour list built anew, where a program can do without.
+    pub(crate) ns_with_list: Option<f64>,
+    pub(crate) settings: String,
+}
+
+pub(crate) fn measure(context: &Context) -> Result<()> {
+    let clouds: &[(usize, f64)] = if context.quick {
+        &[(1000, 0.4)]
+    } else {
+        &[(10_000, 0.1), (10_000, 0.4), (100_000, 0.1), (100_000, 0.4), (1_000_000, 0.4)]
+    };
+    let mut rows: Vec<Row> = Vec::new();
+    for &(grains, fraction) in clouds {
+        let cloud = beds::cloud(grains, fraction);
+        let exact = exact(&cloud)?;
+        for tolerance in TOLERANCES {
+            // The peer's turn comes between two of ours, so that a busy machine is busy for both.
+            let row = |faces: &str, measured: Measured| Row {
+                program: OURS.to_owned(),
+                faces: faces.to_owned(),
+                fraction,
+                grains,
+                tolerance,
+                error: measured.error,
+                ns_per_grain: measured.ns_per_grain,
+                ns_with_list: Some(measured.ns_per_grain),
+                settings: measured.settings,
+            };
+            let first = ours(&cloud, &exact, tolerance)?;
+            let peer = peer(context, &cloud, &exact, tolerance, fraction, &rows)?;
+            let second = ours(&cloud, &exact, tolerance)?;
+            let ns_per_grain = 0.5 * (first.ns_per_grain + second.ns_per_grain);
+            rows.push(row("periodic", Measured { ns_per_grain, ..second }));
+            rows.extend(peer);
+            for row in &rows[rows.len().saturating_sub(2)..] {
+                println!("{row:?}");
+            }
+            if grains <= 100_000 && (context.quick || fraction > 0.3) {
+                for (faces, boundary) in [
+                    ("grounded", Boundary::Grounded),
+                    ("insulating", Boundary::Insulating { normal_field_v_m: 0.0 }),
+                ] {
+                    let boxed = cloud.within(boundary);
+                    let measured = ours(&boxed, &self::exact(&boxed)?, tolerance)?;
+                    rows.push(row(faces, measured));
+                }
+            }
+            context.store.save(NAME, &rows)?;
+        }
+    }
+    context.store.save(NAME, &rows)
+}
+
+/// E to compare with: `direct` for few grains, else a much tighter evaluation, which is itself compared with
+/// `direct` in the tests of the field crate.
+pub(crate) fn exact(cloud: &Cloud) -> Result<Vec<Vector3<f64>>> {
+    let method = if cloud.position.len() <= 10_000 { Method::Direct } else { Method::P3m };
+    let tolerance = if cloud.position.len() > 100_000 { 1e-7 } else { 1e-8 };
+    let settings = FieldSettings { method, tolerance, tuning: Tuning::Model, ..FieldSettings::default() };
+    let mut values = FieldValues::default();
+    let mut field = ElectricField::new(&cloud.domain, &settings, &cloud.position, &cloud.charge)?;
+    field.evaluate(&cloud.position, &cloud.charge, Wanted::default(), &mut values)?;
+    Ok(values.e)
+}
+
+pub(crate) struct Measured {
+    pub(crate) error: f64,
+    pub(crate) ns_per_grain: f64,
+    pub(crate) settings: String,
+}
+
+/// Time and error of an evaluation on one thread.
+pub(crate) fn ours(cloud: &Cloud, exact: &[Vector3<f64>], tolerance: f64) -> Result<Measured> {
+    on_threads(1, || {
+        let settings = FieldSettings { tolerance, ..FieldSettings::default() };
+        let mut values = FieldValues::default();
+        let mut field = ElectricField::new(&cloud.domain, &settings, &cloud.position, &cloud.charge)?;
+        let mut outcome = Ok(());
+        let seconds = median_seconds(1.0, || {
+            outcome = field.evaluate(&cloud.position, &cloud.charge, Wanted::default(), &mut values);
+        });
+        outcome?;
+        Ok(Measured {
+            error: relative_error(&values.e, exact),
+            ns_per_grain: 1e9 * seconds / cloud.position.len() as f64,
+            settings: format!("{:?}", field.choice()).replace('"', ""),
+        })
+    })
+}
+
+/// The peer's fastest settings whose error is at most the tolerance.
+fn peer(
+    context: &Context,
+    cloud: &Cloud,
+    exact: &[Vector3<f64>],
+    tolerance: f64,
+    fraction: f64,
+    known: &[Row],
+) -> Result<Option<Row>> {
+    let Some(peers) = &context.peers else { return Ok(None) };
+    let grains = cloud.position.len();
+    let file = peers.file("cloud.bin", cloud.numbers(exact))?;
+    // Many grains: only around what was best for fewer of them.
+    let best = known.iter().rfind(|row| {
+        row.program == PEER
+            && row.tolerance == tolerance
+            && row.fraction == fraction
+            && row.grains * 10 == grains
+    });
+    let (cutoffs, orders) = match best.and_then(|row| Setting::read(&row.settings)) {
+        Some(best) if grains > 100_000 => (
+            [0.85, 1.0, 1.2].map(|factor| (factor * best.cutoff).to_string()).join(","),
+            best.order.to_string(),
+        ),
+        _ if tolerance > 2e-3 => ("1.5,2,2.5,3,3.5,4.5".to_owned(), "3,4,5".to_owned()),
+        _ if tolerance > 2e-5 => ("2,2.5,3,3.5,4.5,6".to_owned(), "5,6,7".to_owned()),
+        _ => ("3,4,5,6,7.5".to_owned(), "6,7".to_owned()),
+    };
+    let tolerance_text = tolerance.to_string();
+    let arguments = [file.as_str(), &tolerance_text, &cutoffs, &orders, "0.6,0.9,1.3"];
+    let points = peers.run("lammps_field.py", 1, &arguments)?;
+    let meets = points.iter().filter(|point| point.len() == 6 && point[3] <= tolerance);
+    let fastest = meets.min_by(|a, b| a[4].total_cmp(&b[4]));
+    Ok(fastest.map(|point| Row {
+        program: PEER.to_owned(),
+        faces: "periodic".to_owned(),
+        fraction,
+        grains,
+        tolerance,
+        error: point[3],
+        ns_per_grain: 1e9 * point[4] / grains as f64,
+        ns_with_list: Some(1e9 * point[5] / grains as f64),
+        settings: format!("cut-off {} diameters; order {}", point[0] / (2.0 * RADIUS), point[1]),
+    }))
+}
+
+struct Setting {
+    cutoff: f64,
+    order: f64,
+}
+
+impl Setting {
+    /// Reads what [`peer`] wrote.
+    fn read(text: &str) -> Option<Self> {
+        let mut numbers = text.split([' ', ';']).filter_map(|word| word.parse().ok());
+        Some(Self { cutoff: numbers.next()?, order: numbers.next()? })
+    }
+}
+
+/// The section's part of the page.
+pub(crate) fn report(store: &Store) -> Result<Option<String>> {
+    let Some((date, rows)) = store.newest::<Row>(NAME)? else { return Ok(None) };
+    let mut table = Table::new(&[
+        "grains",
+        "fraction",
+        "tolerance",
+        "our error",
+        "ours [ns/grain]",
+        "pppm error",
+        "pppm [ns/grain]",
+        "pppm with list",
+        "pppm / ours",
+        "with list / ours",
+    ]);
+    let (mut least, mut least_with_list) = (f64::INFINITY, f64::INFINITY);
+    let periodic = |program: &'static str| {
+        rows.iter().filter(move |row| row.program == program && row.faces == "periodic")
+    };
+    for ours in periodic(OURS) {
+        let same = |row: &&Row| {
+            (row.grains, row.fraction, row.tolerance) == (ours.grains, ours.fraction, ours.tolerance)
+        };
+        let peer = periodic(PEER).find(same);
+        let ratio = peer.map(|peer| peer.ns_per_grain / ours.ns_per_grain);
+        let with_list = peer.and_then(|peer| peer.ns_with_list).map(|ns| ns / ours.ns_per_grain);
+        least = least.min(ratio.unwrap_or(f64::INFINITY));
+        least_with_list = least_with_list.min(with_list.unwrap_or(f64::INFINITY));
+        table.row(&[
+            ours.grains.to_string(),
+            ours.fraction.to_string(),
+            format!("{:e}", ours.tolerance),
+            format!("{:.1e}", ours.error),
+            format!("{:.0}", ours.ns_per_grain),
+            peer.map_or_else(|| "–".to_owned(), |peer| format!("{:.1e}", peer.error)),
+            figure(peer.map(|peer| peer.ns_per_grain), 0),
+            figure(peer.and_then(|peer| peer.ns_with_list), 0),
+            figure(ratio, 2),
+            figure(with_list, 2),
+        ]);
+    }
+    let worst = rows
+        .iter()
+        .filter(|row| row.faces != "periodic")
+        .filter_map(|row| {
+            let same = |other: &&Row| {
+                (other.grains, other.fraction, other.tolerance) == (row.grains, row.fraction, row.tolerance)
+            };
+            Some((row.ns_per_grain / periodic(OURS).find(same)?.ns_per_grain, row))
+        })
+        .max_by(|a, b| a.0.total_cmp(&b.0));
+    plots(store, &rows)?;
+    let faces = worst.map_or_else(String::new, |(ratio, row)| {
+        format!(
+            "* Closed boxes at most {FACES_GOAL} times the periodic one: {} (worst: {} box, {} grains, tolerance {:e}: {ratio:.2}).\n",
+            verdict(Some(ratio <= FACES_GOAL)), row.faces, row.grains, row.tolerance
+        )
+    });
+    let goal = least.is_finite().then_some(least > 1.0);
+    let twice = least.is_finite().then_some(least > 2.0);
+    Ok(Some(format!(
+        "## Field in a periodic box\n\nMeasured {date}, one core, `cargo xtask bench --peers field`. ±q at random on spheres of a relaxed bed. Our time \
+         includes sorting the grains, every time. The peer is the fastest of a sweep over cut-off, order and asked accuracy whose measured \
+         error is at most the tolerance; its time stands once with the neighbour list kept, which a run can do for some steps, and once with the \
+         list built anew.\n\n{table}\n![cost against error](pictures/field.svg)\n\n* Faster than pppm at every error, its list kept: {} (least ratio {}); list built anew: {} (least ratio {}).\n\
+         * Twice as fast, its list kept: {}.\n{faces}",
+        verdict(goal),
+        figure(least.is_finite().then_some(least), 2),
+        verdict(least_with_list.is_finite().then_some(least_with_list > 1.0)),
+        figure(least_with_list.is_finite().then_some(least_with_list), 2),
+        verdict(twice),
+    )))
+}
+
+fn plots(store: &Store, rows: &[Row]) -> Result<()> {
+    let grains = rows.iter().map(|row| row.grains).filter(|&grains| grains <= 100_000).max().unwrap_or(0);
+    let series = |program: &str, name: &str, time: &dyn Fn(&Row) -> Option<f64>| Series {
+        name: name.to_owned(),
+        points: rows
+            .iter()
+            .filter(|row| {
+                row.program == program
+                    && row.grains == grains
+                    && row.fraction == 0.4
+                    && row.faces == "periodic"
+            })
+            .filter_map(|row| Some((row.error, time(row)?)))
+            .collect(),
+        is_reference: false,
+    };
+    let kept = |row: &Row| Some(row.ns_per_grain);
+    let all = [
+        series(OURS, "amberfield", &kept),
+        series(PEER, "pppm, list kept", &kept),
+        series(PEER, "pppm, list built anew", &|row| row.ns_with_list),
+    ];
+    let title = format!("One evaluation, {grains} grains, volume fraction 0.4");
+    crate::page::plot(store, "field", &title, ["relative RMS error of E", "time per grain [ns]"], &all)
+}

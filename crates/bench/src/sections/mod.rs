@@ -1,0 +1,7 @@
+//! What is measured: one section, one file, with its rows and its part of the page.
+
+pub(crate) mod dem;
+pub(crate) mod field;
+pub(crate) mod open;
+pub(crate) mod rates;
+pub(crate) mod scaling;

@@ -1,0 +1,157 @@
+//! One evaluation of the field in open space, against FMM3D at equal error, and the direct sum.
+
+use crate::Context;
+use crate::beds::{self, relative_error};
+use crate::page::{Table, figure, verdict};
+use crate::sections::field::{self, OURS};
+use crate::store::Store;
+use crate::timing::{median_seconds, on_threads};
+use amberfield_core::{Boundary, FieldSettings, Method, Tuning};
+use amberfield_field::{ElectricField, FieldValues, Wanted};
+use amberfield_study::Series;
+use anyhow::Result;
+use serde::{Deserialize, Serialize};
+
+const NAME: &str = "open";
+const TOLERANCES: [f64; 4] = [1e-2, 1e-3, 1e-4, 1e-6];
+/// What is asked of FMM3D; its error is measured.
+const PRECISIONS: &str = "0.2,5e-2,1e-2,2e-3,5e-4,5e-5,5e-6,5e-7";
+const FRACTION: f64 = 0.1;
+const PEER: &str = "FMM3D";
+const DIRECT: &str = "direct sum";
+/// FMM3D's time over ours, at least.
+const GOAL: f64 = 5.0;
+
+#[derive(Debug, Serialize, Deserialize)]
+struct Row {
+    program: String,
+    grains: usize,
+    /// Asked of ours; what the peer met best.
+    tolerance: f64,
+    error: f64,
+    ns_per_grain: f64,
+    settings: String,
+}
+
+pub(crate) fn measure(context: &Context) -> Result<()> {
+    let counts: &[usize] = if context.quick { &[1000] } else { &[1000, 10_000, 30_000, 100_000, 1_000_000] };
+    let mut rows = Vec::new();
+    for &grains in counts {
+        let cloud = beds::cloud(grains, FRACTION).within(Boundary::Open);
+        let direct = grains <= 100_000;
+        let exact = if direct { None } else { Some(field::exact(&cloud)?) };
+        let exact = match exact {
+            Some(exact) => exact,
+            None => {
+                let (seconds, exact) = direct_sum(&cloud)?;
+                rows.push(Row {
+                    program: DIRECT.to_owned(),
+                    grains,
+                    tolerance: 0.0,
+                    error: 0.0,
+                    ns_per_grain: 1e9 * seconds / grains as f64,
+                    settings: format!("{:.3} ns per pair", 1e9 * seconds / (grains as f64).powi(2)),
+                });
+                exact
+            }
+        };
+        let points = match &context.peers {
+            Some(peers) => {
+                let file = peers.file("cloud.bin", cloud.numbers(&exact))?;
+                peers.run("fmm3d.py", 1, &[&file, PRECISIONS])?
+            }
+            None => Vec::new(),
+        };
+        for tolerance in TOLERANCES {
+            let field::Measured { error, ns_per_grain, settings } = field::ours(&cloud, &exact, tolerance)?;
+            rows.push(Row { program: OURS.to_owned(), grains, tolerance, error, ns_per_grain, settings });
+            let meets = points.iter().filter(|point| point.len() == 3 && point[1] <= tolerance);
+            rows.extend(meets.min_by(|a, b| a[2].total_cmp(&b[2])).map(|point| Row {
+                program: PEER.to_owned(),
+                grains,
+                tolerance,
+                error: point[1],
+                ns_per_grain: 1e9 * point[2] / grains as f64,
+                settings: format!("eps {}", point[0]),
+            }));
+        }
+        println!("{rows:?}");
+        context.store.save(NAME, &rows)?;
+    }
+    Ok(())
+}
+
+/// Seconds and E of the direct sum on one thread.
+fn direct_sum(cloud: &beds::Cloud) -> Result<(f64, Vec<amberfield_core::Vector3<f64>>)> {
+    on_threads(1, || {
+        let settings =
+            FieldSettings { method: Method::Direct, tuning: Tuning::Model, ..FieldSettings::default() };
+        let mut values = FieldValues::default();
+        let mut field = ElectricField::new(&cloud.domain, &settings, &cloud.position, &cloud.charge)?;
+        let mut outcome = Ok(());
+        let seconds = median_seconds(0.5, || {
+            outcome = field.evaluate(&cloud.position, &cloud.charge, Wanted::default(), &mut values);
+        });
+        outcome?;
+        debug_assert!(relative_error(&values.e, &values.e) == 0.0, "finite");
+        Ok((seconds, values.e))
+    })
+}
+
+/// The section's part of the page.
+pub(crate) fn report(store: &Store) -> Result<Option<String>> {
+    let Some((date, rows)) = store.newest::<Row>(NAME)? else { return Ok(None) };
+    let mut table = Table::new(&[
+        "grains",
+        "tolerance",
+        "our error",
+        "ours [ns/grain]",
+        "FMM3D error",
+        "FMM3D [ns/grain]",
+        "FMM3D / ours",
+        "direct sum [ns/grain]",
+    ]);
+    let mut least = f64::INFINITY;
+    let mut slower_than_direct = Vec::new();
+    for ours in rows.iter().filter(|row| row.program == OURS) {
+        let same = |row: &&Row| row.grains == ours.grains && row.tolerance == ours.tolerance;
+        let peer = rows.iter().filter(|row| row.program == PEER).find(same);
+        let direct = rows.iter().find(|row| row.program == DIRECT && row.grains == ours.grains);
+        let ratio = peer.map(|peer| peer.ns_per_grain / ours.ns_per_grain);
+        least = least.min(ratio.unwrap_or(f64::INFINITY));
+        if direct.is_some_and(|direct| ours.ns_per_grain > 1.1 * direct.ns_per_grain) {
+            slower_than_direct.push(format!("{} grains at {:e}", ours.grains, ours.tolerance));
+        }
+        table.row(&[
+            ours.grains.to_string(),
+            format!("{:e}", ours.tolerance),
+            format!("{:.1e}", ours.error),
+            format!("{:.0}", ours.ns_per_grain),
+            peer.map_or_else(|| "–".to_owned(), |peer| format!("{:.1e}", peer.error)),
+            figure(peer.map(|peer| peer.ns_per_grain), 0),
+            figure(ratio, 1),
+            figure(direct.map(|direct| direct.ns_per_grain), 0),
+        ]);
+    }
+    let series = |program: &str| Series {
+        name: program.to_owned(),
+        points: rows
+            .iter()
+            .filter(|row| row.program == program && row.grains == 100_000)
+            .map(|row| (row.error, row.ns_per_grain))
+            .collect(),
+        is_reference: false,
+    };
+    let axes = ["relative RMS error of E", "time per grain [ns]"];
+    crate::page::plot(store, "open", "Open space, 100 000 grains", axes, &[series(OURS), series(PEER)])?;
+    let direct =
+        if slower_than_direct.is_empty() { "none".to_owned() } else { slower_than_direct.join(", ") };
+    Ok(Some(format!(
+        "## Field in open space\n\nMeasured {date}, one core, `cargo xtask bench --peers open`. The same clouds at a volume fraction of {FRACTION} without \
+         walls. FMM3D's precision is not its error of E: the peer is its fastest run whose measured error is at most the tolerance.\n\n{table}\n\
+         ![cost against error in open space](pictures/open.svg)\n\n* {GOAL} times as fast as FMM3D: {} (least ratio {}).\n\
+         * More than a tenth slower than our direct sum: {direct}.\n",
+        verdict(least.is_finite().then_some(least >= GOAL)),
+        figure(least.is_finite().then_some(least), 1),
+    )))
+}

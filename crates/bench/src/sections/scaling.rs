@@ -1,0 +1,153 @@
+//! Time and memory per grain from 10³ to 10⁷ grains, on one thread and two, and whether the results have the same bits.
+
+use crate::Context;
+use crate::beds::{self, Cloud};
+use crate::machine::peak_memory;
+use crate::page::{Table, figure, verdict};
+use crate::store::Store;
+use crate::timing::{median_seconds, on_threads};
+use amberfield_core::{FieldSettings, Particles, Tuning, Vector3};
+use amberfield_dem::{Setup, Simulation};
+use amberfield_field::{ElectricField, FieldValues, Wanted};
+use amberfield_study::Series;
+use anyhow::{Context as _, Result};
+use serde::{Deserialize, Serialize};
+use std::time::Instant;
+
+const NAME: &str = "scaling";
+const TOLERANCE: f64 = 1e-2;
+
+#[derive(Debug, Serialize, Deserialize)]
+struct Row {
+    grains: usize,
+    threads: usize,
+    field_ns_per_grain: f64,
+    field_bytes_per_grain: f64,
+    dem_ns_per_grain: f64,
+    /// Of the whole process while it steps, the scene that it started from included.
+    dem_bytes_per_grain: Option<f64>,
+    /// Whether E and the positions have the bits of one thread.
+    same_bits: bool,
+}
+
+pub(crate) fn measure(context: &Context) -> Result<()> {
+    let largest = if context.quick { 3 } else { 7 };
+    let mut rows = Vec::new();
+    for power in 3..=largest {
+        let grains = 10_usize.pow(power);
+        let cloud = beds::sparse_cloud(grains);
+        let (mut one_field, mut one_step) = (Vec::new(), Vec::new());
+        for threads in [1, 2] {
+            let (field_ns, field_bytes, e) = on_threads(threads, || field(&cloud))?;
+            let scene = beds::sparse(grains);
+            peak_memory();
+            let (dem_ns, particles) = on_threads(threads, || dem(scene))?;
+            let bytes = peak_memory();
+            let position = particles.position;
+            let same_bits = threads == 1 || (one_field == e && one_step == position);
+            if threads == 1 {
+                (one_field, one_step) = (e, position);
+            }
+            rows.push(Row {
+                grains,
+                threads,
+                field_ns_per_grain: field_ns,
+                field_bytes_per_grain: field_bytes,
+                dem_ns_per_grain: dem_ns,
+                dem_bytes_per_grain: bytes.map(|bytes| bytes / grains as f64),
+                same_bits,
+            });
+            println!("{:?}", rows.last());
+            context.store.save(NAME, &rows)?;
+        }
+    }
+    Ok(())
+}
+
+/// Nanoseconds and bytes per grain, and E.
+fn field(cloud: &Cloud) -> Result<(f64, f64, Vec<Vector3<f64>>)> {
+    let settings = FieldSettings { tolerance: TOLERANCE, tuning: Tuning::Model, ..FieldSettings::default() };
+    let count = cloud.position.len() as f64;
+    let mut values = FieldValues::default();
+    let mut field = ElectricField::new(&cloud.domain, &settings, &cloud.position, &cloud.charge)?;
+    let mut outcome = Ok(());
+    let seconds = median_seconds(0.3, || {
+        outcome = field.evaluate(&cloud.position, &cloud.charge, Wanted::default(), &mut values);
+    });
+    outcome?;
+    Ok((1e9 * seconds / count, field.memory_bytes() as f64 / count, values.e))
+}
+
+/// Nanoseconds per grain and step, and the grains after some steps.
+fn dem(scene: Setup) -> Result<(f64, Particles)> {
+    let count = scene.particles.len();
+    let mut run = Simulation::new(scene)?;
+    let steps = (5_000_000 / count).max(20);
+    let start = Instant::now();
+    for _ in 0..steps {
+        run.step().context("a periodic box")?;
+    }
+    let seconds = start.elapsed().as_secs_f64();
+    Ok((1e9 * seconds / (steps * count) as f64, run.particles()))
+}
+
+/// Slope of log y over log x by least squares.
+fn slope(points: &[(f64, f64)]) -> f64 {
+    let logs: Vec<(f64, f64)> = points.iter().map(|(x, y)| (x.ln(), y.ln())).collect();
+    let count = logs.len() as f64;
+    let (mx, my) = logs.iter().fold((0.0, 0.0), |(a, b), (x, y)| (a + x / count, b + y / count));
+    let (sxy, sxx) =
+        logs.iter().fold((0.0, 0.0), |(a, b), (x, y)| (a + (x - mx) * (y - my), b + (x - mx).powi(2)));
+    sxy / sxx
+}
+
+/// The section's part of the page.
+pub(crate) fn report(store: &Store) -> Result<Option<String>> {
+    let Some((date, rows)) = store.newest::<Row>(NAME)? else { return Ok(None) };
+    let mut table = Table::new(&[
+        "grains",
+        "threads",
+        "field [ns/grain]",
+        "field [bytes/grain]",
+        "DEM step [ns/grain]",
+        "process while stepping [bytes/grain]",
+        "same bits as one thread",
+    ]);
+    for row in &rows {
+        table.row(&[
+            row.grains.to_string(),
+            row.threads.to_string(),
+            figure(Some(row.field_ns_per_grain), 0),
+            figure(Some(row.field_bytes_per_grain), 0),
+            figure(Some(row.dem_ns_per_grain), 1),
+            figure(row.dem_bytes_per_grain, 0),
+            if row.same_bits { "yes" } else { "NO" }.to_owned(),
+        ]);
+    }
+    let points = |threads: usize, value: &dyn Fn(&Row) -> f64| -> Vec<(f64, f64)> {
+        let of = rows.iter().filter(|row| row.threads == threads);
+        of.map(|row| (row.grains as f64, value(row) * row.grains as f64)).collect()
+    };
+    let series = |name: &str, threads, value: &dyn Fn(&Row) -> f64| Series {
+        name: name.to_owned(),
+        points: points(threads, value).into_iter().map(|(x, y)| (x, y / x)).collect(),
+        is_reference: false,
+    };
+    let field = |row: &Row| row.field_ns_per_grain;
+    let dem = |row: &Row| row.dem_ns_per_grain;
+    let all = [
+        series("field, 1 thread", 1, &field),
+        series("field, 2 threads", 2, &field),
+        series("DEM step, 1 thread", 1, &dem),
+        series("DEM step, 2 threads", 2, &dem),
+    ];
+    crate::page::plot(store, "scaling", "Time per grain", ["grains", "time per grain [ns]"], &all)?;
+    Ok(Some(format!(
+        "## Scaling\n\nMeasured {date}, `cargo xtask bench scaling`. Field at tolerance {TOLERANCE:e} and plain DEM step, volume fraction 0.1, parameters from \
+         the cost model.\n\n{table}\n![time per grain](pictures/scaling.svg)\n\n* Slope of log time over log grains on one thread: field {:.2}, \
+         DEM step {:.2}.\n* The same bits for one thread and two: {}.\n",
+        slope(&points(1, &field)),
+        slope(&points(1, &dem)),
+        verdict(Some(rows.iter().all(|row| row.same_bits))),
+    )))
+}

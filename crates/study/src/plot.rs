@@ -1,0 +1,164 @@
+//! Curves on logarithmic axes, by plotters.
+
+use crate::error::StudyError;
+use plotters::prelude::*;
+use plotters::style::{FontStyle, register_font};
+use std::path::Path;
+
+/// A curve.
+#[derive(Clone, Debug)]
+pub struct Series {
+    /// Its line in the legend.
+    pub name: String,
+    /// (x, y), both above zero; others are left out.
+    pub points: Vec<(f64, f64)>,
+    /// Whether it is what the others are compared with: drawn dashed and without a colour of its own.
+    pub is_reference: bool,
+}
+
+/// Curves in one frame.
+#[derive(Clone, Debug)]
+pub struct Plot<'a> {
+    /// Above the frame.
+    pub title: &'a str,
+    /// Label of the x axis, with its unit in brackets.
+    pub x: &'a str,
+    /// Label of the y axis, with its unit in brackets.
+    pub y: &'a str,
+    /// The curves.
+    pub series: &'a [Series],
+}
+
+const SIZE: (u32, u32) = (720, 460);
+const FONT: &str = "Noto Sans";
+/// Told apart by people with any colour vision (Okabe and Ito, Color Universal Design, 2008).
+const COLOURS: [RGBColor; 6] = [
+    RGBColor(0, 114, 178),
+    RGBColor(213, 94, 0),
+    RGBColor(0, 158, 115),
+    RGBColor(204, 121, 167),
+    RGBColor(230, 159, 0),
+    RGBColor(86, 180, 233),
+];
+
+/// Writes a plot with two logarithmic axes as SVG; the same plot gives the same file.
+///
+/// # Errors
+/// A file that cannot be written; a plot without points.
+pub fn write_plot(path: &Path, plot: &Plot<'_>) -> Result<(), StudyError> {
+    let mut text = String::new();
+    draw(plot, &mut text).map_err(|reason| StudyError::Plot { path: path.to_owned(), reason })?;
+    std::fs::write(path, text).map_err(|source| StudyError::Write { path: path.to_owned(), source })
+}
+
+fn draw(plot: &Plot<'_>, into: &mut String) -> Result<(), String> {
+    // A second registration of the same font is refused; the first one stays.
+    let _registered = register_font(FONT, FontStyle::Normal, notosans::REGULAR_TTF);
+    let (x, y) = (range(plot, |point| point.0)?, range(plot, |point| point.1)?);
+    let failed = |error: DrawingAreaErrorKind<std::io::Error>| error.to_string();
+    let area = SVGBackend::with_string(into, SIZE).into_drawing_area();
+    area.fill(&WHITE).map_err(failed)?;
+    let mut chart = ChartBuilder::on(&area)
+        .caption(plot.title, (FONT, 18))
+        .margin(12)
+        .x_label_area_size(44)
+        .y_label_area_size(64)
+        .build_cartesian_2d((x.0..x.1).log_scale(), (y.0..y.1).log_scale())
+        .map_err(failed)?;
+    let label = |value: &f64| number(*value);
+    chart
+        .configure_mesh()
+        .x_desc(plot.x)
+        .y_desc(plot.y)
+        .label_style((FONT, 13))
+        .axis_desc_style((FONT, 14))
+        .x_label_formatter(&label)
+        .y_label_formatter(&label)
+        .light_line_style(WHITE)
+        .draw()
+        .map_err(failed)?;
+    let mut colours = COLOURS.into_iter().cycle();
+    for series in plot.series {
+        let colour = if series.is_reference {
+            RGBColor(104, 110, 122)
+        } else {
+            colours.next().expect("they go round")
+        };
+        let points: Vec<_> = positive(series).collect();
+        let style = colour.stroke_width(2);
+        let drawn = if series.is_reference {
+            let line = DashedLineSeries::new(points.iter().copied(), 6, 4, style);
+            chart.draw_series(line)
+        } else {
+            chart.draw_series(LineSeries::new(points.iter().copied(), style))
+        };
+        drawn
+            .map_err(failed)?
+            .label(series.name.as_str())
+            .legend(move |(x, y)| PathElement::new([(x, y), (x + 18, y)], style));
+        chart
+            .draw_series(points.iter().map(|&point| Circle::new(point, 3, colour.filled())))
+            .map_err(failed)?;
+    }
+    chart
+        .configure_series_labels()
+        .label_font((FONT, 13))
+        .background_style(WHITE.mix(0.85))
+        .border_style(RGBColor(200, 203, 210))
+        .position(SeriesLabelPosition::UpperRight)
+        .draw()
+        .map_err(failed)?;
+    area.present().map_err(failed)
+}
+
+/// The points that logarithmic axes can show.
+fn positive(series: &Series) -> impl Iterator<Item = (f64, f64)> {
+    let shown = |point: &(f64, f64)| [point.0, point.1].iter().all(|value| value.is_finite() && *value > 0.0);
+    series.points.iter().copied().filter(shown)
+}
+
+/// The range of a coordinate with a margin.
+fn range(plot: &Plot<'_>, of: impl Fn((f64, f64)) -> f64) -> Result<(f64, f64), String> {
+    let values = plot.series.iter().flat_map(positive).map(of);
+    let (low, high) =
+        values.fold((f64::INFINITY, 0.0_f64), |(low, high), value| (low.min(value), high.max(value)));
+    if low > high { Err("it has no points".to_owned()) } else { Ok((low / 1.4, high * 1.4)) }
+}
+
+/// A tick's label: short, powers of ten as 1e-4.
+fn number(value: f64) -> String {
+    if (1e-2..1e4).contains(&value) {
+        format!("{}", (value * 1e6).round() / 1e6)
+    } else {
+        format!("{value:e}")
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn plot(points: Vec<(f64, f64)>) -> Vec<Series> {
+        vec![Series { name: "p3m".to_owned(), points, is_reference: false }]
+    }
+
+    #[test]
+    fn a_plot_names_its_axes_and_curves_and_repeats() {
+        let series = plot(vec![(1e-4, 2000.0), (1e-2, 500.0), (0.0, 3.0)]);
+        let plot = Plot { title: "Cost and error", x: "error", y: "time per grain [ns]", series: &series };
+        let (mut first, mut second) = (String::new(), String::new());
+        draw(&plot, &mut first).unwrap();
+        draw(&plot, &mut second).unwrap();
+        assert_eq!(first, second);
+        for word in ["Cost and error", "time per grain [ns]", "p3m"] {
+            assert!(first.contains(word), "no {word}");
+        }
+    }
+
+    #[test]
+    fn a_plot_without_points_is_refused() {
+        let series = plot(vec![(0.0, 1.0)]);
+        let plot = Plot { title: "", x: "", y: "", series: &series };
+        assert!(draw(&plot, &mut String::new()).is_err());
+    }
+}
