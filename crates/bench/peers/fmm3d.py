@@ -26,8 +26,8 @@ def main():
             start = time.perf_counter()
             out = fmm3dpy.lfmm3d(eps=precision, sources=sources, charges=charges, pg=2)
             times.append(time.perf_counter() - start)
-        # The gradient of the potential sum q/r; E is its negative.
-        field = -out.grad.T
+        # FMM3D sums q/(4 pi r); E is minus the gradient of the sum of q/r.
+        field = -4.0 * numpy.pi * out.grad.T
         error = numpy.sqrt(((field - exact) ** 2).sum(axis=1).mean()) / scale
         print(f"{precision},{error},{sorted(times)[1]}", flush=True)
 

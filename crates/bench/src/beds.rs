@@ -136,10 +136,11 @@ fn charged(scene: Setup) -> Cloud {
 }
 
 impl Cloud {
-    /// The same charges in a box with other faces.
+    /// The same charges in a box with other faces, a radius from the centres: nearer ones would have little but their
+    /// images for a field.
     pub(crate) fn within(&self, boundary: Boundary) -> Self {
-        let domain =
-            Domain::new(self.domain.min(), self.domain.max(), [[boundary; 2]; 3]).expect("positive extents");
+        let (min, max) = (self.domain.min().add_scalar(-RADIUS), self.domain.max().add_scalar(RADIUS));
+        let domain = Domain::new(min, max, [[boundary; 2]; 3]).expect("positive extents");
         Self { domain, ..self.clone() }
     }
 

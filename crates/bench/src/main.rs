@@ -41,6 +41,7 @@ enum Section {
     Dem,
     Field,
     Open,
+    Kernel,
     Scaling,
     Rates,
 }
@@ -77,10 +78,14 @@ fn run(arguments: &Arguments) -> Result<()> {
             Section::Dem => sections::dem::measure(&context)?,
             Section::Field => sections::field::measure(&context)?,
             Section::Open => sections::open::measure(&context)?,
+            Section::Kernel => sections::kernel::measure(&context)?,
             Section::Scaling => sections::scaling::measure(&context)?,
             Section::Rates => sections::rates::measure(&context, root)?,
         }
     }
-    context.store.save("machine", &[machine::Machine::read(context.peers.as_ref())])?;
+    // A run without peers keeps what an earlier one said of them.
+    if context.peers.is_some() || context.store.newest::<machine::Machine>("machine")?.is_none() {
+        context.store.save("machine", &[machine::Machine::read(context.peers.as_ref())])?;
+    }
     page::write(&context.store)
 }

@@ -1,7 +1,7 @@
 //! The page `docs/reports/speed.md`, made from rows only.
 
 use crate::machine::Machine;
-use crate::sections::{dem, field, open, rates, scaling};
+use crate::sections::{dem, field, kernel, open, rates, scaling};
 use crate::store::Store;
 use amberfield_study::{Plot, Series, write_plot};
 use anyhow::{Context as _, Result};
@@ -56,6 +56,7 @@ pub(crate) fn write(store: &Store) -> Result<()> {
     let parts = [
         field::report(store)?,
         open::report(store)?,
+        kernel::report(store)?,
         dem::report(store)?,
         rates::report(store)?,
         scaling::report(store)?,

@@ -31,6 +31,10 @@ pub(crate) fn run(root: &Path, with_tests: bool) -> Result<()> {
     });
     step("docs", &|| documentation(root));
     step("deny", &|| deny::run(root));
+    step("bench, quick", &|| {
+        let bench = ["run", "-p", "amberfield-bench", "--", "--quick", "--out", "target/quick-report"];
+        execute(&mut cargo(root, &bench))
+    });
     step("leaving out", &|| leaving_out::run(root));
     if with_tests {
         step("tests", &|| test::run(root));

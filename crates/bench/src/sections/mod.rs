@@ -2,6 +2,8 @@
 
 pub(crate) mod dem;
 pub(crate) mod field;
+pub(crate) mod kernel;
 pub(crate) mod open;
+mod peak;
 pub(crate) mod rates;
 pub(crate) mod scaling;
