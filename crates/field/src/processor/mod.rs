@@ -50,12 +50,18 @@ macro_rules! dispatched {
             fn avx2 $(<const $p: usize>)? ($($argument: $type),*) $(-> $result)? {
                 $body::<$($p,)? std::arch::x86_64::__m256d>($($argument),*)
             }
+            #[cfg(target_arch = "x86_64")]
+            #[target_feature(enable = "avx512f,fma")]
+            fn avx512 $(<const $p: usize>)? ($($argument: $type),*) $(-> $result)? {
+                $body::<$($p,)? std::arch::x86_64::__m512d>($($argument),*)
+            }
             match instructions {
                 #[cfg(target_arch = "x86_64")]
-                // SAFETY: `Instructions::detect` found AVX2 on this processor, which AVX-512 implies.
-                $crate::processor::Instructions::Avx2 | $crate::processor::Instructions::Avx512 => unsafe {
-                    avx2 $(::<$p>)? ($($argument),*)
-                },
+                // SAFETY: `Instructions::detect` found the instructions on this processor, here and below.
+                $crate::processor::Instructions::Avx512 => unsafe { avx512 $(::<$p>)? ($($argument),*) },
+                #[cfg(target_arch = "x86_64")]
+                // SAFETY: as above.
+                $crate::processor::Instructions::Avx2 => unsafe { avx2 $(::<$p>)? ($($argument),*) },
                 $crate::processor::Instructions::Portable => $body::<$($p,)? [f64; 2]>($($argument),*),
             }
         }
