@@ -265,8 +265,10 @@ fn faces_line(rows: &[Row]) -> String {
 
 fn plots(store: &Store, rows: &[Row]) -> Result<()> {
     // The size with most points, the larger of two.
-    let points = |grains: usize| rows.iter().filter(|row| row.grains == grains && row.fraction == 0.4).count();
-    let grains = rows.iter().map(|row| row.grains).max_by_key(|&grains| (points(grains), grains)).unwrap_or(0);
+    let points =
+        |grains: usize| rows.iter().filter(|row| row.grains == grains && row.fraction == 0.4).count();
+    let grains =
+        rows.iter().map(|row| row.grains).max_by_key(|&grains| (points(grains), grains)).unwrap_or(0);
     let series = |program: &str, name: &str, time: &dyn Fn(&Row) -> Option<f64>| Series {
         name: name.to_owned(),
         points: rows

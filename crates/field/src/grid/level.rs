@@ -47,7 +47,7 @@ impl GridLevel {
         let influence = Influence::new(&axes, order, sigma_m);
         let solver = Solver::new(&axes, influence);
         let nodes = HaloArray::new(&axes);
-        let instructions = Instructions::detect();
+        let instructions = Instructions::detect().for_numbers(order);
         Self { axes, order, nodes, solver, slabs: SlabOrder::default(), instructions }
     }
 

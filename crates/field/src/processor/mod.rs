@@ -24,7 +24,8 @@ impl Instructions {
         #[cfg(target_arch = "x86_64")]
         {
             let fused = std::arch::is_x86_feature_detected!("fma");
-            if fused && std::arch::is_x86_feature_detected!("avx512f") {
+            let wide = std::arch::is_x86_feature_detected!("avx512f");
+            if fused && wide && std::arch::is_x86_feature_detected!("avx2") {
                 return Self::Avx512;
             }
             if fused && std::arch::is_x86_feature_detected!("avx2") {
@@ -32,6 +33,15 @@ impl Instructions {
             }
         }
         Self::Portable
+    }
+
+    /// The same, or narrower ones where so few numbers in a row leave half of the lanes idle.
+    pub(crate) fn for_numbers(self, numbers: usize) -> Self {
+        match self {
+            #[cfg(target_arch = "x86_64")]
+            Self::Avx512 if numbers <= 4 => Self::Avx2,
+            other => other,
+        }
     }
 }
 
