@@ -5,6 +5,7 @@ use amberfield_core::{
     Vector3,
 };
 use amberfield_dem::{Setup, Simulation};
+use amberfield_oracle::rms;
 use rand::{RngExt as _, SeedableRng as _};
 use rand_chacha::ChaCha8Rng;
 
@@ -154,9 +155,12 @@ impl Cloud {
     }
 }
 
+/// RMS of the difference of two fields.
+pub(crate) fn rms_difference(a: &[Vector3<f64>], b: &[Vector3<f64>]) -> f64 {
+    rms(&a.iter().zip(b).map(|(a, b)| a - b).collect::<Vec<_>>())
+}
+
 /// RMS of the difference of two fields over the RMS of the second.
 pub(crate) fn relative_error(field: &[Vector3<f64>], exact: &[Vector3<f64>]) -> f64 {
-    let squares = |it: &mut dyn Iterator<Item = Vector3<f64>>| it.map(|e| e.norm_squared()).sum::<f64>();
-    let error = squares(&mut field.iter().zip(exact).map(|(a, b)| a - b));
-    (error / squares(&mut exact.iter().copied())).sqrt()
+    rms_difference(field, exact) / rms(exact)
 }

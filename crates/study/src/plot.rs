@@ -12,8 +12,6 @@ pub struct Series {
     pub name: String,
     /// (x, y), both above zero; others are left out.
     pub points: Vec<(f64, f64)>,
-    /// Whether it is what the others are compared with: drawn dashed and without a colour of its own.
-    pub is_reference: bool,
 }
 
 /// Curves in one frame.
@@ -77,22 +75,11 @@ fn draw(plot: &Plot<'_>, into: &mut String) -> Result<(), String> {
         .light_line_style(WHITE)
         .draw()
         .map_err(failed)?;
-    let mut colours = COLOURS.into_iter().cycle();
-    for series in plot.series {
-        let colour = if series.is_reference {
-            RGBColor(104, 110, 122)
-        } else {
-            colours.next().expect("they go round")
-        };
+    for (series, colour) in plot.series.iter().zip(COLOURS.into_iter().cycle()) {
         let points: Vec<_> = positive(series).collect();
         let style = colour.stroke_width(2);
-        let drawn = if series.is_reference {
-            let line = DashedLineSeries::new(points.iter().copied(), 6, 4, style);
-            chart.draw_series(line)
-        } else {
-            chart.draw_series(LineSeries::new(points.iter().copied(), style))
-        };
-        drawn
+        chart
+            .draw_series(LineSeries::new(points.iter().copied(), style))
             .map_err(failed)?
             .label(series.name.as_str())
             .legend(move |(x, y)| PathElement::new([(x, y), (x + 18, y)], style));
@@ -139,7 +126,7 @@ mod tests {
     use super::*;
 
     fn plot(points: Vec<(f64, f64)>) -> Vec<Series> {
-        vec![Series { name: "p3m".to_owned(), points, is_reference: false }]
+        vec![Series { name: "p3m".to_owned(), points }]
     }
 
     #[test]

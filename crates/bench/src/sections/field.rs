@@ -43,6 +43,7 @@ pub(crate) fn measure(context: &Context) -> Result<()> {
     for &(grains, fraction) in clouds {
         let cloud = beds::cloud(grains, fraction);
         let exact = exact(&cloud)?;
+        let boxes = if grains <= 100_000 && fraction > 0.3 { closed(&cloud)? } else { Vec::new() };
         for tolerance in TOLERANCES {
             // The peer's turn comes between two of ours, so that a busy machine is busy for both.
             let row = |faces: &str, measured: Measured| Row {
@@ -65,20 +66,31 @@ pub(crate) fn measure(context: &Context) -> Result<()> {
             for row in &rows[rows.len().saturating_sub(2)..] {
                 println!("{row:?}");
             }
-            if grains <= 100_000 && (context.quick || fraction > 0.3) {
-                for (faces, boundary) in [
-                    ("grounded", Boundary::Grounded),
-                    ("insulating", Boundary::Insulating { normal_field_v_m: 0.0 }),
-                ] {
-                    let boxed = cloud.within(boundary);
-                    let measured = ours(&boxed, &self::exact(&boxed)?, tolerance)?;
-                    rows.push(row(faces, measured));
-                }
+            for Closed { faces, cloud, exact } in &boxes {
+                rows.push(row(faces, ours(cloud, exact, tolerance)?));
             }
             context.store.save(NAME, &rows)?;
         }
     }
     context.store.save(NAME, &rows)
+}
+
+/// The cloud in a closed box.
+struct Closed {
+    faces: &'static str,
+    cloud: Cloud,
+    exact: Vec<Vector3<f64>>,
+}
+
+/// The cloud in a grounded and in an insulating box.
+fn closed(cloud: &Cloud) -> Result<Vec<Closed>> {
+    let insulating = Boundary::Insulating { normal_field_v_m: 0.0 };
+    let one = |(faces, boundary)| {
+        let cloud = cloud.within(boundary);
+        let exact = exact(&cloud)?;
+        Ok(Closed { faces, cloud, exact })
+    };
+    [("grounded", Boundary::Grounded), ("insulating", insulating)].into_iter().map(one).collect()
 }
 
 /// E to compare with: `direct` for few grains, else a much tighter evaluation, which is itself compared with
@@ -87,10 +99,29 @@ pub(crate) fn exact(cloud: &Cloud) -> Result<Vec<Vector3<f64>>> {
     let method = if cloud.position.len() <= 10_000 { Method::Direct } else { Method::P3m };
     let tolerance = if cloud.position.len() > 100_000 { 1e-7 } else { 1e-8 };
     let settings = FieldSettings { method, tolerance, tuning: Tuning::Model, ..FieldSettings::default() };
-    let mut values = FieldValues::default();
-    let mut field = ElectricField::new(&cloud.domain, &settings, &cloud.position, &cloud.charge)?;
+    let (mut field, mut values) = built(cloud, &settings)?;
     field.evaluate(&cloud.position, &cloud.charge, Wanted::default(), &mut values)?;
     Ok(values.e)
+}
+
+fn built(cloud: &Cloud, settings: &FieldSettings) -> Result<(ElectricField, FieldValues)> {
+    let field = ElectricField::new(&cloud.domain, settings, &cloud.position, &cloud.charge)?;
+    Ok((field, FieldValues::default()))
+}
+
+/// Median seconds of an evaluation, repeated for `least_s` seconds at least; the field, and E.
+pub(crate) fn timed(
+    cloud: &Cloud,
+    settings: &FieldSettings,
+    least_s: f64,
+) -> Result<(f64, ElectricField, Vec<Vector3<f64>>)> {
+    let (mut field, mut values) = built(cloud, settings)?;
+    let mut outcome = Ok(());
+    let seconds = median_seconds(least_s, || {
+        outcome = field.evaluate(&cloud.position, &cloud.charge, Wanted::default(), &mut values);
+    });
+    outcome?;
+    Ok((seconds, field, values.e))
 }
 
 pub(crate) struct Measured {
@@ -101,20 +132,12 @@ pub(crate) struct Measured {
 
 /// Time and error of an evaluation on one thread.
 pub(crate) fn ours(cloud: &Cloud, exact: &[Vector3<f64>], tolerance: f64) -> Result<Measured> {
-    on_threads(1, || {
-        let settings = FieldSettings { tolerance, ..FieldSettings::default() };
-        let mut values = FieldValues::default();
-        let mut field = ElectricField::new(&cloud.domain, &settings, &cloud.position, &cloud.charge)?;
-        let mut outcome = Ok(());
-        let seconds = median_seconds(1.0, || {
-            outcome = field.evaluate(&cloud.position, &cloud.charge, Wanted::default(), &mut values);
-        });
-        outcome?;
-        Ok(Measured {
-            error: relative_error(&values.e, exact),
-            ns_per_grain: 1e9 * seconds / cloud.position.len() as f64,
-            settings: format!("{:?}", field.choice()).replace('"', ""),
-        })
+    let settings = FieldSettings { tolerance, ..FieldSettings::default() };
+    let (seconds, field, e) = on_threads(1, || timed(cloud, &settings, 1.0))?;
+    Ok(Measured {
+        error: relative_error(&e, exact),
+        ns_per_grain: 1e9 * seconds / cloud.position.len() as f64,
+        settings: format!("{:?}", field.choice()).replace('"', ""),
     })
 }
 
@@ -281,7 +304,6 @@ fn plots(store: &Store, rows: &[Row]) -> Result<()> {
             })
             .filter_map(|row| Some((row.error, time(row)?)))
             .collect(),
-        is_reference: false,
     };
     let kept = |row: &Row| Some(row.ns_per_grain);
     let all = [

@@ -1,13 +1,12 @@
 //! One evaluation of the field in open space, against FMM3D at equal error, and the direct sum.
 
 use crate::Context;
-use crate::beds::{self, relative_error};
+use crate::beds;
 use crate::page::{Table, figure, verdict};
 use crate::sections::field::{self, OURS};
 use crate::store::Store;
-use crate::timing::{median_seconds, on_threads};
-use amberfield_core::{Boundary, FieldSettings, Method, Tuning};
-use amberfield_field::{ElectricField, FieldValues, Wanted};
+use crate::timing::on_threads;
+use amberfield_core::{Boundary, FieldSettings, Method};
 use amberfield_study::Series;
 use anyhow::Result;
 use serde::{Deserialize, Serialize};
@@ -38,22 +37,20 @@ pub(crate) fn measure(context: &Context) -> Result<()> {
     let mut rows = Vec::new();
     for &grains in counts {
         let cloud = beds::cloud(grains, FRACTION).within(Boundary::Open);
-        let direct = grains <= 100_000;
-        let exact = if direct { None } else { Some(field::exact(&cloud)?) };
-        let exact = match exact {
-            Some(exact) => exact,
-            None => {
-                let (seconds, exact) = direct_sum(&cloud)?;
-                rows.push(Row {
-                    program: DIRECT.to_owned(),
-                    grains,
-                    tolerance: 0.0,
-                    error: 0.0,
-                    ns_per_grain: 1e9 * seconds / grains as f64,
-                    settings: format!("{:.3} ns per pair", 1e9 * seconds / (grains as f64).powi(2)),
-                });
-                exact
-            }
+        let exact = if grains <= 100_000 {
+            let settings = FieldSettings { method: Method::Direct, ..FieldSettings::default() };
+            let (seconds, _, exact) = on_threads(1, || field::timed(&cloud, &settings, 0.5))?;
+            rows.push(Row {
+                program: DIRECT.to_owned(),
+                grains,
+                tolerance: 0.0,
+                error: 0.0,
+                ns_per_grain: 1e9 * seconds / grains as f64,
+                settings: format!("{:.3} ns per pair", 1e9 * seconds / (grains as f64).powi(2)),
+            });
+            exact
+        } else {
+            field::exact(&cloud)?
         };
         let points = match &context.peers {
             Some(peers) => {
@@ -79,23 +76,6 @@ pub(crate) fn measure(context: &Context) -> Result<()> {
         context.store.save(NAME, &rows)?;
     }
     Ok(())
-}
-
-/// Seconds and E of the direct sum on one thread.
-fn direct_sum(cloud: &beds::Cloud) -> Result<(f64, Vec<amberfield_core::Vector3<f64>>)> {
-    on_threads(1, || {
-        let settings =
-            FieldSettings { method: Method::Direct, tuning: Tuning::Model, ..FieldSettings::default() };
-        let mut values = FieldValues::default();
-        let mut field = ElectricField::new(&cloud.domain, &settings, &cloud.position, &cloud.charge)?;
-        let mut outcome = Ok(());
-        let seconds = median_seconds(0.5, || {
-            outcome = field.evaluate(&cloud.position, &cloud.charge, Wanted::default(), &mut values);
-        });
-        outcome?;
-        debug_assert!(relative_error(&values.e, &values.e) == 0.0, "finite");
-        Ok((seconds, values.e))
-    })
 }
 
 /// The section's part of the page.
@@ -140,7 +120,6 @@ pub(crate) fn report(store: &Store) -> Result<Option<String>> {
             .filter(|row| row.program == program && row.grains == 100_000)
             .map(|row| (row.error, row.ns_per_grain))
             .collect(),
-        is_reference: false,
     };
     let axes = ["relative RMS error of E", "time per grain [ns]"];
     crate::page::plot(store, "open", "Open space, 100 000 grains", axes, &[series(OURS), series(PEER)])?;

@@ -120,7 +120,6 @@ fn trajectory_part(store: &Store, rows: &Rows) -> Result<String> {
     let series = |name: &str, value: &dyn Fn(&(f64, f64, f64)) -> f64| Series {
         name: name.to_owned(),
         points: fixed.iter().map(|point| (point.0, value(point))).collect(),
-        is_reference: false,
     };
     let all = [series("forecasts of E, measured by the run", &|p| p.1), series("velocities", &|p| p.2)];
     let axes = ["steps between evaluations", "relative RMS error"];

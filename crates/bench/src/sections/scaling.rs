@@ -4,11 +4,12 @@ use crate::Context;
 use crate::beds::{self, Cloud};
 use crate::machine::peak_memory;
 use crate::page::{Table, figure, verdict};
+use crate::sections::field::timed;
 use crate::store::Store;
-use crate::timing::{median_seconds, on_threads};
+use crate::timing::on_threads;
 use amberfield_core::{FieldSettings, Particles, Tuning, Vector3};
 use amberfield_dem::{Setup, Simulation};
-use amberfield_field::{ElectricField, FieldValues, Wanted};
+use amberfield_oracle::observed_order;
 use amberfield_study::Series;
 use anyhow::{Context as _, Result};
 use serde::{Deserialize, Serialize};
@@ -68,14 +69,8 @@ pub(crate) fn measure(context: &Context) -> Result<()> {
 fn field(cloud: &Cloud) -> Result<(f64, f64, Vec<Vector3<f64>>)> {
     let settings = FieldSettings { tolerance: TOLERANCE, tuning: Tuning::Model, ..FieldSettings::default() };
     let count = cloud.position.len() as f64;
-    let mut values = FieldValues::default();
-    let mut field = ElectricField::new(&cloud.domain, &settings, &cloud.position, &cloud.charge)?;
-    let mut outcome = Ok(());
-    let seconds = median_seconds(0.3, || {
-        outcome = field.evaluate(&cloud.position, &cloud.charge, Wanted::default(), &mut values);
-    });
-    outcome?;
-    Ok((1e9 * seconds / count, field.memory_bytes() as f64 / count, values.e))
+    let (seconds, field, e) = timed(cloud, &settings, 0.3)?;
+    Ok((1e9 * seconds / count, field.memory_bytes() as f64 / count, e))
 }
 
 /// Nanoseconds per grain and step, and the grains after some steps.
@@ -91,14 +86,13 @@ fn dem(scene: Setup) -> Result<(f64, Particles)> {
     Ok((1e9 * seconds / (steps * count) as f64, run.particles()))
 }
 
-/// Slope of log y over log x by least squares.
+/// Slope of log y over log x by least squares; not a number for a single point.
 fn slope(points: &[(f64, f64)]) -> f64 {
-    let logs: Vec<(f64, f64)> = points.iter().map(|(x, y)| (x.ln(), y.ln())).collect();
-    let count = logs.len() as f64;
-    let (mx, my) = logs.iter().fold((0.0, 0.0), |(a, b), (x, y)| (a + x / count, b + y / count));
-    let (sxy, sxx) =
-        logs.iter().fold((0.0, 0.0), |(a, b), (x, y)| (a + (x - mx) * (y - my), b + (x - mx).powi(2)));
-    sxy / sxx
+    if points.len() < 2 {
+        return f64::NAN;
+    }
+    let (x, y): (Vec<f64>, Vec<f64>) = points.iter().copied().unzip();
+    observed_order(&x, &y)
 }
 
 /// The section's part of the page.
@@ -131,7 +125,6 @@ pub(crate) fn report(store: &Store) -> Result<Option<String>> {
     let series = |name: &str, threads, value: &dyn Fn(&Row) -> f64| Series {
         name: name.to_owned(),
         points: points(threads, value).into_iter().map(|(x, y)| (x, y / x)).collect(),
-        is_reference: false,
     };
     let field = |row: &Row| row.field_ns_per_grain;
     let dem = |row: &Row| row.dem_ns_per_grain;

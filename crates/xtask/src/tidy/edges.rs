@@ -12,7 +12,7 @@ const ALLOWED: [(&str, &[&str]); 10] = [
     ("oracle", &["core"]),
     ("scene", &["core"]),
     ("study", &["core", "oracle", "scene"]),
-    ("bench", &["core", "dem", "field", "scene", "study"]),
+    ("bench", &["core", "dem", "field", "oracle", "scene", "study"]),
     ("cli", &["core", "laws", "field", "dem", "oracle", "scene", "study"]),
     ("xtask", &[]),
 ];

@@ -2,6 +2,7 @@
 
 use super::Rows;
 use super::bed::Bed;
+use crate::beds::rms_difference;
 use amberfield_core::{CouplingInterval, Particles};
 use amberfield_dem::{Setup, Simulation};
 use anyhow::Result;
@@ -32,7 +33,7 @@ pub(super) fn measure(path: &Path, quick: bool, rows: &mut Rows) -> Result<()> {
     rows.add(STUDY, "1e-12 perturbation", "steps", window as f64);
     rows.add(STUDY, "1e-12 perturbation", "growth", grown);
     let effect = deviation(&plain[1], &reference[1]);
-    let mut look = |case: &str, setup: Setup| -> Result<()> {
+    let look = |rows: &mut Rows, case: &str, setup: Setup| -> Result<()> {
         let (end, run) = ends(setup, window)?;
         if let Some(intervals) = run.intervals() {
             rows.add(STUDY, case, "evaluations", intervals.evaluations as f64);
@@ -41,14 +42,11 @@ pub(super) fn measure(path: &Path, quick: bool, rows: &mut Rows) -> Result<()> {
         rows.add(STUDY, case, "velocity error", deviation(&end[1], &reference[1]) / effect);
         Ok(())
     };
-    look("tolerance 1e-2, every step", bed.charged(TOLERANCE, every))?;
-    look("tolerance 1e-2, auto", bed.charged(TOLERANCE, CouplingInterval::Auto))?;
+    look(rows, "tolerance 1e-2, every step", bed.charged(TOLERANCE, every))?;
+    look(rows, "tolerance 1e-2, auto", bed.charged(TOLERANCE, CouplingInterval::Auto))?;
     for interval in INTERVALS.into_iter().filter(|&interval| interval as usize <= window / 4) {
         let case = format!("reference tolerance, interval {interval}");
-        look(&case, bed.charged(REFERENCE_TOLERANCE, CouplingInterval::Steps(interval)))?;
-    }
-    for interval in INTERVALS.into_iter().filter(|&interval| interval as usize <= window / 4) {
-        let case = format!("reference tolerance, interval {interval}");
+        look(rows, &case, bed.charged(REFERENCE_TOLERANCE, CouplingInterval::Steps(interval)))?;
         rows.add(STUDY, &case, "interval", f64::from(interval));
     }
     Ok(())
@@ -78,6 +76,5 @@ fn ends(setup: Setup, window: usize) -> Result<([Particles; 2], Simulation)> {
 
 /// RMS difference of the velocities [m/s].
 fn deviation(a: &Particles, b: &Particles) -> f64 {
-    let squares: f64 = a.velocity.iter().zip(&b.velocity).map(|(a, b)| (a - b).norm_squared()).sum();
-    (squares / a.len() as f64).sqrt()
+    rms_difference(&a.velocity, &b.velocity)
 }
