@@ -1,13 +1,16 @@
 //! The a-priori error of p3m for charges without correlation.
 //!
-//! δE = q_rms √n/(4πε) · √(F(r_c/σ)/σ + Q(p, σ/h)/h), n the number density where the charges are:
+//! δE = q_rms/(4πε) · √(n Q(p, r_c/h)/h), n the number density where the charges are, with (Hockney & Eastwood, *Computer
+//! Simulation Using Particles*, 1988, ch. 8, for a given influence function G)
 //!
-//! * near, pairs beyond r_c left out: F(x) = 4π ∫_x^∞ g(t)²/t² dt, g = erfc(t/√2) + √(2/π) t e^{−t²/2};
-//! * grid, with the optimal influence function (Hockney & Eastwood 1988, ch. 8):
-//!   Q = ∫_zone d³k/(2π)³ [Σ_m |k_m|²R_m² − (Σ_m W_m²|k_m|²R_m)²/(Σ_m W_m² Σ_m W_m²|k_m|²)] at h = 1,
-//!   R = 4π e^{−k²σ²/2}/k².
+//! Q = ∫_zone d³k/(2π)³ [Σ_m |k_m|²R_m² − 2G Σ_m W_m²|k_m|²R_m + G² Σ_m W_m² Σ_m W_m²|k_m|²] at h = 1,
+//!
+//! R = 4π χ(k)/k² the cloud's potential, W the window, G = R/W² what makes every wave of the zone exact. The near level
+//! ends where the cloud does and leaves nothing out.
 
-use libm::erfc;
+use crate::grid::window::Window;
+use crate::shapes::{self, Shapes};
+use amberfield_laws::kaiser_bessel_cloud::Cloud;
 use std::f64::consts::PI;
 use std::ops::RangeInclusive;
 use std::sync::LazyLock;
@@ -16,81 +19,43 @@ use std::sync::LazyLock;
 const ZONE_POINTS: usize = 7;
 /// Aliases on either side.
 const ALIASES: i32 = 2;
-/// Intervals of the near integral, which ends this many widths beyond the cut-off.
-const NEAR_INTERVALS: usize = 160;
-const NEAR_WIDTHS: f64 = 8.0;
 
-/// Orders of the splines.
+/// Orders of the windows.
 pub(crate) const ORDERS: RangeInclusive<usize> = 4..=8;
-/// Smallest and largest σ/h considered: below, the model is no longer a model; above, order 8 has no use.
-const RATIOS: [f64; 2] = [0.3, 4.0];
-/// Smallest and largest r_c/σ considered.
-const CUTOFFS: [f64; 2] = [0.5, 9.0];
+/// Smallest and largest r_c/h considered: below, the model is no longer a model; above, order 8 has no use.
+const RATIOS: [f64; 2] = [1.0, 10.0];
+/// Intervals between them.
+const INTERVALS: usize = 24;
 
-/// A falling function tabulated as ln f over ln x.
-struct Table(Vec<(f64, f64)>);
+/// Q by r_c/h for each order, as ln Q over ln r_c/h.
+static TABLES: LazyLock<Vec<Vec<[f64; 2]>>> = LazyLock::new(|| ORDERS.map(table).collect());
 
-impl Table {
-    fn new([low, high]: [f64; 2], count: usize, function: impl Fn(f64) -> f64) -> Self {
-        let (low, high) = (low.ln(), high.ln());
-        let at = |i: usize| low + (high - low) * i as f64 / count as f64;
-        Self((0..=count).map(|i| (at(i), function(at(i).exp()).max(f64::MIN_POSITIVE).ln())).collect())
+fn table(order: usize) -> Vec<[f64; 2]> {
+    let [low, high] = RATIOS.map(f64::ln);
+    let at = |i: usize| low + (high - low) * i as f64 / INTERVALS as f64;
+    let error = |ln: f64| error_squared(order, ln.exp(), shapes::best(order, ln.exp()));
+    (0..=INTERVALS).map(|i| [at(i), error(at(i)).ln()]).collect()
+}
+
+/// Smallest r_c/h whose Q with the best shapes is at most `bound`.
+pub(crate) fn cutoff_over_spacing_for(order: usize, bound: f64) -> Option<f64> {
+    let (table, bound) = (&TABLES[order - ORDERS.start()], bound.ln());
+    let at = table.iter().position(|[_, value]| *value <= bound)?;
+    let [x1, value1] = table[at];
+    if at == 0 {
+        return Some(x1.exp());
     }
-
-    /// Smallest x whose value is at most `bound`.
-    fn solve(&self, bound: f64) -> Option<f64> {
-        let bound = bound.ln();
-        let at = self.0.partition_point(|(_, value)| *value > bound);
-        let (x1, value1) = *self.0.get(at)?;
-        if at == 0 {
-            return Some(x1.exp());
-        }
-        let (x0, value0) = self.0[at - 1];
-        Some((x0 + (x1 - x0) * (value0 - bound) / (value0 - value1)).exp())
-    }
+    let [x0, value0] = table[at - 1];
+    Some((x0 + (x1 - x0) * (value0 - bound) / (value0 - value1)).exp())
 }
 
-static GRID: LazyLock<Vec<Table>> = LazyLock::new(|| {
-    ORDERS.map(|order| Table::new(RATIOS, 28, |ratio| grid_error_squared(order, ratio))).collect()
-});
-static NEAR: LazyLock<Table> = LazyLock::new(|| Table::new(CUTOFFS, 120, near_error_squared));
-
-/// Smallest σ/h whose Q is at most `bound`.
-pub(crate) fn sigma_over_spacing_for(order: usize, bound: f64) -> Option<f64> {
-    GRID[order - ORDERS.start()].solve(bound)
-}
-
-/// Smallest r_c/σ whose F is at most `bound`.
-pub(crate) fn cutoff_over_sigma_for(bound: f64) -> Option<f64> {
-    NEAR.solve(bound)
-}
-
-/// F(x): squared near error per q²n/σ (4πε = 1) of a cut-off of x widths.
-pub(crate) fn near_error_squared(cutoff_over_sigma: f64) -> f64 {
-    let integrand = |t: f64| {
-        let g = erfc(t / 2.0_f64.sqrt()) + (2.0 / PI).sqrt() * t * (-0.5 * t * t).exp();
-        (g / t).powi(2)
-    };
-    let step = NEAR_WIDTHS / NEAR_INTERVALS as f64;
-    let sum: f64 = (0..=NEAR_INTERVALS)
-        .map(|i| {
-            let weight = match i {
-                0 | NEAR_INTERVALS => 1.0,
-                i if i % 2 == 1 => 4.0,
-                _ => 2.0,
-            };
-            weight * integrand(cutoff_over_sigma + step * i as f64)
-        })
-        .sum();
-    4.0 * PI * sum * step / 3.0
-}
-
-/// Q(p, σ/h): squared grid error per q²n/h (4πε = 1).
-pub(crate) fn grid_error_squared(order: usize, sigma_over_spacing: f64) -> f64 {
+/// Q: squared error per q²n/h (4πε = 1) of a window of order p and a cut-off of `ratio` node spacings.
+pub(crate) fn error_squared(order: usize, ratio: f64, shapes: Shapes) -> f64 {
+    let cloud = Cloud { radius: ratio, shape: shapes.cloud };
+    let window = Window::new(order, shapes.window);
     let step = PI / ZONE_POINTS as f64;
-    let axis: Vec<AxisAliases> = (0..ZONE_POINTS)
-        .map(|i| AxisAliases::new(step * (i as f64 + 0.5), order, sigma_over_spacing))
-        .collect();
+    let axis: Vec<AxisAliases> =
+        (0..ZONE_POINTS).map(|i| AxisAliases::new(step * (i as f64 + 0.5), &window)).collect();
     let mut sum = 0.0;
     for x in 0..ZONE_POINTS {
         for y in 0..=x {
@@ -101,33 +66,30 @@ pub(crate) fn grid_error_squared(order: usize, sigma_over_spacing: f64) -> f64 {
                     (false, false) => 6.0,
                     _ => 3.0,
                 };
-                sum += weight * zone_integrand([&axis[x], &axis[y], &axis[z]]);
+                sum += weight * zone_integrand(cloud, [&axis[x], &axis[y], &axis[z]]);
             }
         }
     }
     8.0 * sum * step.powi(3) / (2.0 * PI).powi(3)
 }
 
-/// Aliases of one wave-number component, the principal one first: k², W², e^{−k²σ²/2}.
-struct AxisAliases(Vec<[f64; 3]>);
+/// Aliases of one wave-number component, the principal one first: k², W².
+struct AxisAliases(Vec<[f64; 2]>);
 
 impl AxisAliases {
-    fn new(wave: f64, order: usize, sigma: f64) -> Self {
+    fn new(phase: f64, window: &Window) -> Self {
         let aliases = std::iter::once(0).chain((1..=ALIASES).flat_map(|m| [m, -m]));
-        Self(
-            aliases
-                .map(|m| {
-                    let k = wave + 2.0 * PI * f64::from(m);
-                    let window = ((0.5 * k).sin() / (0.5 * k)).powi(2 * order as i32);
-                    [k * k, window, (-0.5 * k * k * sigma * sigma).exp()]
-                })
-                .collect(),
-        )
+        let of = |m: i32| {
+            let k = phase + 2.0 * PI * f64::from(m);
+            [k * k, window.transform(k).powi(2)]
+        };
+        Self(aliases.map(of).collect())
     }
 }
 
-/// The bracket of Q, arranged so that nothing cancels: the principal alias is split off every sum.
-fn zone_integrand(axis: [&AxisAliases; 3]) -> f64 {
+/// The bracket of Q, arranged so that nothing cancels: the principal alias is split off every sum, its own terms add up to
+/// zero.
+fn zone_integrand(cloud: Cloud, axis: [&AxisAliases; 3]) -> f64 {
     let (mut windows, mut squares, mut crossed, mut aliased) = (0.0, 0.0, 0.0, 0.0);
     let (mut window0, mut k0, mut r0) = (0.0, 0.0, 0.0);
     for (i, a) in axis[0].0.iter().enumerate() {
@@ -135,7 +97,7 @@ fn zone_integrand(axis: [&AxisAliases; 3]) -> f64 {
             for (l, c) in axis[2].0.iter().enumerate() {
                 let wave_squared = a[0] + b[0] + c[0];
                 let window = a[1] * b[1] * c[1];
-                let reference = 4.0 * PI * a[2] * b[2] * c[2] / wave_squared;
+                let reference = 4.0 * PI * cloud.spectrum(wave_squared) / wave_squared;
                 if i + j + l == 0 {
                     (window0, k0, r0) = (window, wave_squared, reference);
                 } else {
@@ -147,49 +109,50 @@ fn zone_integrand(axis: [&AxisAliases; 3]) -> f64 {
             }
         }
     }
-    let denominator = (window0 + windows) * (window0 * k0 + squares);
-    let lost = window0 * squares + windows * window0 * k0 + windows * squares;
-    k0 * r0 * r0 * lost / denominator + aliased - crossed * (2.0 * window0 * k0 * r0 + crossed) / denominator
+    let influence = r0 / window0;
+    let doubled = window0 * squares + windows * (window0 * k0 + squares);
+    aliased - 2.0 * influence * crossed + influence * influence * doubled
 }
 
 #[cfg(test)]
 mod tests {
     use super::*;
 
-    /// NUMERICS: C for order 5 at r_c = 3.5 σ (near and grid together), order 6 at 4 σ.
+    /// An independent program's √Q with three aliases on either side, which finds a little more.
+    const MORE_ALIASES: f64 = 0.1;
+
     #[test]
-    fn agrees_with_measured_coefficients() {
-        for (order, ratio, cutoff, measured) in [
-            (4, 0.8, 3.5, 0.075),
-            (5, 0.8, 3.5, 0.049),
-            (5, 1.0, 3.5, 0.0132),
-            (5, 1.0, 3.0, 0.0185),
-            (6, 0.9, 3.5, 0.018),
-            (6, 1.2, 4.0, 0.0020),
+    fn agrees_with_an_independent_program() {
+        for (order, ratio, cloud, window, expected) in [
+            (4, 2.0, 5.69, 5.75, 3.451e-2),
+            (5, 2.0, 6.43, 6.33, 1.837e-2),
+            (5, 3.0, 8.42, 8.20, 2.478e-3),
+            (6, 4.0, 10.88, 10.60, 2.024e-4),
+            (7, 5.0, 13.37, 12.98, 1.699e-5),
+            (8, 6.0, 15.91, 15.23, 1.436e-6),
         ] {
-            let squared = grid_error_squared(order, ratio) + near_error_squared(cutoff) / ratio;
-            let ratio_to_measured = squared.sqrt() / measured;
-            assert!((0.7..1.5).contains(&ratio_to_measured), "{order} {ratio}: {ratio_to_measured}");
+            let found = error_squared(order, ratio, Shapes { cloud, window }).sqrt();
+            assert!(
+                (found / expected - 1.0).abs() < MORE_ALIASES,
+                "{order} {ratio}: {found:e} for {expected:e}"
+            );
         }
     }
 
     #[test]
-    fn tables_invert_the_functions() {
-        for cutoff in [1.3, 2.9, 4.4, 6.1] {
-            let found = cutoff_over_sigma_for(near_error_squared(cutoff)).unwrap();
-            assert!((found / cutoff - 1.0).abs() < 1e-3, "{cutoff}: {found}");
-        }
+    fn tables_invert_the_function() {
         for order in ORDERS {
-            let found = sigma_over_spacing_for(order, grid_error_squared(order, 1.1)).unwrap();
-            assert!((found / 1.1 - 1.0).abs() < 1e-2, "{order}: {found}");
+            let found =
+                cutoff_over_spacing_for(order, error_squared(order, 2.7, shapes::best(order, 2.7))).unwrap();
+            assert!((found / 2.7 - 1.0).abs() < 2e-2, "{order}: {found}");
         }
-        assert!(cutoff_over_sigma_for(0.0).is_none());
+        assert!(cutoff_over_spacing_for(8, 0.0).is_none());
     }
 
     #[test]
-    fn errors_fall_with_cutoff_width_and_order() {
-        assert!(near_error_squared(4.0) < 0.1 * near_error_squared(3.0));
-        assert!(grid_error_squared(5, 1.2) < 0.1 * grid_error_squared(5, 0.8));
-        assert!(grid_error_squared(8, 1.2) < 0.1 * grid_error_squared(5, 1.2));
+    fn errors_fall_with_cutoff_and_order() {
+        let error = |order, ratio| error_squared(order, ratio, shapes::best(order, ratio));
+        assert!(error(5, 3.0) < 0.1 * error(5, 2.0));
+        assert!(error(8, 4.0) < 0.1 * error(5, 4.0));
     }
 }

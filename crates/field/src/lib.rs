@@ -3,6 +3,7 @@
 //! E = near + far + boundary + external (+ correction), see [`ElectricField::evaluate`].
 
 mod boundary_field;
+mod chebyshev;
 mod cutoff;
 mod direct;
 mod electric_field;
@@ -19,6 +20,7 @@ mod p3m;
 mod plan;
 mod processor;
 mod scratch;
+mod shapes;
 mod stopwatch;
 mod tuning;
 mod values;

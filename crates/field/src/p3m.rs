@@ -1,6 +1,8 @@
-//! Particle–particle particle–mesh with smooth Gaussian splitting:
+//! Particle–particle particle–mesh with smooth splitting:
 //!
-//! 1/r = [1 − erf(r/√2σ)]/r + erf(r/√2σ)/r — pairs within r_c, and the internal grid with the box's faces.
+//! 1/r = [1 − Φ(r/r_c)]/r + Φ(r/r_c)/r — pairs within r_c, and the internal grid with the box's faces.
+//!
+//! Φ is the Kaiser–Bessel cloud's of `amberfield_laws::kaiser_bessel_cloud`: nothing is left of the pairs beyond r_c.
 
 use crate::grid::level::{GridLevel, GridParameters};
 use crate::inputs::{check_charges_in_box, check_result};
@@ -9,7 +11,7 @@ use crate::stopwatch::Stopwatch;
 use crate::{FieldError, FieldMethod, FieldValues, Wanted};
 use amberfield_core::constants::coulomb_constant;
 use amberfield_core::{Domain, FieldSettings};
-use amberfield_laws::gaussian_cloud::cloud_potential;
+use amberfield_laws::kaiser_bessel_cloud::Cloud;
 use nalgebra::Vector3;
 use serde::{Deserialize, Serialize};
 use std::f64::consts::PI;
@@ -17,14 +19,16 @@ use std::f64::consts::PI;
 /// Parameters of the splitting.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 pub struct P3mParameters {
-    /// Gaussian width σ of the clouds [m].
-    pub sigma_m: f64,
-    /// Near cut-off radius r_c [m].
+    /// Near cut-off radius r_c, where the clouds end [m].
     pub cutoff_m: f64,
+    /// Shape β of the clouds.
+    pub cloud_shape: f64,
     /// Largest node spacing of the grid [m].
     pub spacing_m: f64,
-    /// Order of the B-splines, 4 to 8.
+    /// Order of the window between charges and nodes, 4 to 8.
     pub order: usize,
+    /// Shape β of the window.
+    pub window_shape: f64,
     /// Error of the near kernel's polynomials over the cloud's value at its centre.
     pub kernel_accuracy: f64,
 }
@@ -32,14 +36,23 @@ pub struct P3mParameters {
 impl P3mParameters {
     pub(crate) fn near(&self) -> NearParameters {
         NearParameters {
-            sigma_m: self.sigma_m,
             cutoff_m: self.cutoff_m,
+            cloud_shape: self.cloud_shape,
             kernel_accuracy: self.kernel_accuracy,
         }
     }
 
     pub(crate) fn grid(&self) -> GridParameters {
-        GridParameters { spacing_m: self.spacing_m, order: self.order, sigma_m: self.sigma_m }
+        GridParameters {
+            spacing_m: self.spacing_m,
+            order: self.order,
+            window_shape: self.window_shape,
+            cloud: self.cloud(),
+        }
+    }
+
+    pub(crate) fn cloud(&self) -> Cloud {
+        Cloud { radius: self.cutoff_m, shape: self.cloud_shape }
     }
 }
 
@@ -107,7 +120,7 @@ impl P3m {
             return 0.0;
         }
         let net: f64 = charges.iter().sum();
-        2.0 * PI * self.parameters.sigma_m.powi(2) * net / self.domain.volume()
+        2.0 * PI * self.parameters.cloud().mean_square() * net / self.domain.volume()
     }
 }
 
@@ -138,7 +151,7 @@ impl FieldMethod for P3m {
         out.clear();
         out.e.extend(levels().map(|(near, far)| k * (near.0 + far.0)));
         if wanted.potential {
-            let own_cloud = cloud_potential(0.0, self.parameters.sigma_m);
+            let own_cloud = self.parameters.cloud().potential(0.0);
             let background = self.background_potential(charges);
             out.potential.extend(
                 levels()

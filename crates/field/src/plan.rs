@@ -31,8 +31,8 @@ pub(crate) fn plan(domain: &Domain, settings: &FieldSettings, choice: &Choice) -
             plan.build(
                 "grid",
                 format!(
-                    "smooth part: clouds of {:.4e} m on nodes {:.4e} m apart, splines of order {}",
-                    parameters.sigma_m, parameters.spacing_m, parameters.order
+                    "smooth part, on nodes {:.4e} m apart, window of order {}",
+                    parameters.spacing_m, parameters.order
                 ),
             );
         }

@@ -1,10 +1,9 @@
 //! From a tolerance and a cloud of charges to the parameters of p3m: error model, candidates, timing, check.
 
-use crate::error_model::{
-    ORDERS, cutoff_over_sigma_for, grid_error_squared, near_error_squared, sigma_over_spacing_for,
-};
+use crate::error_model::{ORDERS, cutoff_over_spacing_for, error_squared};
 use crate::grid::level::grid_sizes;
 use crate::p3m::{P3m, P3mParameters};
+use crate::shapes::{self, Shapes};
 use crate::{FieldError, FieldMethod, FieldValues, Measured, Wanted};
 use amberfield_core::constants::coulomb_constant;
 use amberfield_core::{Domain, FieldSettings, Tuning};
@@ -17,10 +16,8 @@ const AIM: f64 = 0.75;
 const ACCEPT: f64 = 0.9;
 /// Grains in the sample on which the error is measured.
 const SAMPLE: usize = 600;
-/// The second splitting's width over the first.
-const SECOND_WIDTH: f64 = 1.5;
-/// The second splitting's r_c/σ over the first: with less, both leave out the same distant pairs and agree on it.
-const SECOND_CUTOFF: f64 = 2.0;
+/// The second splitting's cut-off over the first: some ten times more exact on the same nodes.
+const SECOND_CUTOFF: f64 = 1.5;
 /// Rounds of tightening before a tolerance counts as out of reach.
 const ROUNDS: usize = 6;
 /// Nodes of the largest grid considered: 5 GiB.
@@ -77,6 +74,12 @@ impl Cloud {
     fn squared_error(&self, permittivity: f64, coefficient: f64) -> f64 {
         (coulomb_constant(permittivity) * self.charge).powi(2) * self.density * coefficient
     }
+}
+
+/// Parameters with the shapes that suit them.
+fn with_best_shapes(order: usize, cutoff_m: f64, spacing_m: f64, kernel_accuracy: f64) -> P3mParameters {
+    let Shapes { cloud, window } = shapes::best(order, cutoff_m / spacing_m);
+    P3mParameters { cutoff_m, cloud_shape: cloud, spacing_m, order, window_shape: window, kernel_accuracy }
 }
 
 /// Mean density around a charge, weighted with q²: clouds need not fill the domain.
@@ -192,14 +195,12 @@ impl<'a> Tuner<'a> {
     pub(crate) fn measure(&self, parameters: P3mParameters, scale: f64) -> Measured {
         let step = self.positions.len().div_ceil(SAMPLE).max(1);
         let sample: Vec<usize> = (0..self.positions.len()).step_by(step).collect();
-        let sigma = SECOND_WIDTH * parameters.sigma_m;
-        let second = P3mParameters {
-            sigma_m: sigma,
-            cutoff_m: sigma * (parameters.cutoff_m / parameters.sigma_m + SECOND_CUTOFF),
-            order: (parameters.order + 1).min(8),
-            kernel_accuracy: 0.1 * parameters.kernel_accuracy,
-            ..parameters
-        };
+        let second = with_best_shapes(
+            (parameters.order + 1).min(*ORDERS.end()),
+            SECOND_CUTOFF * parameters.cutoff_m,
+            parameters.spacing_m,
+            0.1 * parameters.kernel_accuracy,
+        );
         let field = |parameters| {
             P3m::new(self.domain, self.settings, parameters).sample(self.positions, self.charges, &sample)
         };
@@ -212,9 +213,8 @@ impl<'a> Tuner<'a> {
     /// A-priori relative error of parameters.
     pub(crate) fn estimate(&self, parameters: &P3mParameters, scale: f64) -> f64 {
         let spacing = self.widest_spacing(parameters);
-        let sigma = parameters.sigma_m;
-        let coefficient = near_error_squared(parameters.cutoff_m / sigma) / sigma
-            + grid_error_squared(parameters.order, sigma / spacing) / spacing;
+        let shapes = Shapes { cloud: parameters.cloud_shape, window: parameters.window_shape };
+        let coefficient = error_squared(parameters.order, parameters.cutoff_m / spacing, shapes) / spacing;
         self.cloud.squared_error(self.settings.relative_permittivity, coefficient).sqrt() / scale
     }
 
@@ -227,7 +227,7 @@ impl<'a> Tuner<'a> {
     }
 
     fn widest_spacing(&self, parameters: &P3mParameters) -> f64 {
-        let sizes = grid_sizes(self.domain, parameters.spacing_m, parameters.sigma_m);
+        let sizes = grid_sizes(self.domain, parameters.spacing_m, parameters.cloud());
         sizes.iter().map(|size| size.spacing).fold(0.0, f64::max)
     }
 
@@ -254,13 +254,13 @@ impl<'a> Tuner<'a> {
     /// Candidates with an error of `error` [V/m], cheapest first by the cost model: the best of each order.
     fn candidates(&self, cloud: &Cloud, error: f64) -> Vec<(f64, P3mParameters)> {
         let one = cloud.squared_error(self.settings.relative_permittivity, 1.0);
-        let half = 0.5 * error * error / one;
+        let coefficient = error * error / one;
         let mut best: Vec<(f64, P3mParameters)> = Vec::new();
         for order in ORDERS {
             let of_order = self
                 .spacings(cloud)
                 .into_iter()
-                .filter_map(|spacing| self.candidate(order, spacing, half, error))
+                .filter_map(|spacing| self.candidate(order, spacing, coefficient, error))
                 .map(|parameters| (self.cost(cloud, &parameters), parameters))
                 .min_by(|a, b| a.0.total_cmp(&b.0));
             best.extend(of_order);
@@ -269,24 +269,11 @@ impl<'a> Tuner<'a> {
         best
     }
 
-    fn candidate(&self, order: usize, spacing: f64, half: f64, error: f64) -> Option<P3mParameters> {
-        let least_sigma = sigma_over_spacing_for(order, half * spacing)? * spacing;
-        let (sigma_m, cutoff_m) = match self.settings.cutoff_radius_m {
-            None => (least_sigma, least_sigma * cutoff_over_sigma_for(half * least_sigma)?),
-            Some(cutoff) => {
-                // The widest clouds that the fixed cut-off allows.
-                let mut sigma = 2.0 * cutoff;
-                for _ in 0..60 {
-                    sigma = cutoff / cutoff_over_sigma_for(half * sigma)?;
-                }
-                (sigma, cutoff)
-            }
-        };
-        if sigma_m < least_sigma {
-            return None;
-        }
-        let kernel_accuracy = self.kernel_accuracy(error);
-        Some(P3mParameters { sigma_m, cutoff_m, spacing_m: spacing, order, kernel_accuracy })
+    /// The least cut-off, or the fixed one where it is enough, for an error of squared `coefficient` [1/m].
+    fn candidate(&self, order: usize, spacing: f64, coefficient: f64, error: f64) -> Option<P3mParameters> {
+        let least = cutoff_over_spacing_for(order, coefficient * spacing)? * spacing;
+        let cutoff = self.settings.cutoff_radius_m.unwrap_or(least);
+        (cutoff >= least).then(|| with_best_shapes(order, cutoff, spacing, self.kernel_accuracy(error)))
     }
 
     /// Polynomials a good deal better than the tolerance, never better than round-off.
@@ -316,7 +303,7 @@ impl<'a> Tuner<'a> {
     /// Modelled cost of one evaluation [ns].
     fn cost(&self, cloud: &Cloud, parameters: &P3mParameters) -> f64 {
         let pairs = 4.0 / 3.0 * std::f64::consts::PI * cloud.density * parameters.cutoff_m.powi(3);
-        let nodes: f64 = grid_sizes(self.domain, parameters.spacing_m, parameters.sigma_m)
+        let nodes: f64 = grid_sizes(self.domain, parameters.spacing_m, parameters.cloud())
             .iter()
             .map(|size| size.padded as f64)
             .product();

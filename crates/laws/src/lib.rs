@@ -4,9 +4,9 @@
 
 pub mod coulomb_friction;
 pub mod force_limit;
-pub mod gaussian_cloud;
 pub mod hertz_mindlin;
 pub mod image_in_plane;
+pub mod kaiser_bessel_cloud;
 pub mod point_charge;
 pub mod restitution;
 pub mod rolling_friction;

@@ -1,7 +1,7 @@
 //! One axis of the internal grid: nodes, what lies beyond its ends, and the transform that knows both.
 
-use super::bspline::HALO;
 use super::transform::{LineTransform, Symmetry};
+use super::window::HALO;
 use crate::images::{AxisKind, FaceKind};
 use amberfield_core::{Axis, Domain};
 
@@ -179,7 +179,7 @@ mod tests {
     }
 
     #[test]
-    fn open_sides_leave_room_for_the_widest_spline() {
+    fn open_sides_leave_room_for_the_widest_window() {
         let open = axis(Boundary::Open, Boundary::Open);
         assert_eq!(open.nodes, 4 + 2 * HALO);
         assert!((open.to_nodes(0.0) - (HALO as f64 - 0.5)).abs() < 1e-12);

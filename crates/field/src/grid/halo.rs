@@ -1,7 +1,7 @@
-//! Node values with a halo on every side, so that splines need not know the faces.
+//! Node values with a halo on every side, so that windows need not know the faces.
 
 use super::axis::GridAxis;
-use super::bspline::HALO;
+use super::window::HALO;
 
 /// Values at nodes −HALO … n + HALO − 1 of every axis, z fastest.
 #[derive(Debug)]

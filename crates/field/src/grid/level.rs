@@ -1,38 +1,41 @@
-//! The smooth level on the internal grid: spread charge with B-splines, convolve, gather potential and field.
+//! The smooth level on the internal grid: spread charge with the window, convolve, gather potential and field.
 
 use super::axis::{AxisSize, GridAxis, TAIL_WIDTHS};
-use super::bspline::{HALO, MAX_ORDER, Weights, first_node, weights};
 use super::halo::HaloArray;
 use super::influence::{Influence, singular_width};
 use super::solve::Solver;
+use super::window::{HALO, MAX_ORDER, Weights, Window, first_node};
 use crate::images::axis_kinds;
 use crate::processor::{Instructions, Vector, dispatched};
 use amberfield_core::{Axis, Domain};
+use amberfield_laws::kaiser_bessel_cloud::Cloud;
 use nalgebra::Vector3;
 use rayon::prelude::*;
-use serde::{Deserialize, Serialize};
 
-/// Planes of x that one task spreads onto; a spline reaches into the next slab at most.
+/// Planes of x that one task spreads onto; a window reaches into the next slab at most.
 const SLAB: usize = MAX_ORDER;
 /// Grains gathered by one task.
 const GATHER: usize = 256;
 
 /// What the grid is made of.
-#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
+#[derive(Clone, Copy, Debug, PartialEq)]
 pub(crate) struct GridParameters {
     /// Largest node spacing [m].
     pub spacing_m: f64,
-    /// Order of the splines, 4 to 8.
+    /// Order of the window, 4 to 8.
     pub order: usize,
-    /// Gaussian width σ of the charges' clouds [m].
-    pub sigma_m: f64,
+    /// Shape of the window.
+    pub window_shape: f64,
+    /// The charges' clouds, lengths in m.
+    pub cloud: Cloud,
 }
 
-/// Field of Gaussian clouds of width σ around the charges, with the box's own faces.
+/// Field of the clouds around the charges, with the box's own faces.
 #[derive(Debug)]
 pub(crate) struct GridLevel {
     axes: [GridAxis; 3],
     order: usize,
+    window: Window,
     nodes: HaloArray,
     solver: Solver,
     slabs: SlabOrder,
@@ -41,14 +44,15 @@ pub(crate) struct GridLevel {
 
 impl GridLevel {
     pub(crate) fn new(domain: &Domain, parameters: GridParameters) -> Self {
-        let GridParameters { spacing_m, order, sigma_m } = parameters;
-        let sizes = grid_sizes(domain, spacing_m, sigma_m);
+        let GridParameters { spacing_m, order, window_shape, cloud } = parameters;
+        let sizes = grid_sizes(domain, spacing_m, cloud);
         let axes = Axis::ALL.map(|axis| GridAxis::new(domain, axis, sizes[axis.index()]));
-        let influence = Influence::new(&axes, order, sigma_m);
+        let window = Window::new(order, window_shape);
+        let influence = Influence::new(&axes, &window, cloud);
         let solver = Solver::new(&axes, influence);
         let nodes = HaloArray::new(&axes);
         let instructions = Instructions::detect().for_numbers(order);
-        Self { axes, order, nodes, solver, slabs: SlabOrder::default(), instructions }
+        Self { axes, order, window, nodes, solver, slabs: SlabOrder::default(), instructions }
     }
 
     /// Nodes that carry charge, per axis.
@@ -89,7 +93,7 @@ impl GridLevel {
     /// Slabs write their own planes and the beginning of the next slab's: even slabs first, then odd ones, so
     /// that every node adds its charges in an order that does not depend on the number of threads.
     fn spread<const P: usize>(&mut self, positions: &[Vector3<f64>], charges: &[f64]) {
-        let axes = &self.axes;
+        let (axes, window) = (&self.axes, &self.window);
         self.slabs
             .sort(positions.len(), axes[0].nodes, |i| first_node::<P>(axes[0].to_nodes(positions[i].x)));
         let plane = self.nodes.plane_len();
@@ -103,7 +107,7 @@ impl GridLevel {
                 for &particle in slabs.of(slab) {
                     let particle = particle as usize;
                     let place = node_place(axes, &positions[particle]);
-                    spread_one::<P>(instructions, place, charges[particle], steps, origin, nodes);
+                    spread_one::<P>(instructions, window, place, charges[particle], steps, origin, nodes);
                 }
             });
         }
@@ -116,7 +120,7 @@ impl GridLevel {
             for (field, position) in field.iter_mut().zip(positions) {
                 let place = node_place(&self.axes, position);
                 let mut found = [0.0; 4];
-                gather_one::<P>(self.instructions, place, steps, nodes, &mut found);
+                gather_one::<P>(self.instructions, &self.window, place, steps, nodes, &mut found);
                 let [slope_x, slope_y, slope_z, potential] = found;
                 let e = Vector3::new(slope_x * inverse[0], slope_y * inverse[1], slope_z * inverse[2]);
                 *field = (e, potential);
@@ -131,31 +135,33 @@ fn node_place(axes: &[GridAxis; 3], position: &Vector3<f64>) -> [f64; 3] {
     [axes[0].to_nodes(position.x), axes[1].to_nodes(position.y), axes[2].to_nodes(position.z)]
 }
 
-/// Index in an array with a halo of the first node that a spline touches.
+/// Index in an array with a halo of the first node that a window touches.
 #[inline(always)]
-fn corner<const P: usize>(weights: &Weights<P>, [plane, row]: [usize; 2]) -> usize {
+fn corner(weights: &Weights, [plane, row]: [usize; 2]) -> usize {
     let [x, y, z] = weights.first;
     with_halo(x) * plane + with_halo(y) * row + with_halo(z)
 }
 
 dispatched! {
     /// Adds a charge at a place (in node units) to the nodes of an array that begins at `origin`.
-    fn spread_one<const P: usize>(place: [f64; 3], charge: f64, steps: [usize; 2], origin: usize, nodes: &mut [f64])
-    = spread_charge
+    fn spread_one<const P: usize>(
+        window: &Window, place: [f64; 3], charge: f64, steps: [usize; 2], origin: usize, nodes: &mut [f64],
+    ) = spread_charge
 }
 
 #[inline(always)]
 fn spread_charge<const P: usize, V: Vector<Number = f64>>(
+    window: &Window,
     place: [f64; 3],
     charge: f64,
     steps: [usize; 2],
     origin: usize,
     nodes: &mut [f64],
 ) {
-    let weights = weights::<P>(place);
+    let weights = window.weights::<P, V>(place);
     let corner = corner(&weights, steps) - origin;
     let [wx, wy, wz] = weights.value;
-    let wz = vectors::<P, V>(&wz);
+    let wz = vectors::<V>(&wz);
     for i in 0..P {
         for j in 0..P {
             let row = &mut nodes[corner + i * steps[0] + j * steps[1]..][..MAX_ORDER];
@@ -171,32 +177,33 @@ fn spread_charge<const P: usize, V: Vector<Number = f64>>(
 /// Vectors of at most [`MAX_ORDER`] numbers.
 type Row<V> = [V; MAX_ORDER / 2];
 
-/// Numbers in vectors, zeros behind the last. Rows of nodes are read and written in whole vectors too: the halo has room
-/// for what lies beyond an order's last node.
+/// Numbers in vectors. Rows of nodes are read and written in whole vectors too: the halo has room for what lies beyond an
+/// order's last node.
 #[inline(always)]
-fn vectors<const P: usize, V: Vector<Number = f64>>(numbers: &[f64; P]) -> Row<V> {
-    let mut padded = [0.0; MAX_ORDER];
-    padded[..P].copy_from_slice(numbers);
+fn vectors<V: Vector<Number = f64>>(numbers: &[f64; MAX_ORDER]) -> Row<V> {
     let mut row = [V::splat(0.0); MAX_ORDER / 2];
-    for (v, vector) in row.iter_mut().enumerate().take(P.div_ceil(V::LANES)) {
-        *vector = V::load(&padded[v * V::LANES..]);
+    for (v, vector) in row.iter_mut().enumerate().take(MAX_ORDER / V::LANES) {
+        *vector = V::load(&numbers[v * V::LANES..]);
     }
     row
 }
 
 dispatched! {
     /// Slopes along x, y and z (per node spacing) and potential at a place (in node units).
-    fn gather_one<const P: usize>(place: [f64; 3], steps: [usize; 2], nodes: &[f64], found: &mut [f64; 4]) = gather_field
+    fn gather_one<const P: usize>(
+        window: &Window, place: [f64; 3], steps: [usize; 2], nodes: &[f64], found: &mut [f64; 4],
+    ) = gather_field
 }
 
 #[inline(always)]
 fn gather_field<const P: usize, V: Vector<Number = f64>>(
+    window: &Window,
     place: [f64; 3],
     steps: [usize; 2],
     nodes: &[f64],
     found: &mut [f64; 4],
 ) {
-    let weights = weights::<P>(place);
+    let weights = window.weights::<P, V>(place);
     let corner = corner(&weights, steps);
     let ([wx, wy, wz], [dx, dy, dz]) = (weights.value, weights.slope);
     let zero: Row<V> = [V::splat(0.0); MAX_ORDER / 2];
@@ -221,7 +228,7 @@ fn gather_field<const P: usize, V: Vector<Number = f64>>(
             along_y[v] = weight.mul_add(tilted[v], along_y[v]);
         }
     }
-    let (wz, dz) = (vectors::<P, V>(&wz), vectors::<P, V>(&dz));
+    let (wz, dz) = (vectors::<V>(&wz), vectors::<V>(&dz));
     *found = [
         joined(&along_x, &wz, count),
         joined(&along_y, &wz, count),
@@ -282,8 +289,8 @@ fn with_halo(node: isize) -> usize {
 }
 
 /// The three axes of a grid with nodes at most `spacing` apart.
-pub(crate) fn grid_sizes(domain: &Domain, spacing: f64, sigma: f64) -> [AxisSize; 3] {
+pub(crate) fn grid_sizes(domain: &Domain, spacing: f64, cloud: Cloud) -> [AxisSize; 3] {
     let slab = axis_kinds(domain).into_iter().filter(|kind| kind.is_open()).count() == 1;
-    let tail = if slab { 2.0 * TAIL_WIDTHS * singular_width([spacing; 3], sigma) } else { 0.0 };
+    let tail = if slab { 2.0 * TAIL_WIDTHS * singular_width([spacing; 3], cloud) } else { 0.0 };
     Axis::ALL.map(|axis| AxisSize::new(domain, axis, spacing, tail))
 }

@@ -1,9 +1,9 @@
 //! The internal grid: nodes at cell centres, transforms that know the faces, and the smooth level on it.
 
 pub(crate) mod axis;
-pub(crate) mod bspline;
 mod halo;
 pub(crate) mod influence;
 pub(crate) mod level;
 pub(crate) mod solve;
 pub(crate) mod transform;
+pub(crate) mod window;

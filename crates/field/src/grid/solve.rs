@@ -1,10 +1,10 @@
 //! Node charges to node potentials: forward transforms, influence function, inverse transforms.
 
 use super::axis::GridAxis;
-use super::bspline::HALO;
 use super::halo::HaloArray;
 use super::influence::Influence;
 use super::transform::LineScratch;
+use super::window::HALO;
 use crate::scratch::PerThread;
 use rayon::prelude::*;
 

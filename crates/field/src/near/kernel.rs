@@ -1,7 +1,7 @@
 //! The near kernel: a point charge's field less its cloud's, summed over candidates.
 //!
 //! E = Σ q r⃗ [1/r³ − S(r²)],  V = Σ q [1/r − P(r²)], with the cloud's S and P (see
-//! `amberfield_laws::gaussian_cloud`). Both are entire functions of r², so one polynomial each covers
+//! `amberfield_laws::kaiser_bessel_cloud`). Both are entire functions of r², so one polynomial each covers
 //! [0, r_c²] to any accuracy, with no table and no trouble at r ≪ r_c.
 //!
 //! Every candidate is computed and those beyond the cut-off are masked: with the candidates of a group side by side
@@ -9,9 +9,9 @@
 
 use super::candidates::Candidates;
 use super::cells::NearCells;
-use super::chebyshev::{chebyshev, monomials};
+use crate::chebyshev::{chebyshev, monomials};
 use crate::processor::{Instructions, Real, Vector};
-use amberfield_laws::gaussian_cloud::{cloud_field_over_r, cloud_potential};
+use amberfield_laws::kaiser_bessel_cloud::Cloud;
 
 /// Polynomial degrees for which the loop is unrolled.
 const DEGREES: [usize; 8] = [5, 7, 9, 11, 14, 18, 24, 32];
@@ -34,12 +34,14 @@ pub(crate) struct NearKernel<T> {
 }
 
 impl<T: Real> NearKernel<T> {
-    /// Kernel for clouds of width σ over the cut-off radius, the polynomials good to `accuracy` of the cloud's
-    /// value at its centre.
-    pub(crate) fn new(sigma_over_cutoff: f64, accuracy: f64) -> Self {
+    /// Kernel for clouds of the given shape that end at the cut-off radius, the polynomials good to `accuracy` of the
+    /// cloud's value at its centre.
+    pub(crate) fn new(cloud_shape: f64, accuracy: f64) -> Self {
         let highest = DEGREES[DEGREES.len() - 1];
-        let field = chebyshev(|r| cloud_field_over_r(r, sigma_over_cutoff), 2 * highest);
-        let potential = chebyshev(|r| cloud_potential(r, sigma_over_cutoff), 2 * highest);
+        let cloud = Cloud { radius: 1.0, shape: cloud_shape };
+        let radius = |y: f64| (0.5 * (1.0 + y)).sqrt();
+        let field = chebyshev(|y| cloud.field_over_r(radius(y)), 2 * highest);
+        let potential = chebyshev(|y| cloud.potential(radius(y)), 2 * highest);
         let fits = |series: &[f64], degree: usize| {
             let left_out: f64 = series[degree + 1..].iter().map(|c| c.abs()).sum();
             left_out <= accuracy * series.iter().map(|c| c.abs()).sum::<f64>()
@@ -245,7 +247,6 @@ mod tests {
     use super::*;
     use crate::images::ImageLattice;
     use amberfield_core::{Boundary, Domain};
-    use amberfield_laws::gaussian_cloud::{near_field_over_r, near_potential};
     use nalgebra::Vector3;
 
     /// A term of the sum is good to this many units in the last place of the point charge's term.
@@ -288,16 +289,17 @@ mod tests {
     }
 
     /// The scalar twin: field, potential, and the sums of the sizes of their point charges' terms.
-    fn exact(sigma: f64, scatter: &Scatter, target: usize) -> ([f64; 4], [f64; 2]) {
+    fn exact(shape: f64, scatter: &Scatter, target: usize) -> ([f64; 4], [f64; 2]) {
+        let cloud = Cloud { radius: 1.0, shape };
         let (mut sum, mut size) = ([0.0; 4], [0.0; 2]);
         for source in (0..COUNT).filter(|&source| source != target) {
             let d = (scatter.positions[target] - scatter.positions[source]) / CUTOFF;
             let (r, q) = (d.norm(), scatter.charges[source]);
             if r < 1.0 {
                 for axis in 0..3 {
-                    sum[axis] += q * d[axis] * near_field_over_r(r, sigma);
+                    sum[axis] += q * d[axis] * cloud.near_field_over_r(r);
                 }
-                sum[3] += q * near_potential(r, sigma);
+                sum[3] += q * cloud.near_potential(r);
                 size[0] += q.abs() / (r * r);
                 size[1] += q.abs() / r;
             }
@@ -305,20 +307,20 @@ mod tests {
         (sum, size)
     }
 
-    fn check<T: Real>(sigma: f64, accuracy: f64, instructions: Instructions) {
-        let scatter = scatter();
-        let kernel = NearKernel::<T>::new(sigma, accuracy).with_instructions(instructions);
+    fn check<T: Real>(shape: f64, accuracy: f64, instructions: Instructions) {
+        let (scatter, cloud) = (scatter(), Cloud { radius: 1.0, shape });
+        let kernel = NearKernel::<T>::new(shape, accuracy).with_instructions(instructions);
         let round_off = UNITS * if T::DOUBLE { f64::EPSILON } else { f64::from(f32::EPSILON) };
         for (source, sum) in sums(&kernel, &scatter).iter().enumerate() {
-            let (exact, size) = exact(sigma, &scatter, scatter.cells.real[source] as usize);
+            let (exact, size) = exact(shape, &scatter, scatter.cells.real[source] as usize);
             // Coordinates are rounded too: that counts by the inverse of the distance to the nearest.
             let rounding = round_off * (1.0 + 1.0 / sum.nearest_squared.sqrt());
             let polynomials = accuracy * COUNT as f64;
             for (value, expected) in sum.field.into_iter().zip(exact) {
-                let bound = rounding * size[0] + polynomials * cloud_field_over_r(0.0, sigma);
+                let bound = rounding * size[0] + polynomials * cloud.field_over_r(0.0);
                 assert!((value - expected).abs() < bound, "{instructions:?}: {value} for {expected}");
             }
-            let bound = rounding * size[1] + polynomials * cloud_potential(0.0, sigma);
+            let bound = rounding * size[1] + polynomials * cloud.potential(0.0);
             assert!(
                 (sum.potential - exact[3]).abs() < bound,
                 "{instructions:?}: potential {}",
@@ -339,11 +341,11 @@ mod tests {
             instructions == Instructions::Portable || Instructions::detect() != Instructions::Portable
         };
         for instructions in all.into_iter().filter(|&instructions| known(instructions)) {
-            for (sigma, accuracy) in [(0.33, 1e-3), (0.3, 1e-5), (0.25, 1e-6)] {
-                check::<f32>(sigma, accuracy, instructions);
+            for (shape, accuracy) in [(5.0, 1e-3), (7.0, 1e-5), (10.0, 1e-6)] {
+                check::<f32>(shape, accuracy, instructions);
             }
-            for (sigma, accuracy) in [(0.33, 1e-4), (0.25, 1e-7), (0.2, 1e-10), (0.17, 1e-12), (4.0, 1e-13)] {
-                check::<f64>(sigma, accuracy, instructions);
+            for (shape, accuracy) in [(5.0, 1e-4), (10.0, 1e-7), (14.0, 1e-10), (19.0, 1e-12), (1.0, 1e-13)] {
+                check::<f64>(shape, accuracy, instructions);
             }
         }
     }

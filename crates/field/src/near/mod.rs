@@ -2,7 +2,6 @@
 
 mod candidates;
 mod cells;
-mod chebyshev;
 mod kernel;
 
 use crate::images::ImageLattice;
@@ -31,10 +30,10 @@ const SINGLE_ROUND_OFF: f64 = 2e-7;
 /// What the near level is made of.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 pub(crate) struct NearParameters {
-    /// Gaussian width σ of the clouds that the smooth level carries [m].
-    pub sigma_m: f64,
-    /// Cut-off radius r_c [m].
+    /// Cut-off radius r_c, where the clouds that the smooth level carries end [m].
     pub cutoff_m: f64,
+    /// Shape β of the clouds.
+    pub cloud_shape: f64,
     /// Error of the kernel's polynomials over the cloud's value at its centre.
     pub kernel_accuracy: f64,
 }
@@ -72,12 +71,11 @@ struct Scratch {
 
 impl NearLevel {
     pub(crate) fn new(domain: &Domain, parameters: NearParameters) -> Self {
-        let NearParameters { sigma_m, cutoff_m, kernel_accuracy } = parameters;
-        let width = sigma_m / cutoff_m;
+        let NearParameters { cloud_shape, kernel_accuracy, .. } = parameters;
         Self {
             parameters,
-            single: parameters.is_single().then(|| NearKernel::new(width, kernel_accuracy)),
-            double: NearKernel::new(width, kernel_accuracy),
+            single: parameters.is_single().then(|| NearKernel::new(cloud_shape, kernel_accuracy)),
+            double: NearKernel::new(cloud_shape, kernel_accuracy),
             domain: domain.clone(),
             lattice: ImageLattice::new(domain),
             cells: NearCells::default(),

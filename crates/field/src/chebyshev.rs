@@ -1,12 +1,11 @@
-//! Polynomials of the cloud's field and potential.
+//! Polynomials that stand for smooth functions.
 
 use std::f64::consts::PI;
 
-/// The first `count` Chebyshev coefficients of a function of r, even and smooth on [0, 1], in y = 2r² − 1.
-pub(super) fn chebyshev(function: impl Fn(f64) -> f64, count: usize) -> Vec<f64> {
+/// The first `count` Chebyshev coefficients of a function smooth on [−1, 1], from as many samples.
+pub(crate) fn chebyshev(function: impl Fn(f64) -> f64, count: usize) -> Vec<f64> {
     let angle = |node: usize| PI * (node as f64 + 0.5) / count as f64;
-    let samples: Vec<f64> =
-        (0..count).map(|node| function((0.5 * (1.0 + angle(node).cos())).sqrt())).collect();
+    let samples: Vec<f64> = (0..count).map(|node| function(angle(node).cos())).collect();
     let coefficient = |degree: usize| {
         let sum: f64 =
             samples.iter().enumerate().map(|(node, value)| value * (degree as f64 * angle(node)).cos()).sum();
@@ -16,7 +15,7 @@ pub(super) fn chebyshev(function: impl Fn(f64) -> f64, count: usize) -> Vec<f64>
 }
 
 /// Power-series coefficients of a Chebyshev series.
-pub(super) fn monomials(series: &[f64]) -> Vec<f64> {
+pub(crate) fn monomials(series: &[f64]) -> Vec<f64> {
     let mut result = vec![0.0; series.len()];
     let (mut before, mut current) = (vec![0.0; series.len()], vec![0.0; series.len()]);
     before[0] = 1.0;
