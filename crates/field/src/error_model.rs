@@ -9,45 +9,14 @@
 //! ends where the cloud does and leaves nothing out.
 
 use crate::grid::window::Window;
-use crate::shapes::{self, Shapes};
+use crate::shapes::Shapes;
 use amberfield_laws::kaiser_bessel_cloud::Cloud;
 use std::f64::consts::PI;
-use std::ops::RangeInclusive;
-use std::sync::LazyLock;
 
 /// Quadrature points per axis of an octant of the zone.
-const ZONE_POINTS: usize = 7;
+const ZONE_POINTS: usize = 10;
 /// Aliases on either side.
 const ALIASES: i32 = 2;
-
-/// Orders of the windows.
-pub(crate) const ORDERS: RangeInclusive<usize> = 4..=8;
-/// Smallest and largest r_c/h considered: below, the model is no longer a model; above, order 8 has no use.
-const RATIOS: [f64; 2] = [1.0, 10.0];
-/// Intervals between them.
-const INTERVALS: usize = 24;
-
-/// Q by r_c/h for each order, as ln Q over ln r_c/h.
-static TABLES: LazyLock<Vec<Vec<[f64; 2]>>> = LazyLock::new(|| ORDERS.map(table).collect());
-
-fn table(order: usize) -> Vec<[f64; 2]> {
-    let [low, high] = RATIOS.map(f64::ln);
-    let at = |i: usize| low + (high - low) * i as f64 / INTERVALS as f64;
-    let error = |ln: f64| error_squared(order, ln.exp(), shapes::best(order, ln.exp()));
-    (0..=INTERVALS).map(|i| [at(i), error(at(i)).ln()]).collect()
-}
-
-/// Smallest r_c/h whose Q with the best shapes is at most `bound`.
-pub(crate) fn cutoff_over_spacing_for(order: usize, bound: f64) -> Option<f64> {
-    let (table, bound) = (&TABLES[order - ORDERS.start()], bound.ln());
-    let at = table.iter().position(|[_, value]| *value <= bound)?;
-    let [x1, value1] = table[at];
-    if at == 0 {
-        return Some(x1.exp());
-    }
-    let [x0, value0] = table[at - 1];
-    Some((x0 + (x1 - x0) * (value0 - bound) / (value0 - value1)).exp())
-}
 
 /// Q: squared error per q²n/h (4πε = 1) of a window of order p and a cut-off of `ratio` node spacings.
 pub(crate) fn error_squared(order: usize, ratio: f64, shapes: Shapes) -> f64 {
@@ -117,6 +86,7 @@ fn zone_integrand(cloud: Cloud, axis: [&AxisAliases; 3]) -> f64 {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::shapes;
 
     /// An independent program's √Q with three aliases on either side, which finds a little more.
     const MORE_ALIASES: f64 = 0.1;
@@ -137,16 +107,6 @@ mod tests {
                 "{order} {ratio}: {found:e} for {expected:e}"
             );
         }
-    }
-
-    #[test]
-    fn tables_invert_the_function() {
-        for order in ORDERS {
-            let found =
-                cutoff_over_spacing_for(order, error_squared(order, 2.7, shapes::best(order, 2.7))).unwrap();
-            assert!((found / 2.7 - 1.0).abs() < 2e-2, "{order}: {found}");
-        }
-        assert!(cutoff_over_spacing_for(8, 0.0).is_none());
     }
 
     #[test]

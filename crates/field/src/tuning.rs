@@ -1,9 +1,9 @@
 //! From a tolerance and a cloud of charges to the parameters of p3m: error model, candidates, timing, check.
 
-use crate::error_model::{ORDERS, cutoff_over_spacing_for, error_squared};
-use crate::grid::level::grid_sizes;
+use crate::error_model::error_squared;
+use crate::grid::level::{grid_sizes, node_spacings};
 use crate::p3m::{P3m, P3mParameters};
-use crate::shapes::{self, Shapes};
+use crate::shapes::{self, ORDERS, Shapes, cutoff_over_spacing_for};
 use crate::{FieldError, FieldMethod, FieldValues, Measured, Wanted};
 use amberfield_core::constants::coulomb_constant;
 use amberfield_core::{Domain, FieldSettings, Tuning};
@@ -32,15 +32,15 @@ const FIRST_LOOK: f64 = 0.05;
 mod cost {
     /// A pair within the cut-off in single and in double precision, the neighbours beyond it that are looked at
     /// included.
-    pub(super) const PAIR: [f64; 2] = [4.3, 18.0];
+    pub(super) const PAIR: [f64; 2] = [1.5, 2.8];
     /// A pair of the direct sum.
-    pub(super) const ALL_PAIRS: f64 = 3.7;
-    /// Spreading and gathering, per node of a spline.
-    pub(super) const NODE: f64 = 1.9;
+    pub(super) const ALL_PAIRS: f64 = 0.9;
+    /// Spreading and gathering, per node of a window.
+    pub(super) const NODE: f64 = 0.2;
     /// Transforms there and back, per padded node and factor log₂(nodes).
-    pub(super) const TRANSFORM: f64 = 2.2;
-    /// Sorting, looking for partners and summing, per particle.
-    pub(super) const PARTICLE: f64 = 450.0;
+    pub(super) const TRANSFORM: f64 = 0.9;
+    /// Sorting, looking for partners, polynomials of the window and summing, per particle.
+    pub(super) const PARTICLE: f64 = 160.0;
 }
 
 /// What a cloud of charges means for the error.
@@ -161,7 +161,7 @@ impl<'a> Tuner<'a> {
             if candidates.is_empty() {
                 break;
             }
-            let timed = self.fastest(&candidates)?;
+            let timed = self.fastest(&candidates, aim * scale)?;
             let measured = self.measure(timed, scale);
             tracing::debug!(?timed, aim, measured = measured.relative_rms, "p3m candidate");
             if measured.relative_rms <= ACCEPT * asked {
@@ -212,7 +212,7 @@ impl<'a> Tuner<'a> {
 
     /// A-priori relative error of parameters.
     pub(crate) fn estimate(&self, parameters: &P3mParameters, scale: f64) -> f64 {
-        let spacing = self.widest_spacing(parameters);
+        let spacing = widest_spacing(self.domain, parameters.spacing_m);
         let shapes = Shapes { cloud: parameters.cloud_shape, window: parameters.window_shape };
         let coefficient = error_squared(parameters.order, parameters.cutoff_m / spacing, shapes) / spacing;
         self.cloud.squared_error(self.settings.relative_permittivity, coefficient).sqrt() / scale
@@ -224,11 +224,6 @@ impl<'a> Tuner<'a> {
         let grid = self.candidates(&self.cloud, error).first().map_or(f64::INFINITY, |(cost, _)| *cost);
         let free = self.settings.cutoff_radius_m.is_none() && self.settings.grid_cells.is_none();
         free && cost::ALL_PAIRS * images as f64 * self.cloud.count * self.cloud.count < grid
-    }
-
-    fn widest_spacing(&self, parameters: &P3mParameters) -> f64 {
-        let sizes = grid_sizes(self.domain, parameters.spacing_m, parameters.cloud());
-        sizes.iter().map(|size| size.spacing).fold(0.0, f64::max)
     }
 
     fn best_by_model(&self, cloud: &Cloud, error: f64) -> Result<P3mParameters, FieldError> {
@@ -253,14 +248,12 @@ impl<'a> Tuner<'a> {
 
     /// Candidates with an error of `error` [V/m], cheapest first by the cost model: the best of each order.
     fn candidates(&self, cloud: &Cloud, error: f64) -> Vec<(f64, P3mParameters)> {
-        let one = cloud.squared_error(self.settings.relative_permittivity, 1.0);
-        let coefficient = error * error / one;
         let mut best: Vec<(f64, P3mParameters)> = Vec::new();
         for order in ORDERS {
             let of_order = self
                 .spacings(cloud)
                 .into_iter()
-                .filter_map(|spacing| self.candidate(order, spacing, coefficient, error))
+                .filter_map(|spacing| self.candidate(cloud, order, spacing, error))
                 .map(|parameters| (self.cost(cloud, &parameters), parameters))
                 .min_by(|a, b| a.0.total_cmp(&b.0));
             best.extend(of_order);
@@ -269,8 +262,12 @@ impl<'a> Tuner<'a> {
         best
     }
 
-    /// The least cut-off, or the fixed one where it is enough, for an error of squared `coefficient` [1/m].
-    fn candidate(&self, order: usize, spacing: f64, coefficient: f64, error: f64) -> Option<P3mParameters> {
+    /// The least cut-off, or the fixed one where it is enough, for an error of `error` [V/m] on nodes at most `spacing` apart.
+    fn candidate(&self, cloud: &Cloud, order: usize, spacing: f64, error: f64) -> Option<P3mParameters> {
+        /// A spacing that divides the box stays one when it is rounded.
+        const ROUNDING: f64 = 1e-12;
+        let coefficient = error * error / cloud.squared_error(self.settings.relative_permittivity, 1.0);
+        let spacing = widest_spacing(self.domain, spacing) * (1.0 + ROUNDING);
         let least = cutoff_over_spacing_for(order, coefficient * spacing)? * spacing;
         let cutoff = self.settings.cutoff_radius_m.unwrap_or(least);
         (cutoff >= least).then(|| with_best_shapes(order, cutoff, spacing, self.kernel_accuracy(error)))
@@ -312,26 +309,52 @@ impl<'a> Tuner<'a> {
         cloud.count * per_particle + cost::TRANSFORM * nodes * nodes.max(2.0).log2()
     }
 
-    /// The candidate with the shortest evaluation, or the cheapest by the model when timing is off.
-    fn fastest(&self, candidates: &[(f64, P3mParameters)]) -> Result<P3mParameters, FieldError> {
+    /// The candidate with the shortest evaluation, or the cheapest by the model when timing is off. Where near and grid level
+    /// balance depends on the processor: around the winner, spacings are tried until none is faster.
+    fn fastest(&self, candidates: &[(f64, P3mParameters)], error: f64) -> Result<P3mParameters, FieldError> {
         const WORTH_TIMING: f64 = 2.5;
-        if self.settings.tuning == Tuning::Model || candidates.len() == 1 {
+        const STEPS: [f64; 2] = [1.2, 1.0 / 1.2];
+        const MOST_STEPS: usize = 4;
+        if self.settings.tuning == Tuning::Model {
             return Ok(candidates[0].1);
         }
         let worth = candidates.iter().take(TIMED).filter(|(cost, _)| *cost < WORTH_TIMING * candidates[0].0);
-        let mut field = FieldValues::default();
         let mut best = (f64::INFINITY, candidates[0].1);
         for (_, parameters) in worth {
-            let mut p3m = P3m::new(self.domain, self.settings, *parameters);
-            for _ in 0..TIMED_TWICE_BELOW.div_ceil(self.positions.len().max(1)).min(2) {
-                let start = Instant::now();
-                p3m.evaluate(self.positions, self.charges, Wanted::default(), &mut field)?;
-                let seconds = start.elapsed().as_secs_f64();
-                if seconds < best.0 {
-                    best = (seconds, *parameters);
+            best = faster(best, (self.time(parameters)?, *parameters));
+        }
+        for step in STEPS.into_iter().filter(|_| self.settings.grid_cells.is_none()) {
+            for _ in 0..MOST_STEPS {
+                let (seconds, P3mParameters { order, spacing_m, .. }) = best;
+                let Some(next) = self.candidate(&self.cloud, order, spacing_m * step, error) else { break };
+                best = faster(best, (self.time(&next)?, next));
+                if best.0 >= seconds {
+                    break;
                 }
             }
         }
         Ok(best.1)
     }
+
+    /// Shortest of a few evaluations [s].
+    fn time(&self, parameters: &P3mParameters) -> Result<f64, FieldError> {
+        let mut field = FieldValues::default();
+        let mut p3m = P3m::new(self.domain, self.settings, *parameters);
+        let mut shortest = f64::INFINITY;
+        for _ in 0..TIMED_TWICE_BELOW.div_ceil(self.positions.len().max(1)).min(3) {
+            let start = Instant::now();
+            p3m.evaluate(self.positions, self.charges, Wanted::default(), &mut field)?;
+            shortest = shortest.min(start.elapsed().as_secs_f64());
+        }
+        Ok(shortest)
+    }
+}
+
+fn faster(a: (f64, P3mParameters), b: (f64, P3mParameters)) -> (f64, P3mParameters) {
+    if b.0 < a.0 { b } else { a }
+}
+
+/// Widest node spacing of a grid with nodes at most `spacing` apart.
+fn widest_spacing(domain: &Domain, spacing: f64) -> f64 {
+    node_spacings(domain, spacing).into_iter().fold(0.0, f64::max)
 }

@@ -294,3 +294,8 @@ pub(crate) fn grid_sizes(domain: &Domain, spacing: f64, cloud: Cloud) -> [AxisSi
     let tail = if slab { 2.0 * TAIL_WIDTHS * singular_width([spacing; 3], cloud) } else { 0.0 };
     Axis::ALL.map(|axis| AxisSize::new(domain, axis, spacing, tail))
 }
+
+/// Node spacings of the three axes of a grid with nodes at most `spacing` apart [m].
+pub(crate) fn node_spacings(domain: &Domain, spacing: f64) -> [f64; 3] {
+    Axis::ALL.map(|axis| AxisSize::new(domain, axis, spacing, 0.0).spacing)
+}

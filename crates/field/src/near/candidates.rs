@@ -24,6 +24,10 @@ pub(crate) struct Candidates<T> {
     pub(crate) y: Vec<T>,
     pub(crate) z: Vec<T>,
     pub(crate) charge: Vec<T>,
+    /// Zeros on either side of one square of a distance beyond the cut-off.
+    apart: Vec<T>,
+    /// By vector, before [`Self::cull`]: the lanes that stayed, and how many did before.
+    stayed: Vec<[u32; 2]>,
     len: usize,
 }
 
@@ -76,18 +80,55 @@ impl<T: Real> Candidates<T> {
         self.len = whole;
     }
 
-    /// Takes a candidate out of the sums, and tells where it is.
+    /// Vectors of x, y, z and charge from number `at` on.
     #[inline(always)]
-    pub(crate) fn hide(&mut self, own: usize) -> [T; 3] {
-        let place = [self.x[own], self.y[own], self.z[own]];
-        self.x[own] = T::narrow(FAR);
-        place
+    pub(crate) fn load<V: Vector<Number = T>>(&self, at: usize) -> [V; 4] {
+        let [x, y, z, charge] = self.arrays();
+        [V::load(&x[at..]), V::load(&y[at..]), V::load(&z[at..]), V::load(&charge[at..])]
     }
 
-    /// Undoes [`Self::hide`].
+    /// Drops candidates beyond the cut-off of a box, none within.
     #[inline(always)]
-    pub(crate) fn show(&mut self, own: usize, place: [T; 3]) {
-        self.x[own] = place[0];
+    pub(crate) fn cull<V: Vector<Number = T>>(&mut self, [low, high]: [[T; 3]; 2]) {
+        /// Above 1 by more than single precision rounds at such distances.
+        const BOUND: f64 = 1.00001;
+        let (zero, bound) = (V::splat(T::zero()), V::splat(T::narrow(BOUND)));
+        let [low_x, low_y, low_z] = low;
+        let [high_x, high_y, high_z] = high;
+        let (low_x, low_y, low_z) = (V::splat(low_x), V::splat(low_y), V::splat(low_z));
+        let (high_x, high_y, high_z) = (V::splat(high_x), V::splat(high_y), V::splat(high_z));
+        self.stayed.clear();
+        let mut kept = 0;
+        for at in (0..self.len).step_by(V::LANES) {
+            let [x, y, z, charge] = self.load::<V>(at);
+            let dx = low_x.sub(x).max(x.sub(high_x)).max(zero);
+            let dy = low_y.sub(y).max(y.sub(high_y)).max(zero);
+            let dz = low_z.sub(z).max(z.sub(high_z)).max(zero);
+            let lanes = dx.mul_add(dx, dy.mul_add(dy, dz.mul(dz))).below(bound);
+            self.stayed.push([lanes, kept]);
+            // In place: never ahead of what is read.
+            let to = kept as usize;
+            x.pack(lanes, &mut self.x[to..]);
+            y.pack(lanes, &mut self.y[to..]);
+            z.pack(lanes, &mut self.z[to..]);
+            charge.pack(lanes, &mut self.charge[to..]);
+            kept += lanes.count_ones();
+        }
+        self.len = kept as usize;
+        self.finish();
+    }
+
+    /// The number now of the candidate that had number `before` when [`Self::cull`] left it in.
+    #[inline(always)]
+    pub(crate) fn number<V: Vector<Number = T>>(&self, before: usize) -> usize {
+        let [lanes, kept] = self.stayed[before / V::LANES];
+        (kept + (lanes & ((1 << (before % V::LANES)) - 1)).count_ones()) as usize
+    }
+
+    /// What to add to the squares of the candidates' distances, so that `own` does not count.
+    #[inline(always)]
+    pub(crate) fn apart(&self, own: usize) -> &[T] {
+        &self.apart[self.apart.len() / 2 - own..][..self.len]
     }
 
     #[inline(always)]
@@ -97,6 +138,8 @@ impl<T: Real> Candidates<T> {
             for array in [&mut self.x, &mut self.y, &mut self.z, &mut self.charge] {
                 array.resize(2 * least, T::zero());
             }
+            self.apart = vec![T::zero(); 8 * least];
+            self.apart[4 * least] = T::narrow(FAR);
         }
     }
 }

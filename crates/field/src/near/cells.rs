@@ -7,12 +7,14 @@ use amberfield_core::Domain;
 use nalgebra::Vector3;
 use std::ops::Range;
 
-/// Edges of a cell in mean distances of the sources: along x, where runs of cells begin and end, and across.
-const EDGES: [f64; 3] = [0.7, 1.2, 1.2];
-/// Longest edge of a cell: longer ones offer too many sources beyond the cut-off.
+/// Edge of a cell along x, where runs of cells begin and end, in mean distances of the sources.
+const ALONG: f64 = 0.5;
+/// Longest and shortest edge along x over the cut-off radius.
 const LONGEST: f64 = 0.7;
-/// Shortest edge of a cell: with shorter ones there are too many rows.
-const SHORTEST: f64 = 0.2;
+const SHORTEST: f64 = 0.1;
+/// Edges across are the cut-off radius over a whole number, so that no row is reached in vain; the number is this share of the
+/// root of the number of sources in a cube of that radius: some ten sources in a run pay for finding it.
+const ROWS_PER_ROOT: f64 = 0.6;
 /// Cells at most, per source; more would be empty.
 const CELLS_PER_SOURCE: usize = 4;
 /// Sources on the edge of the cut-off are found by rounding: a sliver more makes sure of them.
@@ -111,7 +113,8 @@ impl NearCells {
     fn shape(&mut self, size: &Vector3<f64>) {
         let distance = (size.product() / self.entries.len() as f64).cbrt();
         let most = CELLS_PER_SOURCE * self.entries.len() + 64;
-        let mut edges = EDGES.map(|edge| (edge * distance).clamp(SHORTEST, LONGEST));
+        let across = (ROWS_PER_ROOT * distance.powf(-1.5)).floor().max(1.0).recip();
+        let mut edges = [(ALONG * distance).clamp(SHORTEST, LONGEST), across, across];
         loop {
             #[expect(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "small and positive")]
             let counts = [0, 1, 2].map(|axis| ((size[axis] / edges[axis]).min(1e6) as usize).max(1));

@@ -4,26 +4,18 @@
 //! `amberfield_laws::kaiser_bessel_cloud`). Both are entire functions of r², so one polynomial each covers
 //! [0, r_c²] to any accuracy, with no table and no trouble at r ≪ r_c.
 //!
-//! Every candidate is computed and those beyond the cut-off are masked: with the candidates of a group side by side
-//! that costs less than packing the ones that count.
+//! The candidates of a group of targets are laid side by side, and those beyond the cut-off of the group's box are dropped. Every
+//! one left is computed, masked beyond the cut-off: that costs less than packing the ones that count for a single target.
 
 use super::candidates::Candidates;
 use super::cells::NearCells;
+use super::target::{Sum, sum_one, sum_two};
 use crate::chebyshev::{chebyshev, monomials};
 use crate::processor::{Instructions, Real, Vector};
 use amberfield_laws::kaiser_bessel_cloud::Cloud;
 
 /// Polynomial degrees for which the loop is unrolled.
 const DEGREES: [usize; 8] = [5, 7, 9, 11, 14, 18, 24, 32];
-
-/// Field (x, y, z) and potential of a target in the kernel's units (4πε = 1), and the square of the distance to the
-/// nearest candidate.
-#[derive(Clone, Copy, Debug, Default, PartialEq)]
-pub(crate) struct Sum {
-    pub(crate) field: [f64; 3],
-    pub(crate) potential: f64,
-    pub(crate) nearest_squared: f64,
-}
 
 /// Polynomials of the cloud in y = 2r²/r_c² − 1, lowest degree first, in units of r_c.
 #[derive(Clone, Debug)]
@@ -158,15 +150,22 @@ fn sum_group<V: Vector, const N: usize, const POTENTIAL: bool>(
     let field: &[V::Number; N] = kernel.field[..].try_into().expect("N coefficients");
     let potential: &[V::Number; N] = kernel.potential[..].try_into().expect("N coefficients");
     let shift = gather::<V>(group, candidates);
-    for (&target, sum) in group.targets.iter().zip(sums) {
-        let own = (target as usize).wrapping_add(shift);
-        let place = candidates.hide(own);
-        *sum = sum_at::<V, N, POTENTIAL>(field, potential, candidates, place);
-        candidates.show(own, place);
+    let own = |target: u32| candidates.number::<V>((target as usize).wrapping_add(shift));
+    let polynomials = (field, potential);
+    for (targets, sums) in group.targets.chunks(2).zip(sums.chunks_mut(2)) {
+        match (targets, sums) {
+            (&[first, second], [first_sum, second_sum]) => {
+                let own = [own(first), own(second)];
+                [*first_sum, *second_sum] = sum_two::<V, N, POTENTIAL>(polynomials, candidates, own);
+            }
+            (&[only], [sum, ..]) => *sum = sum_one::<V, N, POTENTIAL>(polynomials, candidates, own(only)),
+            _ => {}
+        }
     }
 }
 
-/// Lays the sources around a group side by side; a target's number among them is its number plus what is returned.
+/// Lays the sources around a group side by side and drops those beyond the cut-off of all; before that, a target's number among
+/// them was its number plus what is returned.
 #[inline(always)]
 fn gather<V: Vector>(group: Group<'_>, candidates: &mut Candidates<V::Number>) -> usize {
     let cells = group.cells;
@@ -187,59 +186,27 @@ fn gather<V: Vector>(group: Group<'_>, candidates: &mut Candidates<V::Number>) -
         candidates.append::<V>(sources, run, reference);
     }
     candidates.finish();
+    candidates.cull::<V>(bounds(candidates, group.targets, shift));
     shift
 }
 
+/// Lowest and highest coordinates of the targets among the candidates.
 #[inline(always)]
-fn sum_at<V: Vector, const N: usize, const POTENTIAL: bool>(
-    field: &[V::Number; N],
-    potential: &[V::Number; N],
-    candidates: &Candidates<V::Number>,
-    place: [V::Number; 3],
-) -> Sum {
-    let number = |value| V::splat(V::Number::narrow(value));
-    let (zero, one, two) = (number(0.0), number(1.0), number(2.0));
-    // Spelled out axis by axis: closures over arrays are not always inlined, and vectors in memory are slow.
-    let [px, py, pz] = place;
-    let (px, py, pz) = (V::splat(px), V::splat(py), V::splat(pz));
-    let [xs, ys, zs, charges] = candidates.arrays();
-    let (mut ex, mut ey, mut ez, mut total) = (zero, zero, zero, zero);
-    let mut nearest = two;
-    for at in (0..candidates.len()).step_by(V::LANES) {
-        let dx = px.sub(V::load(&xs[at..]));
-        let dy = py.sub(V::load(&ys[at..]));
-        let dz = pz.sub(V::load(&zs[at..]));
-        let charge = V::load(&charges[at..]);
-        let r2 = dx.mul_add(dx, dy.mul_add(dy, dz.mul(dz)));
-        nearest = nearest.min(r2);
-        let inverse = r2.inverse_root();
-        let argument = r2.mul_add(two, number(-1.0));
-        let point = inverse.mul(inverse).mul(inverse);
-        let weight = charge.mul(point.sub(horner(field, argument)));
-        let weight = r2.select_below(one, weight);
-        ex = weight.mul_add(dx, ex);
-        ey = weight.mul_add(dy, ey);
-        ez = weight.mul_add(dz, ez);
-        if POTENTIAL {
-            let value = charge.mul(inverse.sub(horner(potential, argument)));
-            total = total.add(r2.select_below(one, value));
+fn bounds<T: Real>(candidates: &Candidates<T>, targets: &[u32], shift: usize) -> [[T; 3]; 2] {
+    let [x, y, z, _] = candidates.arrays();
+    let place = |target: u32| {
+        let own = (target as usize).wrapping_add(shift);
+        [x[own], y[own], z[own]]
+    };
+    let [mut low, mut high] = [place(targets[0]); 2];
+    for &target in &targets[1..] {
+        let place = place(target);
+        for axis in 0..3 {
+            low[axis] = if place[axis] < low[axis] { place[axis] } else { low[axis] };
+            high[axis] = if place[axis] > high[axis] { place[axis] } else { high[axis] };
         }
     }
-    Sum {
-        field: [ex.total(), ey.total(), ez.total()],
-        potential: total.total(),
-        nearest_squared: nearest.smallest(),
-    }
-}
-
-/// Polynomial in every lane, highest power last in `coefficients`.
-#[inline(always)]
-fn horner<V: Vector, const N: usize>(coefficients: &[V::Number; N], argument: V) -> V {
-    let mut value = V::splat(coefficients[N - 1]);
-    for power in (0..N - 1).rev() {
-        value = value.mul_add(argument, V::splat(coefficients[power]));
-    }
-    value
+    [low, high]
 }
 
 #[cfg(test)]
@@ -272,20 +239,20 @@ mod tests {
         Scatter { positions, charges, cells }
     }
 
-    /// The sum at every source, in the kernel's units.
+    /// The sum at every source, in the kernel's units; sources of a row in groups of at most five.
     fn sums<T: Real>(kernel: &NearKernel<T>, scatter: &Scatter) -> Vec<Sum> {
         let mut candidates = Candidates::default();
-        let one = |source: u32| {
-            let mut sum = [Sum::default()];
-            let group = Group {
-                cells: &scatter.cells,
-                targets: &[source],
-                row: scatter.cells.row_of(source as usize),
-            };
-            kernel.sum(group, true, &mut candidates, &mut sum);
-            sum[0]
-        };
-        (0..COUNT as u32).map(one).collect()
+        let mut sums = vec![Sum::default(); COUNT];
+        let sources: Vec<u32> = (0..COUNT as u32).collect();
+        let row = |source: u32| scatter.cells.row_of(source as usize);
+        for together in sources.chunk_by(|&a, &b| row(a) == row(b)) {
+            for targets in together.chunks(5) {
+                let group = Group { cells: &scatter.cells, targets, row: row(targets[0]) };
+                let first = targets[0] as usize;
+                kernel.sum(group, true, &mut candidates, &mut sums[first..first + targets.len()]);
+            }
+        }
+        sums
     }
 
     /// The scalar twin: field, potential, and the sums of the sizes of their point charges' terms.

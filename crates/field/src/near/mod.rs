@@ -3,16 +3,18 @@
 mod candidates;
 mod cells;
 mod kernel;
+mod target;
 
 use crate::images::ImageLattice;
 use crate::scratch::PerThread;
 use amberfield_core::Domain;
 use candidates::Candidates;
 use cells::{IMAGE, NearCells};
-use kernel::{Group, NearKernel, Sum};
+use kernel::{Group, NearKernel};
 use nalgebra::Vector3;
 use rayon::prelude::*;
 use serde::{Deserialize, Serialize};
+use target::Sum;
 
 /// Targets handled by one task.
 const TASK: usize = 64;

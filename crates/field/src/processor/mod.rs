@@ -156,8 +156,15 @@ pub(crate) trait Vector: Copy {
     fn mul_add(self, factor: Self, term: Self) -> Self;
     /// The smaller in every lane.
     fn min(self, other: Self) -> Self;
+    /// The larger in every lane.
+    fn max(self, other: Self) -> Self;
     /// `value` where self is below `bound`, else 0.
     fn select_below(self, bound: Self, value: Self) -> Self;
+    /// Which lanes are below `bound`, the first in the lowest bit.
+    fn below(self, bound: Self) -> u32;
+    /// Writes the lanes of a mask one after another to the beginning of a slice with room for all lanes; what lies behind the
+    /// last of them is lost.
+    fn pack(self, lanes: u32, to: &mut [Self::Number]);
     /// An estimate of 1/√self, good to 2⁻¹¹ or better; of 0 it may be anything.
     fn estimate_inverse_root(self) -> Self;
     /// The first [`BLOCK`] numbers of a slice less a reference, to the beginning of another.

@@ -38,6 +38,24 @@ macro_rules! portable {
                 std::array::from_fn(|lane| if self[lane] < other[lane] { self[lane] } else { other[lane] })
             }
             #[inline(always)]
+            fn max(self, other: Self) -> Self {
+                std::array::from_fn(|lane| if self[lane] > other[lane] { self[lane] } else { other[lane] })
+            }
+            #[inline(always)]
+            fn below(self, bound: Self) -> u32 {
+                (0..$lanes).fold(0, |lanes, lane| lanes | u32::from(self[lane] < bound[lane]) << lane)
+            }
+            #[inline(always)]
+            fn pack(self, lanes: u32, to: &mut [$number]) {
+                let mut next = 0;
+                for lane in 0..$lanes {
+                    if lanes & 1 << lane != 0 {
+                        to[next] = self[lane];
+                        next += 1;
+                    }
+                }
+            }
+            #[inline(always)]
             fn select_below(self, bound: Self, value: Self) -> Self {
                 std::array::from_fn(|lane| if self[lane] < bound[lane] { value[lane] } else { 0.0 })
             }

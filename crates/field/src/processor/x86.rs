@@ -6,7 +6,7 @@ use std::arch::x86_64::*;
 /// A vector of the processor's from the names of its instructions.
 macro_rules! native {
     ($vector:ty, $number:ty, $lanes:literal, $splat:ident, $load:ident, $store:ident, $add:ident, $sub:ident,
-     $mul:ident, $fused:ident, $min:ident, $below:expr, $root:expr, $narrow:ident) => {
+     $mul:ident, $fused:ident, $min:ident, $max:ident, $select:expr, $below:expr, $pack:ident, $root:expr, $narrow:ident) => {
         impl Vector for $vector {
             type Number = $number;
             const LANES: usize = $lanes;
@@ -48,9 +48,24 @@ macro_rules! native {
                 unsafe { $min(self, other) }
             }
             #[inline(always)]
+            fn max(self, other: Self) -> Self {
+                // SAFETY: as above.
+                unsafe { $max(self, other) }
+            }
+            #[inline(always)]
+            fn below(self, bound: Self) -> u32 {
+                // SAFETY: as above.
+                unsafe { $below(self, bound) }
+            }
+            #[inline(always)]
+            fn pack(self, lanes: u32, to: &mut [$number]) {
+                // SAFETY: as above.
+                unsafe { $pack(self, lanes) }.write(to);
+            }
+            #[inline(always)]
             fn select_below(self, bound: Self, value: Self) -> Self {
                 // SAFETY: as above.
-                unsafe { $below(self, bound, value) }
+                unsafe { $select(self, bound, value) }
             }
             #[inline(always)]
             fn estimate_inverse_root(self) -> Self {
@@ -115,6 +130,72 @@ unsafe fn double_512(from: *const f64, reference: f64, to: *mut f64) {
     unsafe { _mm512_storeu_pd(to, _mm512_sub_pd(_mm512_loadu_pd(from), reference)) }
 }
 
+/// By mask: the places of its bits, lowest first.
+static BITS: [[u32; 8]; 256] = bits();
+
+const fn bits() -> [[u32; 8]; 256] {
+    let mut table = [[0; 8]; 256];
+    let mut mask = 0;
+    while mask < 256 {
+        let (mut bit, mut next) = (0, 0);
+        while bit < 8 {
+            if mask & 1 << bit != 0 {
+                table[mask][next] = bit;
+                next += 1;
+            }
+            bit += 1;
+        }
+        mask += 1;
+    }
+    table
+}
+
+/// By mask of four: the places of the halves of its doubles.
+static HALVES: [[u32; 8]; 16] = halves();
+
+const fn halves() -> [[u32; 8]; 16] {
+    let mut table = [[0; 8]; 16];
+    let mut mask = 0;
+    while mask < 16 {
+        let mut lane = 0;
+        while lane < 4 {
+            table[mask][2 * lane] = 2 * BITS[mask][lane];
+            table[mask][2 * lane + 1] = 2 * BITS[mask][lane] + 1;
+            lane += 1;
+        }
+        mask += 1;
+    }
+    table
+}
+
+#[target_feature(enable = "avx2,fma")]
+fn pack_256_single(values: __m256, lanes: u32) -> __m256 {
+    let places = &BITS[lanes as usize & 255];
+    // SAFETY: eight numbers are read from an array of eight.
+    let places = unsafe { _mm256_loadu_si256(places.as_ptr().cast()) };
+    _mm256_permutevar8x32_ps(values, places)
+}
+
+#[target_feature(enable = "avx2,fma")]
+fn pack_256_double(values: __m256d, lanes: u32) -> __m256d {
+    let places = &HALVES[lanes as usize & 15];
+    // SAFETY: eight numbers are read from an array of eight.
+    let places = unsafe { _mm256_loadu_si256(places.as_ptr().cast()) };
+    _mm256_castps_pd(_mm256_permutevar8x32_ps(_mm256_castpd_ps(values), places))
+}
+
+#[target_feature(enable = "avx512f,fma")]
+#[expect(clippy::cast_possible_truncation, reason = "sixteen lanes")]
+fn pack_512_single(values: __m512, lanes: u32) -> __m512 {
+    _mm512_maskz_compress_ps(lanes as u16, values)
+}
+
+#[target_feature(enable = "avx512f,fma")]
+#[expect(clippy::cast_possible_truncation, reason = "eight lanes")]
+fn pack_512_double(values: __m512d, lanes: u32) -> __m512d {
+    _mm512_maskz_compress_pd(lanes as u8, values)
+}
+
 native!(
     __m256,
     f32,
@@ -127,7 +208,10 @@ native!(
     _mm256_mul_ps,
     _mm256_fmadd_ps,
     _mm256_min_ps,
+    _mm256_max_ps,
     |a, bound, value| _mm256_and_ps(_mm256_cmp_ps::<_CMP_LT_OQ>(a, bound), value),
+    |a, bound| _mm256_movemask_ps(_mm256_cmp_ps::<_CMP_LT_OQ>(a, bound)).cast_unsigned(),
+    pack_256_single,
     |a| _mm256_rsqrt_ps(a),
     single_256
 );
@@ -143,7 +227,10 @@ native!(
     _mm256_mul_pd,
     _mm256_fmadd_pd,
     _mm256_min_pd,
+    _mm256_max_pd,
     |a, bound, value| _mm256_and_pd(_mm256_cmp_pd::<_CMP_LT_OQ>(a, bound), value),
+    |a, bound| _mm256_movemask_pd(_mm256_cmp_pd::<_CMP_LT_OQ>(a, bound)).cast_unsigned(),
+    pack_256_double,
     |a| _mm256_cvtps_pd(_mm_rsqrt_ps(_mm256_cvtpd_ps(a))),
     double_256
 );
@@ -159,7 +246,10 @@ native!(
     _mm512_mul_ps,
     _mm512_fmadd_ps,
     _mm512_min_ps,
+    _mm512_max_ps,
     |a, bound, value| _mm512_maskz_mov_ps(_mm512_cmp_ps_mask::<_CMP_LT_OQ>(a, bound), value),
+    |a, bound| u32::from(_mm512_cmp_ps_mask::<_CMP_LT_OQ>(a, bound)),
+    pack_512_single,
     |a| _mm512_rsqrt14_ps(a),
     single_512
 );
@@ -175,7 +265,10 @@ native!(
     _mm512_mul_pd,
     _mm512_fmadd_pd,
     _mm512_min_pd,
+    _mm512_max_pd,
     |a, bound, value| _mm512_maskz_mov_pd(_mm512_cmp_pd_mask::<_CMP_LT_OQ>(a, bound), value),
+    |a, bound| u32::from(_mm512_cmp_pd_mask::<_CMP_LT_OQ>(a, bound)),
+    pack_512_double,
     |a| _mm512_rsqrt14_pd(a),
     double_512
 );
