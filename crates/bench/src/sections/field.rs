@@ -37,7 +37,7 @@ pub(crate) fn measure(context: &Context) -> Result<()> {
     let clouds: &[(usize, f64)] = if context.quick {
         &[(1000, 0.4)]
     } else {
-        &[(10_000, 0.4), (100_000, 0.4), (10_000, 0.1), (100_000, 0.1), (1_000_000, 0.4)]
+        &[(10_000, 0.4), (10_000, 0.1), (100_000, 0.4), (100_000, 0.1), (1_000_000, 0.4)]
     };
     let mut rows: Vec<Row> = Vec::new();
     for &(grains, fraction) in clouds {

@@ -72,7 +72,7 @@ pub(crate) fn measure(context: &Context) -> Result<()> {
                 settings: format!("eps {}", point[0]),
             }));
         }
-        println!("{rows:?}");
+        rows.iter().filter(|row| row.grains == grains).for_each(|row| println!("{row:?}"));
         context.store.save(NAME, &rows)?;
     }
     Ok(())
