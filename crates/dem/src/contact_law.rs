@@ -6,74 +6,104 @@
 //! at high load and releasing it at low load (Thornton, Cummins & Cleary, Powder Technol. 233, 30 (2013)). The
 //! normal damping is kept to the end of the contact (δ = 0), where it pulls slightly: that is what makes the
 //! coefficient of restitution exact; friction sees no negative load.
+//!
+//! Numbers are one contact's, or those of several side by side: there is no branch in the law.
 
 use crate::material_pairs::PairConstants;
 use amberfield_core::Vector3;
 use amberfield_laws::rolling_friction;
+use nalgebra::SimdRealField;
 
 /// Geometry and motion of one contact of body i with body j; n points from i to j.
-pub(crate) struct Contact {
-    pub(crate) overlap: f64,
-    pub(crate) normal: Vector3<f64>,
+pub(crate) struct Contact<T> {
+    pub(crate) overlap: T,
+    pub(crate) normal: Vector3<T>,
     /// v_i − v_j of the centres.
-    pub(crate) velocity: Vector3<f64>,
+    pub(crate) velocity: Vector3<T>,
     /// a_i ω_i + a_j ω_j, a the distance from centre to contact.
-    pub(crate) spin: Vector3<f64>,
+    pub(crate) spin: Vector3<T>,
     /// ω_i − ω_j.
-    pub(crate) turning: Vector3<f64>,
+    pub(crate) turning: Vector3<T>,
     /// R*.
-    pub(crate) radius: f64,
+    pub(crate) radius: T,
     /// 1/m*.
-    pub(crate) inverse_mass: f64,
+    pub(crate) inverse_mass: T,
     /// Σ 1/(m r²) of the bodies.
-    pub(crate) inverse_moment: f64,
+    pub(crate) inverse_moment: T,
+}
+
+/// What a contact remembers.
+pub(crate) struct History<T> {
+    /// Tangential force of the spring [N].
+    pub(crate) spring: Vector3<T>,
+    /// Contact radius √(R*δ) of the last step [m].
+    pub(crate) contact_radius: T,
+    /// Torque of the rolling spring [N·m].
+    pub(crate) rolling: Vector3<T>,
+}
+
+impl History<f64> {
+    /// From how histories are stored: spring and contact radius, rolling spring.
+    #[inline(always)]
+    pub(crate) fn stored([x, y, z, contact_radius]: [f64; 4], rolling: [f64; 3]) -> Self {
+        Self { spring: Vector3::new(x, y, z), contact_radius, rolling: rolling.into() }
+    }
+
+    /// As it is stored.
+    #[inline(always)]
+    pub(crate) fn to_store(&self) -> ([f64; 4], [f64; 3]) {
+        let spring = self.spring;
+        ([spring.x, spring.y, spring.z, self.contact_radius], self.rolling.into())
+    }
 }
 
 /// What the contact does.
-pub(crate) struct Response {
+pub(crate) struct Response<T> {
     /// Force on i; −force on j.
-    pub(crate) force: Vector3<f64>,
+    pub(crate) force: Vector3<T>,
     /// n × F_t: times a_i on i, times a_j on j.
-    pub(crate) twist: Vector3<f64>,
+    pub(crate) twist: Vector3<T>,
     /// Rolling torque on i; the opposite on j.
-    pub(crate) rolling: Vector3<f64>,
+    pub(crate) rolling: Vector3<T>,
 }
 
 /// Inertia of a sphere about its contact over m r².
 const CONTACT_INERTIA: f64 = 7.0 / 5.0;
 
-/// `spring` holds the tangential force and the contact radius √(R*δ) of the last step.
+/// Force and torque now; `step` [s] advances the springs.
 #[inline(always)]
-pub(crate) fn respond<const FRICTION: bool, const ROLLING: bool, const DAMPING: bool>(
-    contact: &Contact,
-    pair: &PairConstants,
-    step: f64,
-    spring: &mut [f64; 4],
-    rolling: &mut [f64; 3],
-) -> Response {
+pub(crate) fn respond<T, const FRICTION: bool, const ROLLING: bool, const DAMPING: bool>(
+    contact: &Contact<T>,
+    pair: &PairConstants<T>,
+    step: T,
+    history: &mut History<T>,
+) -> Response<T>
+where
+    T: SimdRealField<Element = f64> + Copy,
+{
     let Contact { overlap, normal, velocity, .. } = *contact;
-    let contact_radius = (overlap * contact.radius).sqrt();
+    let (zero, one) = (T::zero(), T::one());
+    let contact_radius = (overlap * contact.radius).simd_sqrt();
     let approach = velocity.dot(&normal);
-    let damping = if DAMPING { pair.damping * (contact_radius / contact.inverse_mass).sqrt() } else { 0.0 };
+    let damping =
+        if DAMPING { pair.damping * (contact_radius / contact.inverse_mass).simd_sqrt() } else { zero };
     let load = pair.hertz * contact_radius * overlap + damping * approach;
     let mut response = Response { force: normal * -load, twist: Vector3::zeros(), rolling: Vector3::zeros() };
     if FRICTION {
         let sliding = velocity - normal * approach + contact.spin.cross(&normal);
         let stiffness = pair.tangential * contact_radius;
         let dashpot = sliding * (damping * pair.tangential_ratio);
-        let mut elastic = turned(Vector3::new(spring[0], spring[1], spring[2]), &normal);
-        if contact_radius < spring[3] {
-            elastic *= contact_radius / spring[3];
-        }
-        elastic -= sliding * (stiffness * step);
-        let mut tangential = elastic - dashpot;
-        let bound = pair.friction * load.max(0.0);
-        let size2 = tangential.norm_squared();
-        if size2 > bound * bound {
-            tangential *= bound / size2.sqrt();
-            elastic = tangential + dashpot;
-        }
-        *spring = [elastic.x, elastic.y, elastic.z, contact_radius];
+        let unloading = contact_radius.simd_lt(history.contact_radius);
+        let shrunk = (contact_radius / history.contact_radius).select(unloading, one);
+        let elastic = turned(history.spring, &normal) * shrunk - sliding * (stiffness * step);
+        let trial = elastic - dashpot;
+        let bound = pair.friction * load.simd_max(zero);
+        let size2 = trial.norm_squared();
+        let slipping = size2.simd_gt(bound * bound);
+        let tangential = trial * (bound / size2.simd_sqrt()).select(slipping, one);
+        let slipped = tangential + dashpot;
+        history.spring = slipped.zip_map(&elastic, |slipped, elastic| slipped.select(slipping, elastic));
+        history.contact_radius = contact_radius;
         response.force += tangential;
         response.twist = normal.cross(&tangential);
     }
@@ -81,17 +111,12 @@ pub(crate) fn respond<const FRICTION: bool, const ROLLING: bool, const DAMPING: 
         let turning = contact.turning;
         let radius = contact.radius;
         let stiffness = rolling_friction::stiffness(pair.normal * contact_radius, pair.rolling, radius);
-        let dashpot = rolling_friction::damping(CONTACT_INERTIA / contact.inverse_moment, stiffness);
+        let dashpot =
+            rolling_friction::damping(T::splat(CONTACT_INERTIA) / contact.inverse_moment, stiffness);
         let bound = rolling_friction::largest(pair.rolling, radius, load);
-        let (new, torque) = rolling_friction::advance(
-            Vector3::from(*rolling),
-            turning * step,
-            turning,
-            stiffness,
-            dashpot,
-            bound,
-        );
-        *rolling = new.into();
+        let (new, torque) =
+            rolling_friction::advance(history.rolling, turning * step, turning, stiffness, dashpot, bound);
+        history.rolling = new;
         response.rolling = torque;
     }
     response
@@ -99,10 +124,10 @@ pub(crate) fn respond<const FRICTION: bool, const ROLLING: bool, const DAMPING: 
 
 /// The vector turned into the plane across `normal`, its length kept.
 #[inline(always)]
-fn turned(vector: Vector3<f64>, normal: &Vector3<f64>) -> Vector3<f64> {
-    let flat = vector - normal * vector.dot(normal);
+fn turned<T: SimdRealField<Element = f64> + Copy>(vector: Vector3<T>, normal: &Vector3<T>) -> Vector3<T> {
+    let flat = vector - *normal * vector.dot(normal);
     let (before, after) = (vector.norm_squared(), flat.norm_squared());
-    if after > 0.0 { flat * (before / after).sqrt() } else { flat }
+    flat * (before / after).simd_sqrt().select(after.simd_gt(T::zero()), T::one())
 }
 
 #[cfg(test)]
@@ -112,7 +137,7 @@ mod tests {
     #[test]
     fn turning_keeps_length_and_leaves_the_plane_empty_of_normal() {
         let normal = Vector3::new(0.0, 0.6, 0.8);
-        let flat = turned(Vector3::new(1.0, 2.0, 3.0), &normal);
+        let flat: Vector3<f64> = turned(Vector3::new(1.0, 2.0, 3.0), &normal);
         assert!((flat.norm() - 14.0_f64.sqrt()).abs() < 1e-14);
         assert!(flat.dot(&normal).abs() < 1e-14);
         assert_eq!(turned(Vector3::zeros(), &normal), Vector3::zeros());

@@ -94,7 +94,7 @@ pub(crate) fn contact(
 }
 
 struct Springs<'a> {
-    pair: &'a PairConstants,
+    pair: &'a PairConstants<f64>,
     features: Features,
     radius: f64,
     overlap: f64,

@@ -5,6 +5,7 @@
 
 mod cells;
 mod chunks;
+mod contact_batch;
 mod contact_law;
 mod energy;
 mod error;

@@ -6,30 +6,60 @@
 use amberfield_core::{Material, MaterialId};
 use amberfield_laws::{coulomb_friction, hertz_mindlin, restitution, rolling_friction};
 
-/// Constants of a pair of materials.
+/// Constants of a pair of materials, or of several side by side.
 #[derive(Clone, Copy, Debug)]
-pub(crate) struct PairConstants {
+pub(crate) struct PairConstants<T> {
     /// (4/3) Y* [Pa].
-    pub(crate) hertz: f64,
+    pub(crate) hertz: T,
     /// 2 Y* [Pa]: S_n = this · √(R*δ).
-    pub(crate) normal: f64,
+    pub(crate) normal: T,
     /// 8 G* [Pa]: S_t = this · √(R*δ).
-    pub(crate) tangential: f64,
+    pub(crate) tangential: T,
     /// 2√(5/6) β √(2Y*): γ_n = this · √(√(R*δ) m*).
-    pub(crate) damping: f64,
+    pub(crate) damping: T,
     /// √(S_t/S_n): γ_t = this · γ_n.
-    pub(crate) tangential_ratio: f64,
+    pub(crate) tangential_ratio: T,
     /// μ.
-    pub(crate) friction: f64,
+    pub(crate) friction: T,
     /// μ_r.
-    pub(crate) rolling: f64,
+    pub(crate) rolling: T,
+}
+
+impl<T> PairConstants<T> {
+    /// The same of every number.
+    #[inline(always)]
+    pub(crate) fn map<U>(self, each: impl Fn(T) -> U) -> PairConstants<U> {
+        PairConstants {
+            hertz: each(self.hertz),
+            normal: each(self.normal),
+            tangential: each(self.tangential),
+            damping: each(self.damping),
+            tangential_ratio: each(self.tangential_ratio),
+            friction: each(self.friction),
+            rolling: each(self.rolling),
+        }
+    }
+}
+
+impl<const LANES: usize> PairConstants<[f64; LANES]> {
+    /// Sets one of the lanes.
+    #[inline(always)]
+    pub(crate) fn set(&mut self, lane: usize, pair: &PairConstants<f64>) {
+        self.hertz[lane] = pair.hertz;
+        self.normal[lane] = pair.normal;
+        self.tangential[lane] = pair.tangential;
+        self.damping[lane] = pair.damping;
+        self.tangential_ratio[lane] = pair.tangential_ratio;
+        self.friction[lane] = pair.friction;
+        self.rolling[lane] = pair.rolling;
+    }
 }
 
 /// Table of all pairs.
 #[derive(Clone, Debug)]
 pub(crate) struct PairTable {
     materials: usize,
-    constants: Vec<PairConstants>,
+    constants: Vec<PairConstants<f64>>,
 }
 
 impl PairTable {
@@ -39,7 +69,7 @@ impl PairTable {
         Self { materials: materials.len(), constants }
     }
 
-    fn mix(a: &Material, b: &Material) -> PairConstants {
+    fn mix(a: &Material, b: &Material) -> PairConstants<f64> {
         let young = hertz_mindlin::effective_young(a.young_pa, a.poisson, b.young_pa, b.poisson);
         let shear = hertz_mindlin::effective_shear(a.young_pa, a.poisson, b.young_pa, b.poisson);
         let beta = restitution::damping_ratio(restitution::mixed(a.restitution, b.restitution));
@@ -54,9 +84,15 @@ impl PairTable {
         }
     }
 
+    /// Whether there is more than one pair.
+    #[inline(always)]
+    pub(crate) fn is_mixed(&self) -> bool {
+        self.materials > 1
+    }
+
     /// Constants of materials `a` and `b`.
     #[inline(always)]
-    pub(crate) fn get(&self, a: u16, b: u16) -> &PairConstants {
+    pub(crate) fn get(&self, a: u16, b: u16) -> &PairConstants<f64> {
         &self.constants[a as usize * self.materials + b as usize]
     }
 

@@ -2,7 +2,7 @@
 
 use crate::cells::{INDEX_BITS, INDEX_MASK};
 use crate::chunks::{CHUNK, chunk_count, for_each_chunk, is_parallel};
-use crate::contact_law::{Contact, respond};
+use crate::contact_batch::{BATCH, Batch};
 use crate::grains::Grains;
 use crate::material_pairs::PairTable;
 use crate::neighbours::{ChunkList, Hit, Neighbours, Push};
@@ -116,39 +116,42 @@ fn offset_of<const PERIODIC: bool>(scene: &Scene<'_>, a: &[f64; 4], b: &[f64; 4]
     if PERIODIC { d + Vector3::from(scene.shifts[(code >> INDEX_BITS) as usize]) } else { d }
 }
 
-/// Geometry and motion of the contact of i and j, and the distances of their centres from it.
+/// Reads the grains and the history of a touching entry into a lane of a batch.
 #[inline(always)]
-fn contact_of<const FRICTION: bool, const ROLLING: bool, const PERIODIC: bool>(
+fn read<const FRICTION: bool, const ROLLING: bool, const PERIODIC: bool>(
     scene: &Scene<'_>,
+    list: &ChunkList,
+    entry: usize,
     i: usize,
-    j: usize,
-    code: u32,
-) -> (Contact, f64, f64) {
+    batch: &mut Batch,
+    lane: usize,
+) {
     let grains = scene.grains;
+    let code = list.partner[entry];
+    let j = (code & INDEX_MASK) as usize;
     let (a, b) = (&grains.centre[i], &grains.centre[j]);
-    let offset = offset_of::<PERIODIC>(scene, a, b, code);
-    let distance = offset.norm();
-    let overlap = a[3] + b[3] - distance;
-    let (arm_i, arm_j) = (a[3] - 0.5 * overlap, b[3] - 0.5 * overlap);
-    let (inverse_i, inverse_j) = (grains.inverse_mass[i], grains.inverse_mass[j]);
-    let mut contact = Contact {
-        overlap,
-        normal: offset * (1.0 / distance),
-        velocity: grains.velocity[i] - grains.velocity[j],
-        spin: Vector3::zeros(),
-        turning: Vector3::zeros(),
-        radius: a[3] * b[3] / (a[3] + b[3]),
-        inverse_mass: inverse_i + inverse_j,
-        inverse_moment: 0.0,
-    };
+    batch.offset.set(lane, offset_of::<PERIODIC>(scene, a, b, code));
+    batch.velocity.set(lane, grains.velocity[i] - grains.velocity[j]);
+    (batch.radius[0][lane], batch.radius[1][lane]) = (a[3], b[3]);
+    (batch.inverse_mass[0][lane], batch.inverse_mass[1][lane]) =
+        (grains.inverse_mass[i], grains.inverse_mass[j]);
+    if scene.table.is_mixed() {
+        batch.pair.set(lane, scene.table.get(grains.material[i], grains.material[j]));
+    }
+    if FRICTION || ROLLING {
+        batch.angular[0].set(lane, grains.angular[i]);
+        batch.angular[1].set(lane, grains.angular[j]);
+    }
+    let touching = list.touching[entry];
     if FRICTION {
-        contact.spin = grains.angular[i] * arm_i + grains.angular[j] * arm_j;
+        let [x, y, z, contact_radius] = if touching { list.spring[entry] } else { [0.0; 4] };
+        batch.spring.set(lane, Vector3::new(x, y, z));
+        batch.contact_radius[lane] = contact_radius;
     }
     if ROLLING {
-        contact.turning = grains.angular[i] - grains.angular[j];
-        contact.inverse_moment = inverse_i / (a[3] * a[3]) + inverse_j / (b[3] * b[3]);
+        let spring = if touching { list.rolling[entry] } else { [0.0; 3] };
+        batch.rolling.set(lane, spring.into());
     }
-    (contact, arm_i, arm_j)
 }
 
 fn chunk<const FRICTION: bool, const ROLLING: bool, const DAMPING: bool, const PERIODIC: bool>(
@@ -164,47 +167,59 @@ fn chunk<const FRICTION: bool, const ROLLING: bool, const DAMPING: bool, const P
     list.filled.fill(false);
     let found = find_hits::<PERIODIC>(scene, first, list);
     list.contacts = found;
-    let grains = scene.grains;
-    for n in 0..found {
-        let Hit { entry, local, slot } = list.hits[n];
-        let (entry, local) = (entry as usize, local as usize);
-        let i = first + local;
-        let code = list.partner[entry];
-        let j = (code & INDEX_MASK) as usize;
-        let (contact, arm_i, arm_j) = contact_of::<FRICTION, ROLLING, PERIODIC>(scene, i, j, code);
-        let (mut spring, mut rolling) = ([0.0; 4], [0.0; 3]);
-        if (FRICTION || ROLLING) && list.touching[entry] {
-            if FRICTION {
-                spring = list.spring[entry];
-            }
-            if ROLLING {
-                rolling = list.rolling[entry];
-            }
+    let mut batch = Batch::new(*scene.table.get(0, 0));
+    let mut n = 0;
+    while n < found {
+        let size = BATCH.min(found - n);
+        for lane in 0..size {
+            let Hit { entry, local, .. } = list.hits[n + lane];
+            let i = first + local as usize;
+            read::<FRICTION, ROLLING, PERIODIC>(scene, list, entry as usize, i, &mut batch, lane);
         }
-        let pair = scene.table.get(grains.material[i], grains.material[j]);
-        let response =
-            respond::<FRICTION, ROLLING, DAMPING>(&contact, pair, scene.step, &mut spring, &mut rolling);
-        list.touching[entry] = true;
-        if FRICTION {
-            list.spring[entry] = spring;
+        batch.respond::<FRICTION, ROLLING, DAMPING>(scene.step);
+        for lane in 0..size {
+            write::<FRICTION, ROLLING>(list, n + lane, first, &batch, lane, force, torque);
         }
-        if ROLLING {
-            list.rolling[entry] = rolling;
-        }
-        let mut push = Push { force: -response.force, torque: Vector3::zeros() };
-        force[local] += response.force;
+        n += size;
+    }
+}
+
+/// Adds up what a lane's contact does, and keeps its history.
+#[inline(always)]
+fn write<const FRICTION: bool, const ROLLING: bool>(
+    list: &mut ChunkList,
+    hit: usize,
+    first: usize,
+    batch: &Batch,
+    lane: usize,
+    force: &mut [Vector3<f64>],
+    torque: &mut [Vector3<f64>],
+) {
+    let Hit { entry, local, slot } = list.hits[hit];
+    let (entry, local) = (entry as usize, local as usize);
+    let j = (list.partner[entry] & INDEX_MASK) as usize;
+    list.touching[entry] = true;
+    if FRICTION {
+        let spring = batch.spring.get(lane);
+        list.spring[entry] = [spring.x, spring.y, spring.z, batch.contact_radius[lane]];
+    }
+    if ROLLING {
+        list.rolling[entry] = batch.rolling.get(lane).into();
+    }
+    let on_i = batch.force.get(lane);
+    let mut push = Push { force: -on_i, torque: Vector3::zeros() };
+    force[local] += on_i;
+    if FRICTION || ROLLING {
+        torque[local] += batch.torque[0].get(lane);
+        push.torque = batch.torque[1].get(lane);
+    }
+    if let Some(force_j) = force.get_mut(j.wrapping_sub(first)) {
+        *force_j += push.force;
         if FRICTION || ROLLING {
-            torque[local] += response.twist * arm_i + response.rolling;
-            push.torque = response.twist * arm_j - response.rolling;
+            torque[j - first] += push.torque;
         }
-        if let Some(force_j) = force.get_mut(j.wrapping_sub(first)) {
-            *force_j += push.force;
-            if FRICTION || ROLLING {
-                torque[j - first] += push.torque;
-            }
-        } else {
-            list.outbox[slot as usize] = push;
-            list.filled[slot as usize] = true;
-        }
+    } else {
+        list.outbox[slot as usize] = push;
+        list.filled[slot as usize] = true;
     }
 }

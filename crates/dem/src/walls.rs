@@ -3,7 +3,7 @@
 mod near;
 
 use crate::chunks::{CHUNK, chunk_count, for_each_chunk, is_parallel};
-use crate::contact_law::{Contact, respond};
+use crate::contact_law::{Contact, History, respond};
 use crate::error::DemError;
 use crate::grains::Grains;
 use crate::material_pairs::{Features, PairTable};
@@ -289,8 +289,9 @@ impl ChunkWalls {
             let pair = table.get(grains.material[i], solid.material);
             for wall_contact in &mut kept[..count] {
                 let (contact, arm) = contact_of::<FRICTION, ROLLING>(grains, i, wall_contact);
-                let WallContact { spring, rolling, .. } = wall_contact;
-                let response = respond::<FRICTION, ROLLING, DAMPING>(&contact, pair, step, spring, rolling);
+                let mut history = History::stored(wall_contact.spring, wall_contact.rolling);
+                let response = respond::<_, FRICTION, ROLLING, DAMPING>(&contact, pair, step, &mut history);
+                (wall_contact.spring, wall_contact.rolling) = history.to_store();
                 force[local] += response.force;
                 if FRICTION || ROLLING {
                     torque[local] += response.twist * arm + response.rolling;
@@ -306,7 +307,7 @@ fn contact_of<const FRICTION: bool, const ROLLING: bool>(
     grains: &Grains,
     i: usize,
     found: &WallContact,
-) -> (Contact, f64) {
+) -> (Contact<f64>, f64) {
     let (radius, inverse_mass) = (grains.centre[i][3], grains.inverse_mass[i]);
     let arm = radius - found.overlap;
     let turning = if FRICTION || ROLLING { grains.angular[i] } else { Vector3::zeros() };

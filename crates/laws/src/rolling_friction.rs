@@ -8,14 +8,15 @@
 //! is below its limit. A constant directional torque (type A) would chatter about zero in a heap at rest; the
 //! spring gives rest without creeping energy. Source: Ai, Chen, Rotter & Ooi, Powder Technol. 206, 269 (2011),
 //! type C; Iwashita & Oda, J. Eng. Mech. 124, 285 (1998).
+//! A number may be one contact's or, side by side, those of several.
 //!
 //! ```
 //! use amberfield_laws::rolling_friction::{largest, stiffness};
-//! assert!((stiffness(1e4, 0.1, 1e-3) - 2.25e-4).abs() < 1e-15);
-//! assert!((largest(0.1, 1e-3, 2.0) - 2e-4).abs() < 1e-15);
+//! let (k, bound): (f64, f64) = (stiffness(1e4, 0.1, 1e-3), largest(0.1, 1e-3, 2.0));
+//! assert!((k - 2.25e-4).abs() < 1e-15 && (bound - 2e-4).abs() < 1e-15);
 //! ```
 
-use nalgebra::Vector3;
+use nalgebra::{SimdRealField, Vector3};
 
 /// Damping ratio η of the rolling dashpot, the value that Ai et al. recommend.
 pub const ROLLING_DAMPING_RATIO: f64 = 0.3;
@@ -23,47 +24,51 @@ pub const ROLLING_DAMPING_RATIO: f64 = 0.3;
 /// k_r [N·m/rad] for S_n [N/m], μ_r and R* [m].
 #[inline]
 #[must_use]
-pub fn stiffness(normal_stiffness: f64, rolling_friction: f64, effective_radius: f64) -> f64 {
+pub fn stiffness<T: SimdRealField<Element = f64> + Copy>(
+    normal_stiffness: T,
+    rolling_friction: T,
+    effective_radius: T,
+) -> T {
     let arm = rolling_friction * effective_radius;
-    2.25 * normal_stiffness * arm * arm
+    T::splat(2.25) * normal_stiffness * arm * arm
 }
 
 /// Largest rolling torque [N·m]: μ_r R* max(F_n, 0).
 #[inline]
 #[must_use]
-pub fn largest(rolling_friction: f64, effective_radius: f64, normal_force: f64) -> f64 {
-    rolling_friction * effective_radius * normal_force.max(0.0)
+pub fn largest<T: SimdRealField<Element = f64> + Copy>(
+    rolling_friction: T,
+    effective_radius: T,
+    normal_force: T,
+) -> T {
+    rolling_friction * effective_radius * normal_force.simd_max(T::zero())
 }
 
 /// C_r [N·m·s/rad] for the reduced inertia [kg·m²] and k_r [N·m/rad].
 #[inline]
 #[must_use]
-pub fn damping(reduced_inertia: f64, stiffness: f64) -> f64 {
-    2.0 * ROLLING_DAMPING_RATIO * (reduced_inertia * stiffness).sqrt()
+pub fn damping<T: SimdRealField<Element = f64> + Copy>(reduced_inertia: T, stiffness: T) -> T {
+    T::splat(2.0 * ROLLING_DAMPING_RATIO) * (reduced_inertia * stiffness).simd_sqrt()
 }
 
 /// One step of the spring: new spring torque and total torque on i [N·m]. `turn` = ω_r Δt [rad],
 /// `rolling_velocity` = ω_r [rad/s], `bound` as [`largest`] gives it.
 #[inline]
 #[must_use]
-pub fn advance(
-    spring: Vector3<f64>,
-    turn: Vector3<f64>,
-    rolling_velocity: Vector3<f64>,
-    stiffness: f64,
-    damping: f64,
-    bound: f64,
-) -> (Vector3<f64>, Vector3<f64>) {
+pub fn advance<T: SimdRealField<Element = f64> + Copy>(
+    spring: Vector3<T>,
+    turn: Vector3<T>,
+    rolling_velocity: Vector3<T>,
+    stiffness: T,
+    damping: T,
+    bound: T,
+) -> (Vector3<T>, Vector3<T>) {
     let trial = spring - turn * stiffness;
     let size2 = trial.norm_squared();
-    if size2 < bound * bound {
-        (trial, trial - rolling_velocity * damping)
-    } else if size2 > 0.0 {
-        let slipping = trial * (bound / size2.sqrt());
-        (slipping, slipping)
-    } else {
-        (Vector3::zeros(), Vector3::zeros())
-    }
+    let sticking = size2.simd_lt(bound * bound);
+    let kept = sticking | size2.simd_eq(T::zero());
+    let new = trial * T::one().select(kept, bound / size2.simd_sqrt());
+    (new, new - rolling_velocity * damping.select(sticking, T::zero()))
 }
 
 /// Rolling friction coefficient of two materials: the smaller one, as for sliding.
@@ -81,7 +86,7 @@ mod tests {
 
     #[test]
     fn spring_opposes_rolling_and_saturates() {
-        let turn = Vector3::new(0.1, 0.0, 0.0);
+        let turn: Vector3<f64> = Vector3::new(0.1, 0.0, 0.0);
         let (spring, torque) = advance(Vector3::zeros(), turn, Vector3::zeros(), 2.0, 0.0, 1.0);
         assert!((spring.x + 0.2).abs() < ROUND_OFF && torque == spring);
         let (spring, torque) = advance(Vector3::zeros(), turn * 100.0, turn, 2.0, 5.0, 1.0);
@@ -104,7 +109,7 @@ mod tests {
         assert_eq!(a, -b);
         assert_eq!(advance(turn, turn, turn, 1.0, 1.0, 0.0).1, Vector3::zeros());
         assert_eq!(largest(0.1, 1.0, -1.0), 0.0);
-        assert!((damping(4.0, 9.0) - 3.6).abs() < ROUND_OFF);
+        assert!((damping(4.0, 9.0) - 3.6_f64).abs() < ROUND_OFF);
         assert_eq!(mixed(0.2, 0.1), 0.1);
     }
 }
