@@ -228,6 +228,9 @@ impl Domain {
         for axis in Axis::ALL {
             if self.is_periodic(axis) {
                 let axis = axis.index();
+                if (self.min[axis]..self.max[axis]).contains(&point[axis]) {
+                    continue;
+                }
                 let length = self.max[axis] - self.min[axis];
                 let mut offset = (point[axis] - self.min[axis]).rem_euclid(length);
                 if offset >= length {

@@ -116,23 +116,26 @@ impl Cells {
         }
     }
 
-    /// Calls `found(entry)` for every partner whose gap is below the skin and which this grain's list holds:
-    /// larger indices of its own level and everything of coarser levels.
+    /// Appends every partner whose gap is below the skin and which this grain's list holds: larger indices of its own level
+    /// and everything of coarser levels.
     #[inline]
-    pub(crate) fn partners(&self, index: u32, level: u8, centre: &[f64; 4], mut found: impl FnMut(u32)) {
+    pub(crate) fn partners(&self, index: u32, level: u8, centre: &[f64; 4], found: &mut Vec<u32>) {
         for (depth, cells) in self.levels.iter().enumerate().skip(level as usize) {
-            let own = depth == level as usize;
-            cells.visit(centre, |other, entry| {
-                let (dx, dy, dz) = (other[0] - centre[0], other[1] - centre[1], other[2] - centre[2]);
-                let reach = other[3] + centre[3] + self.skin;
-                if dx * dx + dy * dy + dz * dz < reach * reach {
+            let coarser = depth != level as usize;
+            cells.visit(centre, |others, entries| {
+                // Every item is written, and overwritten by the next unless it counts: no branch to guess wrong.
+                let mut end = found.len();
+                found.resize(end + entries.len(), 0);
+                for (other, &entry) in others.iter().zip(entries) {
+                    let (dx, dy, dz) = (other[0] - centre[0], other[1] - centre[1], other[2] - centre[2]);
+                    let reach = other[3] + centre[3] + self.skin;
+                    let near = dx * dx + dy * dy + dz * dz < reach * reach;
                     let code = entry >> INDEX_BITS;
-                    let wanted =
-                        !own || if code == NO_SHIFT { entry & INDEX_MASK > index } else { code > NO_SHIFT };
-                    if wanted {
-                        found(entry);
-                    }
+                    let larger = (code == NO_SHIFT) & (entry & INDEX_MASK > index);
+                    found[end] = entry;
+                    end += usize::from(near & (coarser | larger | (code > NO_SHIFT)));
                 }
+                found.truncate(end);
             });
         }
     }
@@ -241,9 +244,9 @@ impl Level {
         ((z * self.cells[1] + y) * self.cells[0]) as usize
     }
 
-    /// Visits the items of the 27 cells around a point.
+    /// Visits the items of the 27 cells around a point, a row of cells at a time.
     #[inline]
-    fn visit(&self, centre: &[f64; 4], mut item: impl FnMut(&[f64; 4], u32)) {
+    fn visit(&self, centre: &[f64; 4], mut row_of_items: impl FnMut(&[[f64; 4]], &[u32])) {
         let [x, y, z] = self.cell(centre);
         let [nx, ny, nz] = self.cells;
         let (x0, x1) = ((x - 1).max(0), (x + 1).min(nx - 1));
@@ -255,9 +258,7 @@ impl Level {
                 let row = ((z * ny + y) * nx) as usize;
                 let first = self.start[row + x0 as usize] as usize;
                 let last = self.start[row + x1 as usize + 1] as usize;
-                for (other, &entry) in self.centre[first..last].iter().zip(&self.entry[first..last]) {
-                    item(other, entry);
-                }
+                row_of_items(&self.centre[first..last], &self.entry[first..last]);
             }
         }
     }
@@ -308,10 +309,11 @@ mod tests {
             cells.fill(&domain, &shifts(&domain), &centre, |k| level[k]);
             let mut pairs = Vec::new();
             for (i, c) in centre.iter().enumerate() {
-                cells.partners(i as u32, level[i], c, |entry| {
-                    let j = entry & INDEX_MASK;
-                    pairs.push((j.min(i as u32), j.max(i as u32)));
-                });
+                let mut found = Vec::new();
+                cells.partners(i as u32, level[i], c, &mut found);
+                pairs.extend(
+                    found.iter().map(|entry| entry & INDEX_MASK).map(|j| (j.min(i as u32), j.max(i as u32))),
+                );
             }
             pairs.sort_unstable();
             assert_eq!(pairs, all_pairs(&domain, &centre, skin));

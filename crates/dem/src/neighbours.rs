@@ -218,8 +218,7 @@ impl ChunkList {
         let (first, last) = (k * CHUNK, grains.len().min((k + 1) * CHUNK));
         for i in first..last {
             self.start.push(self.partner.len() as u32);
-            let partner = &mut self.partner;
-            cells.partners(i as u32, grains.level[i], &grains.centre[i], |entry| partner.push(entry));
+            cells.partners(i as u32, grains.level[i], &grains.centre[i], &mut self.partner);
         }
         let entries = self.partner.len();
         self.start.push(entries as u32);

@@ -68,7 +68,7 @@ impl Window {
         let first = [first_node::<P>(ux), first_node::<P>(uy), first_node::<P>(uz)];
         let mut weights = Weights { first, value: [[0.0; MAX_ORDER]; 3], slope: [[0.0; MAX_ORDER]; 3] };
         for (axis, u) in u.into_iter().enumerate() {
-            let way = V::splat(2.0 * (u + shift::<P>() - knot::<P>(u)) - 1.0);
+            let way = V::splat(2.0 * (u + shift::<P>() - knot::<P>(u) as f64) - 1.0);
             for lane in (0..P).step_by(V::LANES) {
                 let mut value = V::load(&self.coefficients[DEGREE][lane..]);
                 let mut slope = V::splat(0.0);
@@ -93,13 +93,15 @@ fn value(cloud: Cloud, x: f64) -> f64 {
 /// Lowest node that a window of order `P` at `u` (in node spacings, node i at i) touches.
 #[inline(always)]
 pub(crate) fn first_node<const P: usize>(u: f64) -> isize {
-    knot::<P>(u) as isize - (P as isize - 1) / 2
+    knot::<P>(u) - (P as isize - 1) / 2
 }
 
 /// The knot below `u`: where a window begins to touch another node.
 #[inline(always)]
-fn knot<const P: usize>(u: f64) -> f64 {
-    (u + shift::<P>()).floor()
+fn knot<const P: usize>(u: f64) -> isize {
+    /// No place lies as far below node 0: what is cut off is positive, and cutting needs no library where rounding would.
+    const BELOW: isize = 64;
+    (u + shift::<P>() + BELOW as f64) as isize - BELOW
 }
 
 #[inline(always)]
