@@ -15,6 +15,8 @@ const SHORTEST: f64 = 0.1;
 /// Edges across are the cut-off radius over a whole number, so that no row is reached in vain; the number is this share of the
 /// root of the number of sources in a cube of that radius: some ten sources in a run pay for finding it.
 const ROWS_PER_ROOT: f64 = 0.6;
+/// Most rows within a cut-off radius: looking at more of them would take longer than summing.
+const MOST_ROWS: f64 = 5.0;
 /// Cells at most, per source; more would be empty.
 const CELLS_PER_SOURCE: usize = 4;
 /// Sources on the edge of the cut-off are found by rounding: a sliver more makes sure of them.
@@ -113,7 +115,7 @@ impl NearCells {
     fn shape(&mut self, size: &Vector3<f64>) {
         let distance = (size.product() / self.entries.len() as f64).cbrt();
         let most = CELLS_PER_SOURCE * self.entries.len() + 64;
-        let across = (ROWS_PER_ROOT * distance.powf(-1.5)).floor().max(1.0).recip();
+        let across = (ROWS_PER_ROOT * distance.powf(-1.5)).floor().clamp(1.0, MOST_ROWS).recip();
         let mut edges = [(ALONG * distance).clamp(SHORTEST, LONGEST), across, across];
         loop {
             #[expect(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "small and positive")]
