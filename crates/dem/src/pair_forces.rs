@@ -168,19 +168,17 @@ fn chunk<const FRICTION: bool, const ROLLING: bool, const DAMPING: bool, const P
     let found = find_hits::<PERIODIC>(scene, first, list);
     list.contacts = found;
     let mut batch = Batch::new(*scene.table.get(0, 0));
-    let mut n = 0;
-    while n < found {
-        let size = BATCH.min(found - n);
+    for start in (0..found).step_by(BATCH) {
+        let size = BATCH.min(found - start);
         for lane in 0..size {
-            let Hit { entry, local, .. } = list.hits[n + lane];
+            let Hit { entry, local, .. } = list.hits[start + lane];
             let i = first + local as usize;
             read::<FRICTION, ROLLING, PERIODIC>(scene, list, entry as usize, i, &mut batch, lane);
         }
         batch.respond::<FRICTION, ROLLING, DAMPING>(scene.step);
         for lane in 0..size {
-            write::<FRICTION, ROLLING>(list, n + lane, first, &batch, lane, force, torque);
+            write::<FRICTION, ROLLING>(list, start + lane, first, &batch, lane, force, torque);
         }
-        n += size;
     }
 }
 

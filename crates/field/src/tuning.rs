@@ -1,7 +1,7 @@
 //! From a tolerance and a cloud of charges to the parameters of p3m: error model, candidates, timing, check.
 
 use crate::error_model::error_squared;
-use crate::grid::level::{grid_sizes, node_spacings};
+use crate::grid::level::{grid_sizes, widest_spacing};
 use crate::p3m::{P3m, P3mParameters};
 use crate::shapes::{self, ORDERS, Shapes, cutoff_over_spacing_for};
 use crate::{FieldError, FieldMethod, FieldValues, Measured, Wanted};
@@ -22,8 +22,9 @@ const SECOND_CUTOFF: f64 = 1.5;
 const ROUNDS: usize = 6;
 /// Nodes of the largest grid considered: 5 GiB.
 const MOST_NODES: f64 = 2e8;
-/// Fewer particles than this are evaluated twice for a time; of more, one evaluation is long enough.
-const TIMED_TWICE_BELOW: usize = 200_000;
+/// A time is the shortest of as many evaluations as this many particles need, three at most.
+const TIMED_PARTICLES: usize = 200_000;
+const MOST_EVALUATIONS: usize = 3;
 /// Candidates that are timed.
 const TIMED: usize = 4;
 /// Tolerance of the first look at E_rms.
@@ -341,7 +342,7 @@ impl<'a> Tuner<'a> {
         let mut field = FieldValues::default();
         let mut p3m = P3m::new(self.domain, self.settings, *parameters);
         let mut shortest = f64::INFINITY;
-        for _ in 0..TIMED_TWICE_BELOW.div_ceil(self.positions.len().max(1)).min(3) {
+        for _ in 0..TIMED_PARTICLES.div_ceil(self.positions.len().max(1)).min(MOST_EVALUATIONS) {
             let start = Instant::now();
             p3m.evaluate(self.positions, self.charges, Wanted::default(), &mut field)?;
             shortest = shortest.min(start.elapsed().as_secs_f64());
@@ -352,9 +353,4 @@ impl<'a> Tuner<'a> {
 
 fn faster(a: (f64, P3mParameters), b: (f64, P3mParameters)) -> (f64, P3mParameters) {
     if b.0 < a.0 { b } else { a }
-}
-
-/// Widest node spacing of a grid with nodes at most `spacing` apart.
-fn widest_spacing(domain: &Domain, spacing: f64) -> f64 {
-    node_spacings(domain, spacing).into_iter().fold(0.0, f64::max)
 }

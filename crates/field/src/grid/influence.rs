@@ -68,26 +68,25 @@ pub(crate) struct Influence {
 impl Influence {
     /// Influence function of a cloud that a window spreads.
     pub(crate) fn new(axes: &[GridAxis; 3], window: &Window, cloud: Cloud) -> Self {
-        let scale: f64 = axes.iter().map(|axis| axis.transform.scale() * axis.spacing).product();
         let wide = singular_width(axes.each_ref().map(|axis| axis.spacing), cloud);
-        let spread = wide * wide - cloud.mean_square();
-        let singular = |wave_squared: f64| (-0.5 * wave_squared * wide * wide).exp();
-        let open = axes.iter().position(|axis| axis.open);
         if axes.iter().all(|axis| axis.open) {
             return free_space(axes, window, cloud, wide);
         }
         let waves = axes.each_ref().map(|axis| AxisWaves::of(axis, window));
-        let values = match open {
+        let mut values = match axes.iter().position(|axis| axis.open) {
             None => table(&waves, 0.0, |_, wave_squared| cloud.spectrum(wave_squared)),
             Some(open) => {
                 let radius = axes[open].reach() + TAIL_WIDTHS * wide;
-                table(&waves, 0.5 * (spread - radius * radius), |wave, wave_squared| {
-                    cloud.spectrum(wave_squared)
-                        + slab_truncation(wave, open, radius) * singular(wave_squared)
+                let at_origin = 0.5 * (wide * wide - cloud.mean_square() - radius * radius);
+                table(&waves, at_origin, |wave, wave_squared| {
+                    truncated(cloud, wide, slab_truncation(wave, open, radius), wave_squared)
                 })
             }
         };
-        let values = values.into_iter().map(|value| 4.0 * PI / scale * value).collect();
+        let scale: f64 = axes.iter().map(|axis| axis.transform.scale() * axis.spacing).product();
+        for value in &mut values {
+            *value *= 4.0 * PI / scale;
+        }
         Self { dimensions: waves.map(|axis| axis.wave.len()), first: [0; 3], values }
     }
 
@@ -131,6 +130,11 @@ fn table(
     values
 }
 
+/// χ + (T − 1) e^{−k²Σ²/2}.
+fn truncated(cloud: Cloud, wide: f64, truncation: f64, wave_squared: f64) -> f64 {
+    cloud.spectrum(wave_squared) + truncation * (-0.5 * wave_squared * wide * wide).exp()
+}
+
 /// T(k) − 1 for a kernel cut at |z| = R along the open axis.
 fn slab_truncation(wave: Vector3<f64>, open_axis: usize, radius: f64) -> f64 {
     let across = wave[open_axis];
@@ -160,7 +164,7 @@ fn free_space(axes: &[GridAxis; 3], window: &Window, cloud: Cloud, wide: f64) ->
     let at_origin = 0.5 * (wide * wide - cloud.mean_square() + radius * radius);
     let mut values = table(&waves, at_origin, |_, wave_squared| {
         let truncation = -(wave_squared.sqrt() * radius).cos();
-        cloud.spectrum(wave_squared) + truncation * (-0.5 * wave_squared * wide * wide).exp()
+        truncated(cloud, wide, truncation, wave_squared)
     });
     let mut dimensions = wide_half.map(|half| half + 1);
     // In the order of the table: y, z, x.

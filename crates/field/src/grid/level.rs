@@ -295,7 +295,7 @@ pub(crate) fn grid_sizes(domain: &Domain, spacing: f64, cloud: Cloud) -> [AxisSi
     Axis::ALL.map(|axis| AxisSize::new(domain, axis, spacing, tail))
 }
 
-/// Node spacings of the three axes of a grid with nodes at most `spacing` apart [m].
-pub(crate) fn node_spacings(domain: &Domain, spacing: f64) -> [f64; 3] {
-    Axis::ALL.map(|axis| AxisSize::new(domain, axis, spacing, 0.0).spacing)
+/// Widest node spacing of a grid with nodes at most `spacing` apart [m].
+pub(crate) fn widest_spacing(domain: &Domain, spacing: f64) -> f64 {
+    Axis::ALL.map(|axis| AxisSize::new(domain, axis, spacing, 0.0).spacing).into_iter().fold(0.0, f64::max)
 }
