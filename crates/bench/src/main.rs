@@ -31,6 +31,9 @@ struct Arguments {
     /// Installs the peers into target/peers and measures them in the same run
     #[arg(long)]
     peers: bool,
+    /// Goes on where a broken-off run of the section `field` stopped: keeps the rows of its newest file
+    #[arg(long)]
+    resume: bool,
     /// Folder of the report
     #[arg(long, default_value = "docs/reports")]
     out: PathBuf,
@@ -49,6 +52,7 @@ enum Section {
 /// What a section needs to know.
 struct Context {
     quick: bool,
+    resume: bool,
     peers: Option<Peers>,
     store: Store,
 }
@@ -69,7 +73,12 @@ fn run(arguments: &Arguments) -> Result<()> {
         .nth(2)
         .expect("this crate lies two folders below the repository's root");
     let peers = if arguments.peers { Some(Peers::install(root)?) } else { None };
-    let context = Context { quick: arguments.quick, peers, store: Store::new(root.join(&arguments.out))? };
+    let context = Context {
+        quick: arguments.quick,
+        resume: arguments.resume,
+        peers,
+        store: Store::new(root.join(&arguments.out))?,
+    };
     let all = Section::value_variants();
     let wanted = if arguments.sections.is_empty() { all } else { &arguments.sections };
     for section in wanted {
