@@ -3,6 +3,7 @@
 use crate::boundary_field::BoundaryField;
 use crate::cutoff::Cutoff;
 use crate::direct::Direct;
+use crate::far::{FarField, FarLevel};
 use crate::images::{Geometry, ImageLattice};
 use crate::inputs::{check_charges_in_box, check_finite};
 use crate::kolehmainen::Kolehmainen;
@@ -67,6 +68,8 @@ pub struct ElectricField {
     choice: Choice,
     method: Box<dyn FieldMethod>,
     outside: Option<Outside>,
+    /// Cells of the field solver's mesh; `None` without one.
+    mesh_cells: Option<usize>,
     error_estimated: Option<f64>,
     error_measured: Option<Measured>,
 }
@@ -148,6 +151,70 @@ impl ElectricField {
         Ok(Self { error_estimated, error_measured, ..field })
     }
 
+    /// The field over somebody else's mesh, whose boundary conditions take the place of a domain's: p3m with three levels.
+    ///
+    /// # Errors
+    /// As [`Self::new`]; a method that has no far level.
+    pub fn over_mesh(
+        solver: Box<dyn FarField>,
+        settings: &FieldSettings,
+        positions: &[Vector3<f64>],
+        charges: &[f64],
+    ) -> Result<Self, FieldError> {
+        check_finite(positions, charges)?;
+        let far = far_level(solver, settings);
+        // Near level and middle grid are those of a periodic box as large as the middle grid's; no face of it takes charge.
+        let domain = far.domain_of_grid();
+        let alone = FieldSettings { neutralising_background: true, ..settings.clone() };
+        let wrapped: Vec<_> = positions.iter().map(|position| far.mesh().domain().wrap(*position)).collect();
+        let chosen = Tuner::new(&domain, &alone, &wrapped, charges).choose()?;
+        let field = Self::over_far(far, settings, chosen.parameters)?;
+        Ok(Self { error_estimated: chosen.estimated, error_measured: chosen.measured, ..field })
+    }
+
+    /// As [`Self::over_mesh`], with parameters chosen earlier.
+    ///
+    /// # Errors
+    /// A choice that is none of p3m's.
+    pub fn over_mesh_with_choice(
+        solver: Box<dyn FarField>,
+        settings: &FieldSettings,
+        choice: &Choice,
+    ) -> Result<Self, FieldError> {
+        let Choice::P3m(parameters) = choice else {
+            return Err(FieldError::Settings(format!(
+                "a mesh's field cannot have the parameters {choice:?}"
+            )));
+        };
+        Self::over_far(far_level(solver, settings), settings, *parameters)
+    }
+
+    fn over_far(
+        far: FarLevel,
+        settings: &FieldSettings,
+        parameters: P3mParameters,
+    ) -> Result<Self, FieldError> {
+        if settings.method != Method::P3m {
+            return Err(FieldError::Settings(format!(
+                "method {} has no far level on a solver's mesh; choose method p3m",
+                settings.method
+            )));
+        }
+        // What is measured later is measured as it was tuned.
+        let domain = far.domain_of_grid();
+        let alone = FieldSettings { neutralising_background: true, ..settings.clone() };
+        Ok(Self {
+            outside: Outside::new(far.mesh().domain(), settings)?,
+            domain,
+            mesh_cells: Some(far.mesh().cell_count()),
+            settings: alone,
+            choice: Choice::P3m(parameters),
+            method: Box::new(P3m::over(far, settings, parameters)),
+            error_estimated: None,
+            error_measured: None,
+        })
+    }
+
     /// Builds a field with parameters chosen earlier.
     ///
     /// # Errors
@@ -177,6 +244,7 @@ impl ElectricField {
             choice: choice.clone(),
             method,
             outside: Outside::new(domain, settings)?,
+            mesh_cells: None,
             error_estimated: None,
             error_measured: None,
         })
@@ -270,8 +338,13 @@ impl ElectricField {
     /// Which field stages are built and which are not, with reasons.
     #[must_use]
     pub fn plan(&self) -> Plan {
-        crate::plan::plan(&self.domain, &self.settings, &self.choice)
+        crate::plan::plan(&self.domain, &self.settings, &self.choice, self.mesh_cells)
     }
+}
+
+fn far_level(solver: Box<dyn FarField>, settings: &FieldSettings) -> FarLevel {
+    let permittivity = VACUUM_PERMITTIVITY * settings.relative_permittivity;
+    FarLevel::new(solver, permittivity, settings.neutralising_background)
 }
 
 /// As p3m checks at every evaluation, before anything is tuned.

@@ -9,6 +9,7 @@ mod direct;
 mod electric_field;
 mod error;
 mod error_model;
+pub mod far;
 mod grid;
 mod image_cells;
 mod images;

@@ -3,8 +3,13 @@
 use crate::Choice;
 use amberfield_core::{Domain, FieldSettings, Plan};
 
-/// Stages of a scene's field and what it leaves out.
-pub(crate) fn plan(domain: &Domain, settings: &FieldSettings, choice: &Choice) -> Plan {
+/// Stages of a scene's field and what it leaves out; over a solver's mesh of so many cells, if there is one.
+pub(crate) fn plan(
+    domain: &Domain,
+    settings: &FieldSettings,
+    choice: &Choice,
+    mesh_cells: Option<usize>,
+) -> Plan {
     let mut plan = Plan::new();
     match choice {
         Choice::Cutoff { cutoff_m } => {
@@ -28,8 +33,9 @@ pub(crate) fn plan(domain: &Domain, settings: &FieldSettings, choice: &Choice) -
                     parameters.cutoff_m, settings.tolerance
                 ),
             );
+            let stage = if mesh_cells.is_some() { "middle" } else { "grid" };
             plan.build(
-                "grid",
+                stage,
                 format!(
                     "smooth part, on nodes {:.4e} m apart, window of order {}",
                     parameters.spacing_m, parameters.order
@@ -37,7 +43,21 @@ pub(crate) fn plan(domain: &Domain, settings: &FieldSettings, choice: &Choice) -
             );
         }
     }
-    plan.leave_out("middle", "no external field solver: the internal grid carries middle and far level");
+    match mesh_cells {
+        Some(cells) => {
+            plan.build(
+                "far",
+                format!("what is smooth on {cells} cells of the field solver, with its boundary conditions"),
+            );
+            plan.leave_out("grid", "the field solver's mesh carries the far level");
+        }
+        None => {
+            plan.leave_out(
+                "middle",
+                "no external field solver: the internal grid carries middle and far level",
+            );
+        }
+    }
     if settings.external_field_v_m == nalgebra::Vector3::zeros() {
         plan.leave_out("external", "external_field_V_m is zero");
     } else {

@@ -72,17 +72,42 @@ impl Influence {
         if axes.iter().all(|axis| axis.open) {
             return free_space(axes, window, cloud, wide);
         }
-        let waves = axes.each_ref().map(|axis| AxisWaves::of(axis, window));
-        let mut values = match axes.iter().position(|axis| axis.open) {
-            None => table(&waves, 0.0, |_, wave_squared| cloud.spectrum(wave_squared)),
+        match axes.iter().position(|axis| axis.open) {
+            None => Self::closed(axes, window, 0.0, |_, wave_squared| cloud.spectrum(wave_squared)),
             Some(open) => {
                 let radius = axes[open].reach() + TAIL_WIDTHS * wide;
                 let at_origin = 0.5 * (wide * wide - cloud.mean_square() - radius * radius);
-                table(&waves, at_origin, |wave, wave_squared| {
+                Self::closed(axes, window, at_origin, |wave, wave_squared| {
                     truncated(cloud, wide, slab_truncation(wave, open, radius), wave_squared)
                 })
             }
-        };
+        }
+    }
+
+    /// Influence function of a cloud less a wider one: nothing is left beyond the wider one's end.
+    pub(crate) fn between(axes: &[GridAxis; 3], window: &Window, cloud: Cloud, wider: Cloud) -> Self {
+        let at_origin = 0.5 * (wider.mean_square() - cloud.mean_square());
+        Self::closed(axes, window, at_origin, |_, wave_squared| {
+            cloud.spectrum(wave_squared) - wider.spectrum(wave_squared)
+        })
+    }
+
+    /// What makes of charges the density of their clouds [C/m³] in place of a potential.
+    pub(crate) fn density(axes: &[GridAxis; 3], window: &Window, cloud: Cloud) -> Self {
+        Self::closed(axes, window, 0.25 / PI, |_, wave_squared| {
+            0.25 / PI * wave_squared * cloud.spectrum(wave_squared)
+        })
+    }
+
+    /// Influence function 4π `spectrum`/(k² W²), 4π `at_origin` where k = 0.
+    fn closed(
+        axes: &[GridAxis; 3],
+        window: &Window,
+        at_origin: f64,
+        spectrum: impl Fn(Vector3<f64>, f64) -> f64 + Sync,
+    ) -> Self {
+        let waves = axes.each_ref().map(|axis| AxisWaves::of(axis, window));
+        let mut values = table(&waves, at_origin, spectrum);
         let scale: f64 = axes.iter().map(|axis| axis.transform.scale() * axis.spacing).product();
         for value in &mut values {
             *value *= 4.0 * PI / scale;

@@ -43,12 +43,31 @@ pub(crate) struct GridLevel {
 }
 
 impl GridLevel {
+    /// The clouds' potential and field.
     pub(crate) fn new(domain: &Domain, parameters: GridParameters) -> Self {
+        Self::with(domain, parameters, Influence::new)
+    }
+
+    /// The clouds' potential and field less those of `wider` clouds, in a periodic domain.
+    pub(crate) fn between(domain: &Domain, parameters: GridParameters, wider: Cloud) -> Self {
+        Self::with(domain, parameters, |axes, window, cloud| Influence::between(axes, window, cloud, wider))
+    }
+
+    /// The clouds' density [C/m³] in place of a potential, in a periodic domain.
+    pub(crate) fn density(domain: &Domain, parameters: GridParameters) -> Self {
+        Self::with(domain, parameters, Influence::density)
+    }
+
+    fn with(
+        domain: &Domain,
+        parameters: GridParameters,
+        influence: impl Fn(&[GridAxis; 3], &Window, Cloud) -> Influence,
+    ) -> Self {
         let GridParameters { spacing_m, order, window_shape, cloud } = parameters;
         let sizes = grid_sizes(domain, spacing_m, cloud);
         let axes = Axis::ALL.map(|axis| GridAxis::new(domain, axis, sizes[axis.index()]));
         let window = Window::new(order, window_shape);
-        let influence = Influence::new(&axes, &window, cloud);
+        let influence = influence(&axes, &window, cloud);
         let solver = Solver::new(&axes, influence);
         let nodes = HaloArray::new(&axes);
         let instructions = Instructions::detect().for_numbers(order);

@@ -9,7 +9,7 @@ use crate::images::ImageLattice;
 use crate::scratch::PerThread;
 use amberfield_core::Domain;
 use candidates::Candidates;
-use cells::{IMAGE, NearCells};
+use cells::NearCells;
 use kernel::{Group, NearKernel};
 use nalgebra::Vector3;
 use rayon::prelude::*;
@@ -88,14 +88,16 @@ impl NearLevel {
         }
     }
 
-    /// Sorts charges and their images into cells. Positions lie inside the domain.
-    pub(crate) fn sort(&mut self, positions: &[Vector3<f64>], charges: &[f64]) {
+    /// Sorts charges and their images into cells; the field will be asked for at the first `targets` of them. Positions lie
+    /// inside the domain.
+    pub(crate) fn sort(&mut self, positions: &[Vector3<f64>], charges: &[f64], targets: usize) {
         self.largest = charges.iter().fold(0.0, |largest, charge| charge.abs().max(largest));
         let per_charge = if self.largest > 0.0 { 1.0 / self.largest } else { 0.0 };
         let Self { domain, lattice, parameters, cells, .. } = self;
         cells.build(domain, lattice, positions, charges, parameters.cutoff_m, per_charge);
         self.targets.clear();
-        let real = self.cells.real.iter().enumerate().filter(|(_, particle)| **particle != IMAGE);
+        // An image's index lies beyond any particle's.
+        let real = self.cells.real.iter().enumerate().filter(|(_, particle)| (**particle as usize) < targets);
         self.targets.extend(real.map(|(source, _)| source as u32));
     }
 

@@ -1,0 +1,141 @@
+//! A far field solved in this process, on equal cells of a box: the twin of the solver process for tests and comparisons.
+//!
+//! Seven-point finite volumes with walls at cell faces, as OpenFOAM's `Gauss linear` makes of such a mesh, and conjugate
+//! gradients.
+
+use amberfield_core::{Domain, Vector3};
+use amberfield_field::FieldError;
+use amberfield_field::far::{
+    Condition, FarField, FarMesh, FarMeshParts, FarRequest, FarSource, FarValues, Neighbour, SmoothDensity,
+};
+
+/// Relative residual at which the solver stops.
+const RESIDUAL: f64 = 1e-10;
+/// Iterations at most.
+const MOST_ITERATIONS: u64 = 10_000;
+
+/// Finite volumes on a box.
+#[derive(Debug)]
+pub struct BoxSolver {
+    mesh: FarMesh,
+    density: Option<(FarSource, SmoothDensity)>,
+}
+
+impl BoxSolver {
+    /// `counts` equal cells in a domain without open faces.
+    ///
+    /// # Errors
+    /// Open faces.
+    pub fn new(domain: &Domain, counts: [usize; 3]) -> Result<Self, FieldError> {
+        Ok(Self { mesh: FarMesh::new(FarMeshParts::of_box(domain, counts)?)?, density: None })
+    }
+
+    /// Charge of each cell [C].
+    fn charge_of_cells(&mut self, request: &FarRequest<'_>, cells: &[u32]) -> Vec<f64> {
+        let mut charge = vec![0.0; self.mesh.cell_count()];
+        match request.source {
+            FarSource::NearestCell => {
+                for (&cell, q) in cells.iter().zip(request.charges) {
+                    charge[cell as usize] += q;
+                }
+            }
+            FarSource::Clouds { radius_m, shape } => {
+                if self.density.as_ref().is_none_or(|(source, _)| *source != request.source) {
+                    let whole = self.mesh.domain();
+                    let density = SmoothDensity::new(whole, whole.min(), whole.max(), radius_m, shape);
+                    self.density = Some((request.source, density));
+                }
+                let (_, density) = self.density.as_mut().expect("just made");
+                density.clear();
+                density.add(request.positions, request.charges);
+                density.add(request.image_positions, request.image_charges);
+                density.at(self.mesh.centres(), &mut charge);
+                for (charge, volume) in charge.iter_mut().zip(self.mesh.volumes()) {
+                    *charge *= volume;
+                }
+            }
+        }
+        charge
+    }
+
+    /// Σ over the faces of area/distance (φ_here − φ_beyond), boundary values apart.
+    fn apply(&self, potential: &[f64], out: &mut [f64]) {
+        for (cell, out) in out.iter_mut().enumerate() {
+            *out = 0.0;
+            for face in self.mesh.faces_of(cell) {
+                match face.neighbour {
+                    Neighbour::Cell { cell: other, shift } => {
+                        let across = self.mesh.centres()[other as usize] + shift - self.mesh.centres()[cell];
+                        let conductance = self.mesh.volumes()[cell] / across.norm_squared();
+                        *out += conductance * (potential[cell] - potential[other as usize]);
+                    }
+                    Neighbour::Boundary(index) => {
+                        let face = &self.mesh.boundary()[index as usize];
+                        if matches!(face.condition, Condition::Potential(_)) {
+                            let distance = (face.centre - self.mesh.centres()[cell]).norm();
+                            *out += face.area / distance * potential[cell];
+                        }
+                    }
+                }
+            }
+        }
+    }
+}
+
+impl FarField for BoxSolver {
+    fn mesh(&self) -> &FarMesh {
+        &self.mesh
+    }
+
+    fn solve(&mut self, request: &FarRequest<'_>, values: &mut FarValues) -> Result<(), FieldError> {
+        values.cells.clear();
+        values.outside = 0;
+        for position in request.positions {
+            let (cell, inside) = self.mesh.locate(position, None);
+            values.cells.push(cell);
+            values.outside += u64::from(!inside);
+        }
+        let mut source = self.charge_of_cells(request, &values.cells);
+        for source in &mut source {
+            *source /= request.permittivity;
+        }
+        for (face, value) in self.mesh.boundary().iter().zip(request.boundary) {
+            source[face.cell as usize] += match face.condition {
+                Condition::Potential(_) => {
+                    face.area / (face.centre - self.mesh.centres()[face.cell as usize]).norm() * value
+                }
+                Condition::Slope(_) => face.area * value,
+            };
+        }
+        if !self.mesh.has_conductor() {
+            let mean = source.iter().sum::<f64>() / source.len() as f64;
+            source.iter_mut().for_each(|source| *source -= mean);
+        }
+        let count = source.len();
+        values.potential.resize(count, 0.0);
+        let mut product = vec![0.0; count];
+        self.apply(&values.potential, &mut product);
+        let mut rest: Vec<f64> = source.iter().zip(&product).map(|(b, a)| b - a).collect();
+        let mut direction = rest.clone();
+        let dot = |a: &[f64], b: &[f64]| a.iter().zip(b).map(|(a, b)| a * b).sum::<f64>();
+        let (aim, mut square) = (RESIDUAL * RESIDUAL * dot(&source, &source), dot(&rest, &rest));
+        values.iterations = 0;
+        while square > aim && values.iterations < MOST_ITERATIONS {
+            values.iterations += 1;
+            self.apply(&direction, &mut product);
+            let step = square / dot(&direction, &product);
+            for i in 0..count {
+                values.potential[i] += step * direction[i];
+                rest[i] -= step * product[i];
+            }
+            let next = dot(&rest, &rest);
+            for i in 0..count {
+                direction[i] = rest[i] + next / square * direction[i];
+            }
+            square = next;
+        }
+        values.residual = if aim > 0.0 { RESIDUAL * (square / aim).sqrt() } else { 0.0 };
+        values.e.resize(count, Vector3::zeros());
+        Ok(())
+    }
+}

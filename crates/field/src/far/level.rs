@@ -1,0 +1,165 @@
+//! The far level of p3m on somebody else's mesh.
+//!
+//! The grains' clouds are as wide as the mesh can carry; pairs and the middle grid carry the rest, images included, and reach
+//! the walls: what they make there is taken off the far level's boundary conditions,
+//!
+//! potential prescribed: φ_far = V − φ_short,  slope prescribed: ∂φ_far/∂n = ∂V/∂n + n·E_short,
+//!
+//! so that the sum keeps the case's own. Clouds are cut at the walls, not normalised anew.
+
+use super::images::WallImages;
+use super::local_fit::LocalFits;
+use super::mesh::{Condition, FarMesh};
+use super::{FarField, FarRequest, FarSource, FarValues};
+use crate::FieldError;
+use amberfield_core::{Axis, Boundary, Domain};
+use amberfield_laws::kaiser_bessel_cloud::Cloud;
+use nalgebra::Vector3;
+use rayon::prelude::*;
+
+/// Radius of the clouds over the mesh's largest cell size, and their shape: a root mean square width of 2.7 cells.
+const RADIUS_OF_CELL: f64 = 9.0;
+const SHAPE: f64 = 10.0;
+/// Depth up to which walls mirror charges, over the cell size.
+const DEPTH_OF_CELL: f64 = 4.0;
+
+/// The far level's share of the field.
+#[derive(Debug)]
+pub(crate) struct FarLevel {
+    solver: Box<dyn FarField>,
+    images: WallImages,
+    depth: f64,
+    fits: LocalFits,
+    cloud: Cloud,
+    permittivity: f64,
+    neutralising_background: bool,
+    image_positions: Vec<Vector3<f64>>,
+    image_charges: Vec<f64>,
+    boundary: Vec<f64>,
+    cells: Vec<u32>,
+    values: FarValues,
+}
+
+impl FarLevel {
+    /// `permittivity` of the medium [F/m].
+    pub(crate) fn new(solver: Box<dyn FarField>, permittivity: f64, neutralising_background: bool) -> Self {
+        let mesh = solver.mesh();
+        let size = mesh.largest_cell();
+        let depth = DEPTH_OF_CELL * size;
+        Self {
+            images: WallImages::new(mesh, depth),
+            depth,
+            fits: LocalFits::new(mesh),
+            cloud: Cloud { radius: RADIUS_OF_CELL * size, shape: SHAPE },
+            permittivity,
+            neutralising_background,
+            image_positions: Vec::new(),
+            image_charges: Vec::new(),
+            boundary: Vec::new(),
+            cells: Vec::new(),
+            values: FarValues::default(),
+            solver,
+        }
+    }
+
+    pub(crate) fn mesh(&self) -> &FarMesh {
+        self.solver.mesh()
+    }
+
+    /// The clouds as they come back: finite volumes and the fit widen them.
+    pub(crate) fn cloud_as_returned(&self) -> Cloud {
+        let widened = (1.0 + self.fits.smoothing() / self.cloud.mean_square()).max(0.0).sqrt();
+        Cloud { radius: self.cloud.radius * widened, ..self.cloud }
+    }
+
+    /// Where grains and images lie, open where the mesh ends.
+    pub(crate) fn domain_of_pairs(&self) -> Domain {
+        self.around(self.depth, Boundary::Open)
+    }
+
+    /// The middle grid's periodic box: so large that no copy of a charge is felt along axes that are not periodic.
+    pub(crate) fn domain_of_grid(&self) -> Domain {
+        self.around(self.depth + 0.5 * self.cloud_as_returned().radius, Boundary::Periodic)
+    }
+
+    fn around(&self, margin: f64, face: Boundary) -> Domain {
+        let domain = self.mesh().domain();
+        let periodic = Axis::ALL.map(|axis| domain.is_periodic(axis));
+        let margin = Vector3::from_fn(|axis, _| if periodic[axis] { 0.0 } else { margin });
+        let faces = periodic.map(|periodic| [if periodic { Boundary::Periodic } else { face }; 2]);
+        Domain::new(domain.min() - margin, domain.max() + margin, faces).expect("larger than a good domain")
+    }
+
+    /// Appends to the grains the places at the walls where the short-ranged field is asked for, without charge, and
+    /// the images. How many places the field is asked for at, grains included.
+    pub(crate) fn extend(&mut self, positions: &mut Vec<Vector3<f64>>, charges: &mut Vec<f64>) -> usize {
+        self.image_positions.clear();
+        self.image_charges.clear();
+        for (position, charge) in positions.iter().zip(&*charges).filter(|(_, charge)| **charge != 0.0) {
+            self.images.for_each(position, |image, factor| {
+                self.image_positions.push(image);
+                self.image_charges.push(factor * charge);
+            });
+        }
+        let boundary = self.solver.mesh().boundary();
+        positions.extend(boundary.iter().map(|face| face.centre));
+        charges.resize(positions.len(), 0.0);
+        let targets = positions.len();
+        positions.extend(&self.image_positions);
+        charges.extend(&self.image_charges);
+        targets
+    }
+
+    /// Solves for the far potential of the grains, with the short-ranged E [V/m] and potential [V] at the boundary's faces.
+    pub(crate) fn solve(
+        &mut self,
+        positions: &[Vector3<f64>],
+        charges: &[f64],
+        short: impl Iterator<Item = (Vector3<f64>, f64)>,
+    ) -> Result<(), FieldError> {
+        self.boundary.clear();
+        self.boundary.extend(self.solver.mesh().boundary().iter().zip(short).map(
+            |(face, (e, potential))| match face.condition {
+                Condition::Potential(volts) => volts - potential,
+                Condition::Slope(slope) => slope + face.normal.dot(&e),
+            },
+        ));
+        let request = FarRequest {
+            source: FarSource::Clouds { radius_m: self.cloud.radius, shape: self.cloud.shape },
+            positions,
+            charges,
+            image_positions: &self.image_positions,
+            image_charges: &self.image_charges,
+            boundary: &self.boundary,
+            permittivity: self.permittivity,
+            neutralising_background: self.neutralising_background,
+        };
+        self.solver.solve(&request, &mut self.values)?;
+        let mesh = self.solver.mesh();
+        self.fits.fit(mesh, &self.values.potential, &self.boundary);
+        self.locate(positions);
+        Ok(())
+    }
+
+    /// E [V/m] and potential [V] at the grains, after [`Self::solve`].
+    pub(crate) fn gather(&self, positions: &[Vector3<f64>], field: &mut [(Vector3<f64>, f64)]) {
+        let mesh = self.solver.mesh();
+        field.par_iter_mut().zip(positions).zip(&self.cells).for_each(|((field, position), &cell)| {
+            *field = self.fits.at(mesh, cell, position);
+        });
+    }
+
+    /// Each grain's cell, by a walk from its last one.
+    fn locate(&mut self, positions: &[Vector3<f64>]) {
+        let mesh = self.solver.mesh();
+        self.cells.resize(positions.len(), u32::MAX);
+        self.cells.par_iter_mut().zip(positions).for_each(|(cell, position)| {
+            let last = (*cell != u32::MAX).then_some(*cell);
+            *cell = mesh.locate(position, last).0;
+        });
+    }
+
+    pub(crate) fn memory_bytes(&self) -> usize {
+        self.fits.memory_bytes() + 32 * self.image_charges.capacity()
+    }
+}

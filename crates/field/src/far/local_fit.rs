@@ -1,0 +1,244 @@
+//! The potential within a cell: a quadratic through the cell's own value, fitted to those around it.
+//!
+//! φ(x) = φ_c + g·d + ½ d·H·d, d = (x − x_c)/h, h the cube root of the cell's volume, by least squares with the weights
+//! exp(−d²/(2 s²)) over the neighbours, their neighbours, the potentials of boundary faces and the slopes of others. Exact for
+//! quadratic potentials on any mesh.
+
+use super::mesh::{Condition, FarMesh, Neighbour};
+use nalgebra::{SMatrix, SVector, Vector3};
+use rayon::prelude::*;
+
+/// s: as narrow as leaves the mixed terms determined.
+const WEIGHT_WIDTH: f64 = 0.75;
+/// What keeps terms out of which no neighbour tells anything (a mesh one cell thick) at zero, over the largest of its kind.
+const RIDGE: f64 = 1e-9;
+/// Numbers of a fit: g and H.
+const TERMS: usize = 9;
+
+/// What a row of a fit is about.
+#[derive(Clone, Copy, Debug, PartialEq)]
+enum Source {
+    Cell(u32),
+    Face(u32),
+}
+
+/// One value's part in a cell's fit.
+#[derive(Clone, Copy, Debug)]
+struct Row {
+    source: Source,
+    /// By term, per volt.
+    part: [f32; TERMS],
+}
+
+/// g and H of a cell, in volts.
+type Fit = [f64; TERMS];
+
+/// Fits of all cells.
+#[derive(Debug)]
+pub(crate) struct LocalFits {
+    size: Vec<f64>,
+    first_row: Vec<usize>,
+    rows: Vec<Row>,
+    fits: Vec<Fit>,
+    potential: Vec<f64>,
+    smoothing: f64,
+}
+
+impl LocalFits {
+    pub(crate) fn new(mesh: &FarMesh) -> Self {
+        let cells: Vec<(Vec<Row>, f64)> =
+            (0..mesh.cell_count()).into_par_iter().map(|cell| rows_of(mesh, cell)).collect();
+        let mut first_row = vec![0];
+        first_row.extend(cells.iter().scan(0, |count, (rows, _)| {
+            *count += rows.len();
+            Some(*count)
+        }));
+        Self {
+            size: mesh.volumes().iter().map(|volume| volume.cbrt()).collect(),
+            first_row,
+            smoothing: cells.iter().map(|(_, smoothing)| smoothing).sum::<f64>() / cells.len() as f64,
+            rows: cells.into_iter().flat_map(|(rows, _)| rows).collect(),
+            fits: vec![[0.0; TERMS]; mesh.cell_count()],
+            potential: vec![0.0; mesh.cell_count()],
+        }
+    }
+
+    /// Variance [m²] by which finite volumes and this fit together widen a cloud's field, to leading order in (kh)²: what is
+    /// isotropic of their error.
+    pub(crate) fn smoothing(&self) -> f64 {
+        self.smoothing
+    }
+
+    pub(crate) fn memory_bytes(&self) -> usize {
+        size_of_val(&self.rows[..]) + self.fits.len() * (size_of::<Fit>() + 24)
+    }
+
+    /// Fits potentials at the cells' centres [V]; `boundary` holds φ or ∂φ/∂n by boundary face.
+    pub(crate) fn fit(&mut self, mesh: &FarMesh, potential: &[f64], boundary: &[f64]) {
+        self.potential.copy_from_slice(potential);
+        let (rows, first_row, size) = (&self.rows, &self.first_row, &self.size);
+        self.fits.par_iter_mut().enumerate().for_each(|(cell, fit)| {
+            *fit = [0.0; TERMS];
+            for row in &rows[first_row[cell]..first_row[cell + 1]] {
+                let value = match row.source {
+                    Source::Cell(other) => potential[other as usize] - potential[cell],
+                    Source::Face(face) => match mesh.boundary()[face as usize].condition {
+                        Condition::Potential(_) => boundary[face as usize] - potential[cell],
+                        Condition::Slope(_) => boundary[face as usize] * size[cell],
+                    },
+                };
+                for (term, part) in fit.iter_mut().zip(row.part) {
+                    *term += f64::from(part) * value;
+                }
+            }
+        });
+    }
+
+    /// E [V/m] and φ [V] at a point of a cell.
+    pub(crate) fn at(&self, mesh: &FarMesh, cell: u32, point: &Vector3<f64>) -> (Vector3<f64>, f64) {
+        let cell = cell as usize;
+        let d = (point - mesh.centres()[cell]) / self.size[cell];
+        let [x, y, z, xx, yy, zz, xy, xz, yz] = self.fits[cell];
+        let bend = Vector3::new(
+            xx * d.x + xy * d.y + xz * d.z,
+            xy * d.x + yy * d.y + yz * d.z,
+            xz * d.x + yz * d.y + zz * d.z,
+        );
+        let slope = Vector3::new(x, y, z);
+        let potential = self.potential[cell] + (slope + 0.5 * bend).dot(&d);
+        (-(slope + bend) / self.size[cell], potential)
+    }
+}
+
+/// The rows of a cell's fit, and its smoothing [m²].
+fn rows_of(mesh: &FarMesh, cell: usize) -> (Vec<Row>, f64) {
+    let here = mesh.centres()[cell];
+    let size = mesh.volumes()[cell].cbrt();
+    let mut around: Vec<(Source, Vector3<f64>)> = Vec::new();
+    let mut add = |source: Source, offset: Vector3<f64>| {
+        let known =
+            |(other, at): &(Source, Vector3<f64>)| *other == source && (at - offset).norm() < 1e-6 * size;
+        if offset.norm() > 1e-6 * size && !around.iter().any(known) {
+            around.push((source, offset));
+        }
+    };
+    let mut look = |cell: usize, shift: Vector3<f64>, next: &mut Vec<(usize, Vector3<f64>)>| {
+        for face in mesh.faces_of(cell) {
+            match face.neighbour {
+                Neighbour::Cell { cell, shift: further } => {
+                    let shift = shift + further;
+                    add(Source::Cell(cell), mesh.centres()[cell as usize] + shift - here);
+                    next.push((cell as usize, shift));
+                }
+                Neighbour::Boundary(index) => {
+                    add(Source::Face(index), mesh.boundary()[index as usize].centre + shift - here);
+                }
+            }
+        }
+    };
+    let (mut ring, mut beyond) = (Vec::new(), Vec::new());
+    look(cell, Vector3::zeros(), &mut ring);
+    for (neighbour, shift) in ring {
+        look(neighbour, shift, &mut beyond);
+    }
+    let equations: Vec<(SVector<f64, TERMS>, f64)> =
+        around.iter().map(|(source, offset)| equation(mesh, *source, &(offset / size))).collect();
+    let mut normal = SMatrix::<f64, TERMS, TERMS>::zeros();
+    for (terms, weight) in &equations {
+        normal += *weight * terms * terms.transpose();
+    }
+    for of_kind in [0..3, 3..TERMS] {
+        let largest = of_kind.clone().map(|term| normal[(term, term)]).fold(0.0, f64::max);
+        for term in of_kind {
+            normal[(term, term)] += RIDGE * largest.max(f64::MIN_POSITIVE);
+        }
+    }
+    let Some(factor) = normal.cholesky() else { return (Vec::new(), 0.0) };
+    let mut widening = 0.0;
+    let rows = around
+        .iter()
+        .zip(&equations)
+        .map(|((source, offset), (terms, weight))| {
+            let part = factor.solve(&(*weight * terms));
+            let along: f64 = (0..3).map(|axis| part[axis] * offset[axis] / size).sum();
+            widening += along * offset.norm_squared();
+            Row { source: *source, part: std::array::from_fn(|term| part[term] as f32) }
+        })
+        .collect();
+    (rows, finite_volumes_and_place(size) + widening / 15.0)
+}
+
+/// What finite volumes on cubes (−h²/10) and the quadratic's ends (−h²/12) take off again [m²].
+fn finite_volumes_and_place(size: f64) -> f64 {
+    -size * size * (1.0 / 10.0 + 1.0 / 12.0)
+}
+
+/// Terms and weight of a value at `d` (in cell sizes).
+fn equation(mesh: &FarMesh, source: Source, d: &Vector3<f64>) -> (SVector<f64, TERMS>, f64) {
+    let weight = (-0.5 * d.norm_squared() / (WEIGHT_WIDTH * WEIGHT_WIDTH)).exp();
+    let [x, y, z] = [d.x, d.y, d.z];
+    let terms = match source {
+        Source::Face(face) if matches!(mesh.boundary()[face as usize].condition, Condition::Slope(_)) => {
+            let n = mesh.boundary()[face as usize].normal;
+            [
+                n.x,
+                n.y,
+                n.z,
+                n.x * x,
+                n.y * y,
+                n.z * z,
+                n.x * y + n.y * x,
+                n.x * z + n.z * x,
+                n.y * z + n.z * y,
+            ]
+        }
+        _ => [x, y, z, 0.5 * x * x, 0.5 * y * y, 0.5 * z * z, x * y, x * z, y * z],
+    };
+    (SVector::from(terms), weight)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::super::mesh::FarMeshParts;
+    use super::*;
+    use amberfield_core::{Boundary, Domain};
+
+    fn mesh() -> FarMesh {
+        let insulating = Boundary::Insulating { normal_field_v_m: 0.0 };
+        let faces = [[Boundary::Grounded; 2], [insulating; 2], [Boundary::Grounded, insulating]];
+        let domain = Domain::new(Vector3::zeros(), Vector3::new(1.0, 1.2, 0.8), faces).unwrap();
+        FarMesh::new(FarMeshParts::of_box(&domain, [10, 12, 8]).unwrap()).unwrap()
+    }
+
+    #[test]
+    fn quadratic_potentials_are_exact_up_to_the_walls() {
+        let mesh = mesh();
+        let potential = |p: &Vector3<f64>| 1.0 + 2.0 * p.x - p.y * p.y + 3.0 * p.x * p.z + 0.5 * p.z * p.z;
+        let slope = |p: &Vector3<f64>| Vector3::new(2.0 + 3.0 * p.z, -2.0 * p.y, 3.0 * p.x + p.z);
+        let boundary: Vec<f64> = mesh
+            .boundary()
+            .iter()
+            .map(|face| match face.condition {
+                Condition::Potential(_) => potential(&face.centre),
+                Condition::Slope(_) => slope(&face.centre).dot(&face.normal),
+            })
+            .collect();
+        let mut fits = LocalFits::new(&mesh);
+        let values: Vec<f64> = mesh.centres().iter().map(potential).collect();
+        fits.fit(&mesh, &values, &boundary);
+        for (cell, centre) in mesh.centres().iter().enumerate() {
+            let point = centre + Vector3::new(0.05, -0.03, 0.04);
+            let (e, v) = fits.at(&mesh, cell as u32, &point);
+            assert!((e + slope(&point)).norm() < 1e-5 && (v - potential(&point)).abs() < 1e-6, "{cell} {e}");
+        }
+    }
+
+    #[test]
+    fn smoothing_of_cubes_is_between_that_of_central_differences_and_that_of_their_mean_over_rows() {
+        let domain =
+            Domain::new(Vector3::zeros(), Vector3::repeat(0.8), [[Boundary::Periodic; 2]; 3]).unwrap();
+        let mesh = FarMesh::new(FarMeshParts::of_box(&domain, [8; 3]).unwrap()).unwrap();
+        let smoothing = LocalFits::new(&mesh).smoothing() / 0.01;
+        assert!((0.0..0.3).contains(&smoothing), "{smoothing}");
+    }
+}

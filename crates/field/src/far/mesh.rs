@@ -1,0 +1,379 @@
+//! Cells of any shape, what lies beyond each of their faces, and in which of them a point lies.
+
+use crate::FieldError;
+use amberfield_core::{Axis, Boundary, Domain};
+use nalgebra::Vector3;
+use std::fmt::Display;
+
+/// How far beyond a face a point may lie, over the cell's size, and still count as inside.
+const ON_FACE: f64 = 1e-9;
+/// Cells of a walk at most, before the search begins anew.
+const LONGEST_WALK: usize = 10_000;
+/// Cells per bin of the table in which walks begin.
+const CELLS_PER_BIN: f64 = 2.0;
+/// Bins along an axis at most.
+const MOST_BINS: f64 = 256.0;
+
+/// What lies beyond a cell's face.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum Neighbour {
+    /// Another cell, seen moved by `shift` [m] where the face is cyclic (else zero).
+    Cell {
+        /// Its index.
+        cell: u32,
+        /// What is added to its coordinates.
+        shift: Vector3<f64>,
+    },
+    /// The end of the mesh: a boundary face's index.
+    Boundary(u32),
+}
+
+/// A face as one of its cells sees it.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct CellFace {
+    /// Unit normal out of the cell.
+    pub normal: Vector3<f64>,
+    /// Normal times the face's centre [m].
+    pub offset: f64,
+    /// What lies beyond.
+    pub neighbour: Neighbour,
+}
+
+/// What is prescribed on a boundary face.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum Condition {
+    /// The potential [V].
+    Potential(f64),
+    /// Its outward slope ∂V/∂n [V/m].
+    Slope(f64),
+}
+
+/// A face at the end of the mesh.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct BoundaryFace {
+    /// Centre [m].
+    pub centre: Vector3<f64>,
+    /// Unit normal out of the mesh.
+    pub normal: Vector3<f64>,
+    /// Area [m²].
+    pub area: f64,
+    /// Its cell.
+    pub cell: u32,
+    /// What is prescribed for the whole potential.
+    pub condition: Condition,
+}
+
+/// What a mesh is made of.
+#[derive(Clone, Debug)]
+pub struct FarMeshParts {
+    /// Bounding box, periodic along axes that cyclic faces join, open along the others.
+    pub domain: Domain,
+    /// Cell centres [m].
+    pub centres: Vec<Vector3<f64>>,
+    /// Cell volumes [m³].
+    pub volumes: Vec<f64>,
+    /// Where the faces of each cell begin in `faces`; one more than there are cells.
+    pub first_face: Vec<u32>,
+    /// Faces, cell by cell.
+    pub faces: Vec<CellFace>,
+    /// Faces at the end of the mesh.
+    pub boundary: Vec<BoundaryFace>,
+}
+
+/// The cells of a far level.
+#[derive(Clone, Debug)]
+pub struct FarMesh {
+    parts: FarMeshParts,
+    bins: Bins,
+}
+
+impl FarMesh {
+    /// Checks that every index is within bounds and every number finite.
+    ///
+    /// # Errors
+    /// The first part that makes no sense.
+    pub fn new(parts: FarMeshParts) -> Result<Self, FieldError> {
+        check(&parts)?;
+        let mut mesh = Self { bins: Bins::new(&parts), parts };
+        mesh.bins.fill(&mesh.parts);
+        Ok(mesh)
+    }
+
+    /// Number of cells.
+    #[must_use]
+    pub fn cell_count(&self) -> usize {
+        self.parts.centres.len()
+    }
+
+    /// Bounding box, periodic along axes that cyclic faces join, open along the others.
+    #[must_use]
+    pub fn domain(&self) -> &Domain {
+        &self.parts.domain
+    }
+
+    /// Cell centres [m].
+    #[must_use]
+    pub fn centres(&self) -> &[Vector3<f64>] {
+        &self.parts.centres
+    }
+
+    /// Cell volumes [m³].
+    #[must_use]
+    pub fn volumes(&self) -> &[f64] {
+        &self.parts.volumes
+    }
+
+    /// Faces of a cell.
+    #[must_use]
+    pub fn faces_of(&self, cell: usize) -> &[CellFace] {
+        &self.parts.faces[self.parts.first_face[cell] as usize..self.parts.first_face[cell + 1] as usize]
+    }
+
+    /// Faces at the end of the mesh.
+    #[must_use]
+    pub fn boundary(&self) -> &[BoundaryFace] {
+        &self.parts.boundary
+    }
+
+    /// Whether any boundary face prescribes the potential.
+    #[must_use]
+    pub fn has_conductor(&self) -> bool {
+        self.boundary().iter().any(|face| matches!(face.condition, Condition::Potential(_)))
+    }
+
+    /// Largest cell size, the cube root of the volume [m].
+    #[must_use]
+    pub fn largest_cell(&self) -> f64 {
+        self.volumes().iter().fold(0.0_f64, |largest, volume| largest.max(volume.cbrt()))
+    }
+
+    /// The cell that holds a point of the domain [m], and whether the point is in it (a point beyond the last face is
+    /// given to the cell in which the walk towards it ends). `last` is where it was before.
+    #[must_use]
+    pub fn locate(&self, point: &Vector3<f64>, last: Option<u32>) -> (u32, bool) {
+        if let Some((cell, true)) = last.map(|last| self.walk(point, last)) {
+            return (cell, true);
+        }
+        self.walk(point, self.bins.start(point))
+    }
+
+    /// Goes from cell to cell through the face that the point is farthest beyond.
+    fn walk(&self, point: &Vector3<f64>, from: u32) -> (u32, bool) {
+        let mut cell = from;
+        for _ in 0..LONGEST_WALK {
+            let size = self.parts.volumes[cell as usize].cbrt();
+            // Through the farthest face that leads on; a walk ends at the mesh's end only where no other face is crossed.
+            let (mut next, mut farthest, mut outside) = (None, ON_FACE * size, false);
+            for face in self.faces_of(cell as usize) {
+                let beyond = face.normal.dot(point) - face.offset;
+                if beyond <= ON_FACE * size {
+                    continue;
+                }
+                match face.neighbour {
+                    Neighbour::Cell { cell, shift } if shift == Vector3::zeros() => {
+                        if beyond > farthest {
+                            (next, farthest) = (Some(cell), beyond);
+                        }
+                    }
+                    _ => outside = true,
+                }
+            }
+            match next {
+                Some(next) => cell = next,
+                None => return (cell, !outside),
+            }
+        }
+        (cell, false)
+    }
+}
+
+fn check(parts: &FarMeshParts) -> Result<(), FieldError> {
+    let bad = |what: &str, place: usize, value: &dyn Display| {
+        Err(FieldError::Settings(format!("the mesh's {what} {place} is {value}; the mesh is broken")))
+    };
+    let cells = parts.centres.len();
+    if cells == 0 || parts.volumes.len() != cells || parts.first_face.len() != cells + 1 {
+        return Err(FieldError::Settings(format!(
+            "the mesh has {cells} cell centres, {} volumes and {} face counts; the mesh is broken",
+            parts.volumes.len(),
+            parts.first_face.len().saturating_sub(1)
+        )));
+    }
+    if let Some(cell) = parts.volumes.iter().position(|volume| !(volume.is_finite() && *volume > 0.0)) {
+        return bad("volume of cell", cell, &parts.volumes[cell]);
+    }
+    if let Some(cell) = parts.centres.iter().position(|centre| !centre.iter().all(|x| x.is_finite())) {
+        return bad("centre of cell", cell, &parts.centres[cell]);
+    }
+    let ascending = parts.first_face.windows(2).all(|pair| pair[0] <= pair[1]);
+    if parts.first_face[0] != 0 || !ascending || parts.first_face[cells] as usize != parts.faces.len() {
+        return bad("count of faces up to cell", cells, &parts.first_face[cells]);
+    }
+    for (place, face) in parts.faces.iter().enumerate() {
+        let (index, count) = match face.neighbour {
+            Neighbour::Cell { cell, .. } => (cell as usize, cells),
+            Neighbour::Boundary(face) => (face as usize, parts.boundary.len()),
+        };
+        if index >= count || !face.offset.is_finite() || (face.normal.norm() - 1.0).abs() > 1e-6 {
+            return bad("face", place, &format!("{face:?}"));
+        }
+    }
+    for (place, face) in parts.boundary.iter().enumerate() {
+        let (Condition::Potential(value) | Condition::Slope(value)) = face.condition;
+        let finite = value.is_finite() && face.area > 0.0 && face.centre.iter().all(|x| x.is_finite());
+        if face.cell as usize >= cells || !finite || (face.normal.norm() - 1.0).abs() > 1e-6 {
+            return bad("boundary face", place, &format!("{face:?}"));
+        }
+    }
+    Ok(())
+}
+
+/// Boxes of the domain with a cell near each, where walks begin.
+#[derive(Clone, Debug)]
+struct Bins {
+    low: Vector3<f64>,
+    per_length: Vector3<f64>,
+    counts: [usize; 3],
+    cell: Vec<u32>,
+}
+
+impl Bins {
+    fn new(parts: &FarMeshParts) -> Self {
+        let extent = parts.domain.extent();
+        let edge = (CELLS_PER_BIN * parts.domain.volume() / parts.centres.len() as f64).cbrt();
+        #[expect(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "clamped")]
+        let counts = [0, 1, 2].map(|axis| (extent[axis] / edge).ceil().clamp(1.0, MOST_BINS) as usize);
+        let per_length = Vector3::from_fn(|axis, _| counts[axis] as f64 / extent[axis]);
+        Self { low: parts.domain.min(), per_length, counts, cell: vec![u32::MAX; counts.iter().product()] }
+    }
+
+    /// Every bin gets a cell whose centre lies in it, and an empty bin one from the bins around it.
+    fn fill(&mut self, parts: &FarMeshParts) {
+        for (cell, centre) in parts.centres.iter().enumerate() {
+            let bin = self.bin(centre);
+            self.cell[bin] = cell as u32;
+        }
+        let mut last = self.cell.iter().copied().find(|&cell| cell != u32::MAX).unwrap_or(0);
+        for cell in &mut self.cell {
+            if *cell == u32::MAX {
+                *cell = last;
+            }
+            last = *cell;
+        }
+    }
+
+    fn start(&self, point: &Vector3<f64>) -> u32 {
+        self.cell[self.bin(point)]
+    }
+
+    fn bin(&self, point: &Vector3<f64>) -> usize {
+        (0..3).fold(0, |index, axis| {
+            #[expect(
+                clippy::cast_possible_truncation,
+                clippy::cast_sign_loss,
+                reason = "clamped to the bins"
+            )]
+            let at = ((point[axis] - self.low[axis]) * self.per_length[axis]).max(0.0) as usize;
+            index * self.counts[axis] + at.min(self.counts[axis] - 1)
+        })
+    }
+}
+
+impl FarMeshParts {
+    /// A box of `counts` equal cells with the domain's faces; a mesh for tests and comparisons.
+    ///
+    /// # Errors
+    /// Open faces: a mesh ends somewhere.
+    pub fn of_box(domain: &Domain, counts: [usize; 3]) -> Result<Self, FieldError> {
+        let size = Vector3::from_fn(|axis, _| domain.extent()[axis] / counts[axis] as f64);
+        let mut faces = Vec::new();
+        let (mut boundary, mut first_face, mut centres) = (Vec::new(), vec![0], Vec::new());
+        let index = |at: [usize; 3]| ((at[2] * counts[1] + at[1]) * counts[0] + at[0]) as u32;
+        for cell in 0..counts.iter().product::<usize>() {
+            let at = [cell % counts[0], cell / counts[0] % counts[1], cell / counts[0] / counts[1]];
+            let centre = domain.min() + Vector3::from_fn(|axis, _| (at[axis] as f64 + 0.5) * size[axis]);
+            centres.push(centre);
+            for axis in Axis::ALL {
+                let a = axis.index();
+                for (side, sign) in [(0, -1.0), (1, 1.0)] {
+                    let mut normal = Vector3::zeros();
+                    normal[a] = sign;
+                    let mut face_centre = centre;
+                    face_centre[a] += 0.5 * sign * size[a];
+                    let last = if side == 0 { at[a] == 0 } else { at[a] + 1 == counts[a] };
+                    let mut next = at;
+                    next[a] = (at[a] + if side == 0 { counts[a] - 1 } else { 1 }) % counts[a];
+                    let condition = match domain.faces()[a][side] {
+                        Boundary::Grounded => Condition::Potential(0.0),
+                        Boundary::Potential(volts) => Condition::Potential(volts),
+                        Boundary::Insulating { normal_field_v_m } => Condition::Slope(-normal_field_v_m),
+                        Boundary::Periodic => Condition::Slope(0.0),
+                        _ => {
+                            return Err(FieldError::Settings(
+                                "a mesh has no open faces; close the domain".into(),
+                            ));
+                        }
+                    };
+                    let neighbour = if !last {
+                        Neighbour::Cell { cell: index(next), shift: Vector3::zeros() }
+                    } else if domain.is_periodic(axis) {
+                        let shift = normal * domain.extent()[a];
+                        Neighbour::Cell { cell: index(next), shift }
+                    } else {
+                        let area = size.product() / size[a];
+                        let cell = cell as u32;
+                        boundary.push(BoundaryFace { centre: face_centre, normal, area, cell, condition });
+                        Neighbour::Boundary(boundary.len() as u32 - 1)
+                    };
+                    faces.push(CellFace { normal, offset: normal.dot(&face_centre), neighbour });
+                }
+            }
+            first_face.push(faces.len() as u32);
+        }
+        let ends = domain.faces().map(|pair| {
+            pair.map(|face| if face == Boundary::Periodic { Boundary::Periodic } else { Boundary::Open })
+        });
+        let domain = Domain::new(domain.min(), domain.max(), ends).expect("as good as the domain given");
+        let volumes = vec![size.product(); centres.len()];
+        Ok(Self { domain, centres, volumes, first_face, faces, boundary })
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn mesh() -> FarMesh {
+        let faces = [[Boundary::Periodic; 2], [Boundary::Grounded; 2], [Boundary::Grounded; 2]];
+        let domain = Domain::new(Vector3::zeros(), Vector3::new(3.0, 4.0, 5.0), faces).unwrap();
+        FarMesh::new(FarMeshParts::of_box(&domain, [3, 4, 5]).unwrap()).unwrap()
+    }
+
+    #[test]
+    fn points_are_found_from_anywhere_and_strays_belong_to_the_wall() {
+        let mesh = mesh();
+        for (index, centre) in mesh.centres().iter().enumerate() {
+            let near = centre + Vector3::new(0.4, -0.4, 0.3);
+            for last in [None, Some(0), Some(59)] {
+                assert_eq!(mesh.locate(&near, last), (index as u32, true));
+            }
+        }
+        assert_eq!(mesh.locate(&Vector3::new(0.5, -0.1, 0.5), None), (0, false));
+        assert_eq!(mesh.locate(&Vector3::new(0.5, 0.5, 5.1), Some(3)), (48, false));
+        assert_eq!(mesh.boundary().len(), 2 * (3 * 5 + 3 * 4));
+    }
+
+    #[test]
+    fn broken_meshes_are_refused() {
+        let break_it = |harm: &dyn Fn(&mut FarMeshParts)| {
+            let mut parts = mesh().parts;
+            harm(&mut parts);
+            FarMesh::new(parts).unwrap_err().to_string()
+        };
+        assert!(break_it(&|parts| parts.volumes[3] = f64::NAN).contains("volume of cell 3"));
+        assert!(break_it(&|parts| parts.boundary[2].cell = 60).contains("boundary face 2"));
+        assert!(break_it(&|parts| parts.first_face[60] = 7).contains("count of faces"));
+        assert!(break_it(&|parts| parts.faces[1].neighbour = Neighbour::Boundary(99)).contains("face 1"));
+        assert!(break_it(&|parts| parts.centres[7].x = f64::INFINITY).contains("centre of cell 7"));
+    }
+}

@@ -1,0 +1,81 @@
+//! The far level: a smooth field that somebody else solves for, on cells of any shape with boundary conditions of its own.
+//!
+//! Another process with OpenFOAM does, or a solver in this one: whoever implements [`FarField`].
+
+mod density;
+mod images;
+mod level;
+mod local_fit;
+mod mesh;
+
+pub use density::SmoothDensity;
+pub(crate) use level::FarLevel;
+pub use mesh::{BoundaryFace, CellFace, Condition, FarMesh, FarMeshParts, Neighbour};
+
+use crate::FieldError;
+use nalgebra::Vector3;
+use std::fmt;
+
+/// What the far level's source is made of.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum FarSource {
+    /// Every charge is a Kaiser–Bessel cloud (`amberfield_laws::kaiser_bessel_cloud`).
+    Clouds {
+        /// Radius, where the clouds end [m].
+        radius_m: f64,
+        /// Shape β.
+        shape: f64,
+    },
+    /// Every charge is spread over its cell.
+    NearestCell,
+}
+
+/// What a far level is asked to solve: ∇²φ = −ρ/ε.
+#[derive(Clone, Copy, Debug)]
+pub struct FarRequest<'a> {
+    /// What ρ is made of.
+    pub source: FarSource,
+    /// Places of the charges inside the mesh [m].
+    pub positions: &'a [Vector3<f64>],
+    /// Their charges [C].
+    pub charges: &'a [f64],
+    /// Places of image charges outside the mesh [m].
+    pub image_positions: &'a [Vector3<f64>],
+    /// Image charges [C]; their clouds may reach inside.
+    pub image_charges: &'a [f64],
+    /// By boundary face: φ [V] where the potential is prescribed, ∂φ/∂n outwards [V/m] where the normal field is.
+    pub boundary: &'a [f64],
+    /// Permittivity of the medium [F/m].
+    pub permittivity: f64,
+    /// Whether the mean density is taken off, where no face fixes the potential.
+    pub neutralising_background: bool,
+}
+
+/// What a far level answers.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct FarValues {
+    /// φ at the cells' centres [V].
+    pub potential: Vec<f64>,
+    /// E = −∇φ at the cells' centres [V/m], by the solver's own gradient.
+    pub e: Vec<Vector3<f64>>,
+    /// Cell of every charge inside the mesh.
+    pub cells: Vec<u32>,
+    /// Charges that lay outside the mesh and were given to the nearest cell.
+    pub outside: u64,
+    /// Iterations of the linear solver.
+    pub iterations: u64,
+    /// Its residual, relative.
+    pub residual: f64,
+}
+
+/// Somebody who solves for the far level's potential.
+pub trait FarField: fmt::Debug + Send + Sync {
+    /// The cells.
+    fn mesh(&self) -> &FarMesh;
+
+    /// Solves for φ.
+    ///
+    /// # Errors
+    /// A peer that is lost, a request that does not fit the mesh, an answer that makes no sense.
+    fn solve(&mut self, request: &FarRequest<'_>, values: &mut FarValues) -> Result<(), FieldError>;
+}
