@@ -1,5 +1,20 @@
 //! Who waits for whom: the far field in another process, or a stand-in for it in this one.
+//!
+//! The only code that opens iceoryx2 ([`link`]). The DEM side owns the run's folder in shared memory and creates everything in
+//! it; the field side opens what it finds.
 
 mod box_solver;
+mod dem_side;
+mod error;
+mod field_side;
+mod launch;
+mod link;
+mod mesh_message;
+mod run_root;
 
 pub use box_solver::BoxSolver;
+pub use dem_side::{Announced, RemoteSolver, SolverSettings};
+pub use error::CouplingError;
+pub use field_side::{Asked, FieldSide, Reply};
+pub use mesh_message::MeshPart;
+pub use run_root::{RunRoot, stale_runs};

@@ -21,6 +21,9 @@ pub enum FieldError {
         /// Index of the grain.
         index: usize,
     },
+    /// The field solver of another process is lost or makes no sense.
+    #[error("{0}")]
+    Solver(String),
     /// The tolerance cannot be met.
     #[error("tolerance {asked:e} cannot be met: best measured error {reached:e}; {advice}")]
     Tolerance {

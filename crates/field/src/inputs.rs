@@ -6,7 +6,7 @@ use nalgebra::Vector3;
 
 /// Net charge over Σ|q| (and the charge that the faces' normal fields stand for) that counts as round-off:
 /// charges read from text or traded over many contacts do not cancel to the last bit.
-const NET_CHARGE_ROUND_OFF: f64 = 1e-9;
+pub(crate) const NET_CHARGE_ROUND_OFF: f64 = 1e-9;
 
 /// Refuses positions and charges that are not finite.
 pub(crate) fn check_finite(positions: &[Vector3<f64>], charges: &[f64]) -> Result<(), FieldError> {

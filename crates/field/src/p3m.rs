@@ -183,7 +183,10 @@ impl FieldMethod for P3m {
         let background = self.neutralising_background;
         match &self.far {
             None => check_charges_in_box(&self.domain, permittivity, background, positions, charges)?,
-            Some(_) => check_finite(positions, charges)?,
+            Some(far) => {
+                check_finite(positions, charges)?;
+                far.check_net_charge(charges)?;
+            }
         }
         self.stopwatch.restart();
         let targets = self.load(positions, charges);

@@ -1,0 +1,145 @@
+/* The C library of amberfield. Written by cbindgen from crates/capi: `cargo xtask header`. */
+
+#ifndef AMBERFIELD_H
+#define AMBERFIELD_H
+
+#include <stddef.h>
+#include <stdint.h>
+
+// How a call ended.
+typedef enum AmberfieldStatus {
+  // Done.
+  AmberfieldStatus_Ok = 0,
+  // The run is over: close and leave.
+  AmberfieldStatus_Over = 1,
+  // It failed: amberfield_field_error says why.
+  AmberfieldStatus_Failed = 2,
+} AmberfieldStatus;
+
+// One rank of a field process.
+typedef struct AmberfieldField AmberfieldField;
+
+// One rank's part of the mesh. Vectors are three doubles each; lengths in m.
+typedef struct AmberfieldMesh {
+  // Lower corner of all ranks' cells.
+  double low[3];
+  // Upper corner of all ranks' cells.
+  double high[3];
+  // 1 for every axis that cyclic patches join.
+  uint64_t periodic[3];
+  // Cells of lower ranks.
+  uint64_t first_cell;
+  // Cells of all ranks.
+  uint64_t all_cells;
+  // Boundary faces of lower ranks.
+  uint64_t first_boundary;
+  // Cells of this rank.
+  uint64_t cells;
+  // Entries of the arrays by face: every inner face once for each of its cells.
+  uint64_t faces;
+  // Boundary faces of this rank.
+  uint64_t boundary;
+  // Cell centres.
+  const double *centres;
+  // Cell volumes.
+  const double *volumes;
+  // Where each cell's faces begin; one more than there are cells.
+  const uint64_t *first_face;
+  // Unit normals out of the cell.
+  const double *face_normals;
+  // Normals times face centres.
+  const double *face_offsets;
+  // Cell c of all ranks beyond the face as c, boundary face b of this rank as -1 - b.
+  const int64_t *face_neighbours;
+  // What is added to the neighbour's coordinates (0 unless the face is cyclic).
+  const double *face_shifts;
+  // By boundary face ten numbers: centre, outward unit normal, area, cell of this rank, 1 where the potential is prescribed
+  // and 0 where its outward slope is, the value [V or V/m].
+  const double *boundary_faces;
+} AmberfieldMesh;
+
+// What the DEM process asks for.
+typedef struct AmberfieldRequest {
+  // Number of the solve.
+  uint64_t solve;
+  // Permittivity of the medium [F/m].
+  double permittivity;
+  // Relative tolerance of the linear solver.
+  double tolerance;
+  // 1 where the mean density is to be taken off if no face fixes the potential.
+  uint64_t neutralising_background;
+} AmberfieldRequest;
+
+#ifdef __cplusplus
+extern "C" {
+#endif // __cplusplus
+
+// Opens a run by its name, for a rank of so many. Never NULL; amberfield_field_error is empty when it worked.
+//
+// # Safety
+// `run` is a C string.
+struct AmberfieldField *amberfield_field_open(const char *run, uint32_t rank, uint32_t ranks);
+
+// Why the last call failed; empty if it did not. Valid until the next call.
+//
+// # Safety
+// `field` comes from amberfield_field_open and is not closed.
+const char *amberfield_field_error(const struct AmberfieldField *field);
+
+// Sends this rank's part of the mesh.
+//
+// # Safety
+// As amberfield_field_error; the mesh's arrays have the lengths that it says.
+enum AmberfieldStatus amberfield_field_send_mesh(struct AmberfieldField *field,
+                                                 const struct AmberfieldMesh *mesh);
+
+// Waits for the next request; AmberfieldStatus_Over when there will be none.
+//
+// # Safety
+// As amberfield_field_error; `request` may be written.
+enum AmberfieldStatus amberfield_field_wait(struct AmberfieldField *field, struct AmberfieldRequest *request);
+
+// Charge density [C/m^3] at this rank's cell centres; finds every charge's cell on the way.
+//
+// # Safety
+// As amberfield_field_error; `density` has room for `cells` numbers, this rank's cells.
+enum AmberfieldStatus amberfield_field_density(struct AmberfieldField *field,
+                                               double *density,
+                                               uint64_t cells);
+
+// Copies the boundary data of this rank's faces: potentials [V] or outward slopes [V/m], by the face's kind.
+//
+// # Safety
+// As amberfield_field_error; `values` has room for `faces` numbers.
+enum AmberfieldStatus amberfield_field_boundary(struct AmberfieldField *field,
+                                                double *values,
+                                                uint64_t faces);
+
+// Answers a request: potential [V] and E [V/m] (three doubles each) at this rank's cell centres.
+//
+// # Safety
+// As amberfield_field_error; the arrays have `cells` entries.
+enum AmberfieldStatus amberfield_field_reply(struct AmberfieldField *field,
+                                             const double *potential,
+                                             const double *e,
+                                             uint64_t cells,
+                                             uint64_t iterations,
+                                             double residual);
+
+// Tells the DEM process why this one cannot go on.
+//
+// # Safety
+// As amberfield_field_error; `reason` is a C string.
+void amberfield_field_fail(struct AmberfieldField *field, const char *reason);
+
+// Closes a handle. NULL is allowed.
+//
+// # Safety
+// As amberfield_field_error; the handle is gone afterwards.
+void amberfield_field_close(struct AmberfieldField *field);
+
+#ifdef __cplusplus
+}  // extern "C"
+#endif  // __cplusplus
+
+#endif  /* AMBERFIELD_H */

@@ -1,0 +1,317 @@
+//! The field side: open the run, send the mesh, wait, take density and boundary data, answer, close.
+
+use amberfield_coupling::{FieldSide, MeshPart, Reply};
+use std::ffi::{CStr, CString, c_char};
+use std::panic::{AssertUnwindSafe, catch_unwind};
+
+/// How a call ended.
+#[repr(C)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum AmberfieldStatus {
+    /// Done.
+    Ok = 0,
+    /// The run is over: close and leave.
+    Over = 1,
+    /// It failed: amberfield_field_error says why.
+    Failed = 2,
+}
+
+/// One rank of a field process.
+#[derive(Debug)]
+pub struct AmberfieldField {
+    side: Option<FieldSide>,
+    error: CString,
+}
+
+/// One rank's part of the mesh. Vectors are three doubles each; lengths in m.
+#[repr(C)]
+#[derive(Debug)]
+pub struct AmberfieldMesh {
+    /// Lower corner of all ranks' cells.
+    pub low: [f64; 3],
+    /// Upper corner of all ranks' cells.
+    pub high: [f64; 3],
+    /// 1 for every axis that cyclic patches join.
+    pub periodic: [u64; 3],
+    /// Cells of lower ranks.
+    pub first_cell: u64,
+    /// Cells of all ranks.
+    pub all_cells: u64,
+    /// Boundary faces of lower ranks.
+    pub first_boundary: u64,
+    /// Cells of this rank.
+    pub cells: u64,
+    /// Entries of the arrays by face: every inner face once for each of its cells.
+    pub faces: u64,
+    /// Boundary faces of this rank.
+    pub boundary: u64,
+    /// Cell centres.
+    pub centres: *const f64,
+    /// Cell volumes.
+    pub volumes: *const f64,
+    /// Where each cell's faces begin; one more than there are cells.
+    pub first_face: *const u64,
+    /// Unit normals out of the cell.
+    pub face_normals: *const f64,
+    /// Normals times face centres.
+    pub face_offsets: *const f64,
+    /// Cell c of all ranks beyond the face as c, boundary face b of this rank as -1 - b.
+    pub face_neighbours: *const i64,
+    /// What is added to the neighbour's coordinates (0 unless the face is cyclic).
+    pub face_shifts: *const f64,
+    /// By boundary face ten numbers: centre, outward unit normal, area, cell of this rank, 1 where the potential is prescribed
+    /// and 0 where its outward slope is, the value [V or V/m].
+    pub boundary_faces: *const f64,
+}
+
+/// What the DEM process asks for.
+#[repr(C)]
+#[derive(Clone, Copy, Debug)]
+pub struct AmberfieldRequest {
+    /// Number of the solve.
+    pub solve: u64,
+    /// Permittivity of the medium [F/m].
+    pub permittivity: f64,
+    /// Relative tolerance of the linear solver.
+    pub tolerance: f64,
+    /// 1 where the mean density is to be taken off if no face fixes the potential.
+    pub neutralising_background: u64,
+}
+
+/// Opens a run by its name, for a rank of so many. Never NULL; amberfield_field_error is empty when it worked.
+///
+/// # Safety
+/// `run` is a C string.
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn amberfield_field_open(
+    run: *const c_char,
+    rank: u32,
+    ranks: u32,
+) -> *mut AmberfieldField {
+    let mut field = Box::new(AmberfieldField { side: None, error: CString::default() });
+    // SAFETY: the caller's promise.
+    let run = unsafe { CStr::from_ptr(run) }.to_string_lossy();
+    let opened = catch_unwind(|| FieldSide::open(&run, rank, ranks).map_err(|error| error.to_string()));
+    match opened.unwrap_or_else(|_| Err(PANIC.to_owned())) {
+        Ok(side) => field.side = Some(side),
+        Err(error) => field.error = c_text(&error),
+    }
+    Box::into_raw(field)
+}
+
+/// Why the last call failed; empty if it did not. Valid until the next call.
+///
+/// # Safety
+/// `field` comes from amberfield_field_open and is not closed.
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn amberfield_field_error(field: *const AmberfieldField) -> *const c_char {
+    // SAFETY: the caller's promise.
+    unsafe { &*field }.error.as_ptr()
+}
+
+/// Sends this rank's part of the mesh.
+///
+/// # Safety
+/// As amberfield_field_error; the mesh's arrays have the lengths that it says.
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn amberfield_field_send_mesh(
+    field: *mut AmberfieldField,
+    mesh: *const AmberfieldMesh,
+) -> AmberfieldStatus {
+    // SAFETY: the caller's promise.
+    let mesh = unsafe { &*mesh };
+    let (cells, faces) = (mesh.cells as usize, mesh.faces as usize);
+    // SAFETY: the caller's promise; three doubles have the layout of an array of three.
+    let part = unsafe {
+        MeshPart {
+            corners: [mesh.low, mesh.high],
+            periodic: mesh.periodic.map(|periodic| periodic != 0),
+            first_cell: mesh.first_cell,
+            all_cells: mesh.all_cells,
+            centres: slice(mesh.centres.cast(), cells),
+            volumes: slice(mesh.volumes, cells),
+            first_face: slice(mesh.first_face, cells + 1),
+            face_normals: slice(mesh.face_normals.cast(), faces),
+            face_offsets: slice(mesh.face_offsets, faces),
+            face_neighbours: slice(mesh.face_neighbours, faces),
+            face_shifts: slice(mesh.face_shifts.cast(), faces),
+            boundary_faces: slice(mesh.boundary_faces.cast(), mesh.boundary as usize),
+        }
+    };
+    // SAFETY: the caller's promise.
+    unsafe {
+        with(field, |side| side.send_mesh(&part, mesh.first_boundary as usize).map(|()| AmberfieldStatus::Ok))
+    }
+}
+
+/// Waits for the next request; AmberfieldStatus_Over when there will be none.
+///
+/// # Safety
+/// As amberfield_field_error; `request` may be written.
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn amberfield_field_wait(
+    field: *mut AmberfieldField,
+    request: *mut AmberfieldRequest,
+) -> AmberfieldStatus {
+    // SAFETY: the caller's promise.
+    unsafe {
+        with(field, |side| {
+            Ok(match side.wait()? {
+                None => AmberfieldStatus::Over,
+                Some(asked) => {
+                    *request = AmberfieldRequest {
+                        solve: asked.solve,
+                        permittivity: asked.permittivity,
+                        tolerance: asked.tolerance,
+                        neutralising_background: u64::from(asked.neutralising_background),
+                    };
+                    AmberfieldStatus::Ok
+                }
+            })
+        })
+    }
+}
+
+/// Charge density [C/m^3] at this rank's cell centres; finds every charge's cell on the way.
+///
+/// # Safety
+/// As amberfield_field_error; `density` has room for `cells` numbers, this rank's cells.
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn amberfield_field_density(
+    field: *mut AmberfieldField,
+    density: *mut f64,
+    cells: u64,
+) -> AmberfieldStatus {
+    // SAFETY: the caller's promise.
+    unsafe {
+        let density = slice_mut(density, cells as usize);
+        with(field, |side| side.density(density).map(|()| AmberfieldStatus::Ok))
+    }
+}
+
+/// Copies the boundary data of this rank's faces: potentials [V] or outward slopes [V/m], by the face's kind.
+///
+/// # Safety
+/// As amberfield_field_error; `values` has room for `faces` numbers.
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn amberfield_field_boundary(
+    field: *mut AmberfieldField,
+    values: *mut f64,
+    faces: u64,
+) -> AmberfieldStatus {
+    // SAFETY: the caller's promise.
+    unsafe {
+        let values = slice_mut(values, faces as usize);
+        with(field, |side| {
+            values.copy_from_slice(side.boundary(values.len())?);
+            Ok(AmberfieldStatus::Ok)
+        })
+    }
+}
+
+/// Answers a request: potential [V] and E [V/m] (three doubles each) at this rank's cell centres.
+///
+/// # Safety
+/// As amberfield_field_error; the arrays have `cells` entries.
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn amberfield_field_reply(
+    field: *mut AmberfieldField,
+    potential: *const f64,
+    e: *const f64,
+    cells: u64,
+    iterations: u64,
+    residual: f64,
+) -> AmberfieldStatus {
+    // SAFETY: the caller's promise.
+    unsafe {
+        let reply = Reply {
+            potential: slice(potential, cells as usize),
+            e: slice(e.cast(), cells as usize),
+            iterations,
+            residual,
+        };
+        with(field, |side| side.reply(&reply).map(|()| AmberfieldStatus::Ok))
+    }
+}
+
+/// Tells the DEM process why this one cannot go on.
+///
+/// # Safety
+/// As amberfield_field_error; `reason` is a C string.
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn amberfield_field_fail(field: *mut AmberfieldField, reason: *const c_char) {
+    // SAFETY: the caller's promise.
+    unsafe {
+        let reason = CStr::from_ptr(reason).to_string_lossy();
+        with(field, |side| {
+            side.fail(&reason);
+            Ok(AmberfieldStatus::Ok)
+        });
+    }
+}
+
+/// Closes a handle. NULL is allowed.
+///
+/// # Safety
+/// As amberfield_field_error; the handle is gone afterwards.
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn amberfield_field_close(field: *mut AmberfieldField) {
+    if !field.is_null() {
+        // SAFETY: it was made by Box::into_raw.
+        let field = unsafe { Box::from_raw(field) };
+        let _ = catch_unwind(AssertUnwindSafe(|| drop(field)));
+    }
+}
+
+const PANIC: &str = "a bug of amberfield: its library panicked";
+
+/// Runs a call on a handle that is open; errors and panics become its text.
+///
+/// # Safety
+/// As amberfield_field_error.
+unsafe fn with(
+    field: *mut AmberfieldField,
+    call: impl FnOnce(&mut FieldSide) -> Result<AmberfieldStatus, amberfield_coupling::CouplingError>,
+) -> AmberfieldStatus {
+    // SAFETY: the caller's promise.
+    let field = unsafe { &mut *field };
+    let outcome = match &mut field.side {
+        None => Err("the run is not open".to_owned()),
+        Some(side) => catch_unwind(AssertUnwindSafe(|| call(side)))
+            .map_or_else(|_| Err(PANIC.to_owned()), |outcome| outcome.map_err(|error| error.to_string())),
+    };
+    match outcome {
+        Ok(status) => {
+            field.error = CString::default();
+            status
+        }
+        Err(error) => {
+            field.error = c_text(&error);
+            AmberfieldStatus::Failed
+        }
+    }
+}
+
+fn c_text(text: &str) -> CString {
+    CString::new(text.replace('\0', " ")).unwrap_or_default()
+}
+
+/// # Safety
+/// `count` elements lie there, or there are none.
+unsafe fn slice<'a, T>(pointer: *const T, count: usize) -> &'a [T] {
+    if count == 0 {
+        return &[];
+    }
+    // SAFETY: the caller's promise.
+    unsafe { std::slice::from_raw_parts(pointer, count) }
+}
+
+/// # Safety
+/// As `slice`, and nobody else uses them.
+unsafe fn slice_mut<'a, T>(pointer: *mut T, count: usize) -> &'a mut [T] {
+    if count == 0 {
+        return &mut [];
+    }
+    // SAFETY: the caller's promise.
+    unsafe { std::slice::from_raw_parts_mut(pointer, count) }
+}

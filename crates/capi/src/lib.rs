@@ -1,0 +1,12 @@
+//! The C library of amberfield: what OpenFOAM's side sees of the DEM process. No call panics or throws; errors come as a status,
+//! with a text in the handle.
+//!
+//! `include/amberfield.h` is made of this crate by `cargo xtask header`; a test fails when it is stale.
+
+mod field_side;
+
+pub use field_side::{
+    AmberfieldField, AmberfieldMesh, AmberfieldRequest, AmberfieldStatus, amberfield_field_boundary,
+    amberfield_field_close, amberfield_field_density, amberfield_field_error, amberfield_field_fail,
+    amberfield_field_open, amberfield_field_reply, amberfield_field_send_mesh, amberfield_field_wait,
+};

@@ -1,0 +1,236 @@
+//! The DEM side: owns the run, starts the field process, asks it for fields.
+
+use crate::CouplingError;
+use crate::launch::Process;
+use crate::link::{Link, Message, SideOf};
+use crate::mesh_message::{MeshPart, assemble};
+use crate::run_root::RunRoot;
+use amberfield_core::Vector3;
+use amberfield_field::FieldError;
+use amberfield_field::far::{FarField, FarMesh, FarRequest, FarSource, FarValues};
+use amberfield_wire::{Header, Layout, MessageKind, Section, WireError};
+use std::path::PathBuf;
+use std::time::{Duration, Instant};
+
+/// What a scene says of its field solver.
+#[derive(Clone, Debug, PartialEq)]
+pub struct SolverSettings {
+    /// Folder of the case.
+    pub case: PathBuf,
+    /// Whether this program starts the solver, or somebody else does.
+    pub start: bool,
+    /// Processes of the solver.
+    pub ranks: u32,
+    /// How long an answer may take.
+    pub timeout: Duration,
+    /// Relative tolerance of the linear solver.
+    pub far_tolerance: f64,
+    /// Where what the solver prints goes; nowhere without.
+    pub log: Option<PathBuf>,
+}
+
+/// The far field of another process.
+#[derive(Debug)]
+pub struct RemoteSolver {
+    settings: SolverSettings,
+    mesh: FarMesh,
+    /// Cells of each rank.
+    cells: Vec<usize>,
+    /// Number of the last solve.
+    solve: u64,
+    // Dropped in this order: the link says goodbye, the process ends, the run's place goes.
+    link: Link,
+    process: Option<Process>,
+    _root: RunRoot,
+}
+
+/// A run whose solver has not come yet.
+#[derive(Debug)]
+pub struct Announced {
+    settings: SolverSettings,
+    deadline: Instant,
+    link: Link,
+    root: RunRoot,
+}
+
+impl Announced {
+    /// Makes the run's place.
+    ///
+    /// # Errors
+    /// No shared memory.
+    pub fn new(settings: SolverSettings) -> Result<Self, CouplingError> {
+        let root = RunRoot::create()?;
+        let deadline = Instant::now() + settings.timeout;
+        let link = Link::new(&root, SideOf::Dem, settings.ranks, deadline)?;
+        Ok(Self { settings, deadline, link, root })
+    }
+
+    /// The run's name, which the solver is told.
+    #[must_use]
+    pub fn run(&self) -> &str {
+        self.root.name()
+    }
+
+    /// Starts the solver (or waits for somebody to) and takes in its mesh.
+    ///
+    /// # Errors
+    /// No solver, no answer in time, a mesh that makes no sense.
+    pub fn connect(self) -> Result<RemoteSolver, CouplingError> {
+        let Self { settings, deadline, link, root } = self;
+        let mut process = if settings.start {
+            Some(Process::start(&settings, root.name())?)
+        } else {
+            let case = settings.case.display();
+            tracing::info!("waiting for `electricFieldFoam -case {case} -run {}`", root.name());
+            None
+        };
+        let mut messages: Vec<Option<Message>> = (0..settings.ranks).map(|_| None).collect();
+        while messages.iter().any(Option::is_none) {
+            let left = deadline.saturating_duration_since(Instant::now());
+            let message = link.receive(0, left, || alive(&mut process))?;
+            check_sender(message.header(), settings.ranks, MessageKind::Mesh, 0).map_err(of_solver)?;
+            let rank = message.header().rank as usize;
+            messages[rank] = Some(message);
+        }
+        let parts: Result<Vec<_>, _> =
+            messages.iter().flatten().map(|message| MeshPart::read(&message.sections())).collect();
+        let parts = parts.map_err(of_solver)?;
+        let cells = parts.iter().map(|part| part.centres.len()).collect();
+        let mesh = assemble(&parts)?;
+        Ok(RemoteSolver { settings, mesh, cells, solve: 0, link, process, _root: root })
+    }
+}
+
+impl RemoteSolver {
+    fn ask(&mut self, request: &FarRequest<'_>) -> Result<(), CouplingError> {
+        let (radius, shape) = match request.source {
+            FarSource::Clouds { radius_m, shape } => (radius_m, shape),
+            FarSource::NearestCell => (0.0, 0.0),
+        };
+        let background = f64::from(u8::from(request.neutralising_background));
+        let numbers = [request.permittivity, radius, shape, self.settings.far_tolerance, background];
+        let header = Header::new(MessageKind::Charges, self.link.run(), self.solve);
+        let layout = Layout::new(header)
+            .with::<f64>(Section::Request, numbers.len())
+            .with::<[f64; 3]>(Section::Positions, request.positions.len())
+            .with::<f64>(Section::Charges, request.charges.len())
+            .with::<[f64; 3]>(Section::ImagePositions, request.image_positions.len())
+            .with::<f64>(Section::ImageCharges, request.image_charges.len())
+            .with::<f64>(Section::Boundary, request.boundary.len());
+        self.link.send(&layout, self.settings.ranks as usize, |payload| {
+            layout.section_mut::<f64>(payload, Section::Request)?.copy_from_slice(&numbers);
+            let places = layout.section_mut::<[f64; 3]>(payload, Section::Positions)?;
+            write_vectors(places, request.positions);
+            layout.section_mut::<f64>(payload, Section::Charges)?.copy_from_slice(request.charges);
+            let places = layout.section_mut::<[f64; 3]>(payload, Section::ImagePositions)?;
+            write_vectors(places, request.image_positions);
+            layout.section_mut::<f64>(payload, Section::ImageCharges)?.copy_from_slice(request.image_charges);
+            layout.section_mut::<f64>(payload, Section::Boundary)?.copy_from_slice(request.boundary);
+            Ok(())
+        })
+    }
+
+    /// Takes one rank's answer.
+    fn take(&self, message: &Message, values: &mut FarValues) -> Result<usize, WireError> {
+        let ranks = self.settings.ranks;
+        check_sender(message.header(), ranks, MessageKind::Fields, self.solve)?;
+        let rank = message.header().rank as usize;
+        let first: usize = self.cells[..rank].iter().sum();
+        let count = self.cells[rank];
+        let sections = message.sections();
+        let potential = sections.exactly::<f64>(Section::Potential, count)?;
+        let field = sections.exactly::<[f64; 3]>(Section::Field, count)?;
+        let cells = sections.exactly::<u64>(Section::Cells, values.cells.len())?;
+        let answer = sections.exactly::<f64>(Section::Answer, 4)?;
+        values.potential[first..first + count].copy_from_slice(potential);
+        for (e, field) in values.e[first..].iter_mut().zip(field) {
+            *e = Vector3::from(*field);
+        }
+        for (known, &cell) in values.cells.iter_mut().zip(cells).filter(|(_, cell)| **cell != u64::MAX) {
+            *known = u32::try_from(first as u64 + cell).unwrap_or(u32::MAX);
+        }
+        values.outside += answer[1] as u64;
+        values.iterations = values.iterations.max(answer[2] as u64);
+        values.residual = values.residual.max(answer[3]);
+        Ok(rank)
+    }
+
+    fn exchange(&mut self, request: &FarRequest<'_>, values: &mut FarValues) -> Result<(), CouplingError> {
+        self.solve += 1;
+        self.ask(request)?;
+        let count = self.mesh.cell_count();
+        values.potential.resize(count, 0.0);
+        values.e.resize(count, Vector3::zeros());
+        values.cells.clear();
+        values.cells.resize(request.positions.len(), u32::MAX);
+        (values.outside, values.iterations, values.residual) = (0, 0, 0.0);
+        let mut missing = self.settings.ranks;
+        let mut seen = vec![false; missing as usize];
+        while missing > 0 {
+            let process = &mut self.process;
+            let message = self.link.receive(self.solve, self.settings.timeout, || alive(process))?;
+            let rank = self.take(&message, values).map_err(of_solver)?;
+            missing -= u32::from(!std::mem::replace(&mut seen[rank], true));
+        }
+        if let Some(cell) = values.potential.iter().position(|potential| !potential.is_finite()) {
+            return Err(CouplingError::Mesh(FieldError::Solver(format!(
+                "the field solver's potential in cell {cell} is {}; look at its log",
+                values.potential[cell]
+            ))));
+        }
+        Ok(())
+    }
+}
+
+impl FarField for RemoteSolver {
+    fn mesh(&self) -> &FarMesh {
+        &self.mesh
+    }
+
+    fn solve(&mut self, request: &FarRequest<'_>, values: &mut FarValues) -> Result<(), FieldError> {
+        Ok(self.exchange(request, values)?)
+    }
+}
+
+impl Drop for RemoteSolver {
+    fn drop(&mut self) {
+        let text = b"the run is over";
+        let header = Header::new(MessageKind::End, self.link.run(), self.solve);
+        let layout = Layout::new(header).with::<u8>(Section::Text, text.len());
+        let said = self.link.send(&layout, self.settings.ranks as usize, |payload| {
+            layout.section_mut::<u8>(payload, Section::Text)?.copy_from_slice(text);
+            Ok(())
+        });
+        if let Some(process) = &mut self.process {
+            process.end(said.is_ok());
+        }
+    }
+}
+
+fn write_vectors(into: &mut [[f64; 3]], from: &[Vector3<f64>]) {
+    for (into, from) in into.iter_mut().zip(from) {
+        *into = (*from).into();
+    }
+}
+
+fn alive(process: &mut Option<Process>) -> Result<(), String> {
+    process.as_mut().map_or(Ok(()), Process::check)
+}
+
+fn of_solver(error: WireError) -> CouplingError {
+    CouplingError::Wire { peer: "field solver", error }
+}
+
+/// Refuses a message of another kind, of another solve, or of a rank that there is not.
+fn check_sender(header: &Header, ranks: u32, kind: MessageKind, solve: u64) -> Result<(), WireError> {
+    let fits = header.kind == kind as u32 && header.solve == solve;
+    if !fits || header.rank >= ranks || header.ranks != ranks {
+        return Err(WireError::Unexpected {
+            kind: header.kind,
+            solve: header.solve,
+            rank: header.rank,
+            ranks: header.ranks,
+        });
+    }
+    Ok(())
+}

@@ -1,0 +1,71 @@
+//! Why two processes do not come together, or part.
+
+use amberfield_field::FieldError;
+use amberfield_wire::WireError;
+use std::time::Duration;
+
+/// What went wrong between the two processes.
+#[derive(Debug, thiserror::Error)]
+#[non_exhaustive]
+pub enum CouplingError {
+    /// Shared memory cannot be had.
+    #[error("shared memory: {0}")]
+    SharedMemory(String),
+    /// A message makes no sense.
+    #[error("message from the {peer}: {error}")]
+    Wire {
+        /// Who sent it.
+        peer: &'static str,
+        /// What is wrong.
+        error: WireError,
+    },
+    /// The peer said that it ends.
+    #[error("the {peer} ended: {reason}")]
+    Ended {
+        /// Who ended.
+        peer: &'static str,
+        /// What it said.
+        reason: String,
+    },
+    /// The peer is gone without a word.
+    #[error("the {peer} is gone ({how}) at solve {solve}; see its log")]
+    Lost {
+        /// Who is gone.
+        peer: &'static str,
+        /// How that was seen.
+        how: String,
+        /// Solve that was waited for.
+        solve: u64,
+    },
+    /// The peer did not answer in time.
+    #[error(
+        "no answer from the {peer} to solve {solve} within {waited:?}; raise solver.timeout_s if it is only slow"
+    )]
+    TimedOut {
+        /// Who was waited for.
+        peer: &'static str,
+        /// Solve that was waited for.
+        solve: u64,
+        /// How long.
+        waited: Duration,
+    },
+    /// The field process cannot be started.
+    #[error(
+        "cannot start {program}: {why}; build it with `cargo xtask openfoam`, or name it in the environment variable AMBERFIELD_SOLVER"
+    )]
+    Start {
+        /// Program.
+        program: String,
+        /// Reason.
+        why: String,
+    },
+    /// The peer's mesh makes no sense.
+    #[error(transparent)]
+    Mesh(#[from] FieldError),
+}
+
+impl From<CouplingError> for FieldError {
+    fn from(error: CouplingError) -> Self {
+        Self::Solver(error.to_string())
+    }
+}

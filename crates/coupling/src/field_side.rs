@@ -1,0 +1,261 @@
+//! The field side: opens the run, sends its mesh, waits for charges, answers.
+
+use crate::CouplingError;
+use crate::link::{Link, Message, SideOf};
+use crate::mesh_message::{MeshPart, mesh_header, own_cells};
+use crate::run_root::RunRoot;
+use amberfield_core::Vector3;
+use amberfield_field::far::{FarMesh, SmoothDensity};
+use amberfield_wire::{Header, Layout, MessageKind, Section, WireError};
+use std::time::{Duration, Instant};
+
+/// How long a field process waits for the run's services, and looks for the DEM process between messages.
+const OPENING: Duration = Duration::from_secs(30);
+
+/// What the DEM process asks for.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Asked {
+    /// Number of the solve.
+    pub solve: u64,
+    /// Permittivity of the medium [F/m].
+    pub permittivity: f64,
+    /// Relative tolerance of the linear solver.
+    pub tolerance: f64,
+    /// Whether the mean density is to be taken off where no face fixes the potential.
+    pub neutralising_background: bool,
+}
+
+/// What a rank answers.
+#[derive(Clone, Copy, Debug)]
+pub struct Reply<'a> {
+    /// Potential at the rank's cell centres [V].
+    pub potential: &'a [f64],
+    /// E there [V/m].
+    pub e: &'a [[f64; 3]],
+    /// Iterations of the linear solver.
+    pub iterations: u64,
+    /// Its final residual, relative.
+    pub residual: f64,
+}
+
+/// One rank of the field process.
+#[derive(Debug)]
+pub struct FieldSide {
+    link: Link,
+    rank: u32,
+    ranks: u32,
+    /// The rank's cells, for mapping, once they were sent.
+    mesh: Option<FarMesh>,
+    first_boundary: usize,
+    density: Option<([f64; 2], SmoothDensity)>,
+    asked: Option<Message>,
+    cells: Vec<u64>,
+    last_cells: Vec<u32>,
+    charge: f64,
+    outside: u64,
+    positions: Vec<Vector3<f64>>,
+}
+
+impl FieldSide {
+    /// Opens a run by its name.
+    ///
+    /// # Errors
+    /// No such run, no shared memory.
+    pub fn open(run: &str, rank: u32, ranks: u32) -> Result<Self, CouplingError> {
+        let root = RunRoot::open(run)?;
+        let link = Link::new(&root, SideOf::Field { rank }, ranks, Instant::now() + OPENING)?;
+        Ok(Self {
+            link,
+            rank,
+            ranks,
+            mesh: None,
+            first_boundary: 0,
+            density: None,
+            asked: None,
+            cells: Vec::new(),
+            last_cells: Vec::new(),
+            charge: 0.0,
+            outside: 0,
+            positions: Vec::new(),
+        })
+    }
+
+    /// Sends this rank's part of the mesh; `first_boundary` boundary faces belong to lower ranks.
+    ///
+    /// # Errors
+    /// A mesh that makes no sense, a DEM process that is gone.
+    pub fn send_mesh(&mut self, part: &MeshPart<'_>, first_boundary: usize) -> Result<(), CouplingError> {
+        self.mesh = Some(own_cells(part)?);
+        self.first_boundary = first_boundary;
+        let layout = part.layout(mesh_header(self.link.run(), self.rank, self.ranks));
+        self.link.send(&layout, 1, |payload| part.write(&layout, payload))
+    }
+
+    /// Waits for the next request; `None` when the run is over.
+    ///
+    /// # Errors
+    /// A DEM process that is gone, a message that makes no sense.
+    pub fn wait(&mut self) -> Result<Option<Asked>, CouplingError> {
+        self.asked = None;
+        let message = match self.link.receive(0, Duration::MAX, || self.link.dem_is_alive()) {
+            Ok(message) => message,
+            Err(CouplingError::Ended { .. }) => return Ok(None),
+            Err(error) => return Err(error),
+        };
+        let asked = read(&message).map_err(of_dem)?;
+        self.asked = Some(message);
+        Ok(Some(asked))
+    }
+
+    /// Boundary data of this rank's faces: potentials [V] or outward slopes [V/m].
+    ///
+    /// # Errors
+    /// Fewer of them than this rank has faces.
+    pub fn boundary(&self, faces: usize) -> Result<&[f64], CouplingError> {
+        let all = self.section::<f64>(Section::Boundary)?;
+        let last = self.first_boundary + faces;
+        all.get(self.first_boundary..last).ok_or_else(|| {
+            of_dem(WireError::Count { section: Section::Boundary, theirs: all.len(), ours: last })
+        })
+    }
+
+    /// Density [C/m³] at this rank's cell centres of what was asked for, and each charge's cell.
+    ///
+    /// # Errors
+    /// Charges that are not finite.
+    pub fn density(&mut self, density: &mut [f64]) -> Result<(), CouplingError> {
+        let numbers = self.section::<f64>(Section::Request)?;
+        let cloud = [numbers[1], numbers[2]];
+        self.map(density)?;
+        if cloud[0] == 0.0 {
+            return Ok(());
+        }
+        let mesh = self.mesh.as_ref().ok_or_else(no_mesh)?;
+        if self.density.as_ref().is_none_or(|(known, _)| *known != cloud) {
+            let centres = mesh.centres();
+            let first = centres.first().copied().unwrap_or_default();
+            let low = centres.iter().fold(first, |low, centre| low.inf(centre));
+            let high = centres.iter().fold(first, |high, centre| high.sup(centre));
+            // The box of a rank that has all cells along an axis is the mesh's, whose period counts.
+            let reach = Vector3::repeat(0.5 * mesh.largest_cell());
+            let whole = mesh.domain();
+            let (low, high) = ((low - reach).sup(&whole.min()), (high + reach).inf(&whole.max()));
+            self.density = Some((cloud, SmoothDensity::new(whole, low, high, cloud[0], cloud[1])));
+        }
+        let message = self.asked.as_ref().ok_or_else(no_request)?;
+        let sections = message.sections();
+        let (_, smooth) = self.density.as_mut().expect("just made");
+        smooth.clear();
+        for (places, charges) in
+            [(Section::Positions, Section::Charges), (Section::ImagePositions, Section::ImageCharges)]
+        {
+            let places = sections.get::<[f64; 3]>(places).map_err(of_dem)?;
+            let charges = sections.exactly::<f64>(charges, places.len()).map_err(of_dem)?;
+            self.positions.clear();
+            self.positions.extend(places.iter().map(|&place| Vector3::from(place)));
+            smooth.add(&self.positions, charges);
+        }
+        smooth.at(mesh.centres(), density);
+        Ok(())
+    }
+
+    /// Finds each charge's cell and adds up the cells' charge over their volumes.
+    fn map(&mut self, density: &mut [f64]) -> Result<(), CouplingError> {
+        let message = self.asked.as_ref().ok_or_else(no_request)?;
+        let mesh = self.mesh.as_ref().ok_or_else(no_mesh)?;
+        let sections = message.sections();
+        let places = sections.get::<[f64; 3]>(Section::Positions).map_err(of_dem)?;
+        let charges = sections.exactly::<f64>(Section::Charges, places.len()).map_err(of_dem)?;
+        self.cells.resize(places.len(), u64::MAX);
+        self.last_cells.resize(places.len(), u32::MAX);
+        (self.charge, self.outside) = (0.0, 0);
+        density.fill(0.0);
+        for (index, (place, &charge)) in places.iter().zip(charges).enumerate() {
+            let place = Vector3::from(*place);
+            if !(charge.is_finite() && place.iter().all(|x| x.is_finite())) {
+                return Err(CouplingError::Mesh(amberfield_field::FieldError::NotFinite { index }));
+            }
+            let last = (self.last_cells[index] != u32::MAX).then_some(self.last_cells[index]);
+            let (cell, inside) = mesh.locate(&place, last);
+            self.last_cells[index] = cell;
+            // Strays belong to the nearest wall's cell; with several ranks they are the DEM side's to place.
+            let mine = inside || self.ranks == 1;
+            self.cells[index] = if mine { u64::from(cell) } else { u64::MAX };
+            self.outside += u64::from(!inside && self.ranks == 1);
+            if mine {
+                self.charge += charge;
+                density[cell as usize] += charge;
+            }
+        }
+        for (density, volume) in density.iter_mut().zip(mesh.volumes()) {
+            *density /= volume;
+        }
+        Ok(())
+    }
+
+    /// Answers what was asked.
+    ///
+    /// # Errors
+    /// A DEM process that is gone.
+    pub fn reply(&mut self, reply: &Reply<'_>) -> Result<(), CouplingError> {
+        let solve = self.asked.as_ref().ok_or_else(no_request)?.header().solve;
+        let header = Header::new(MessageKind::Fields, self.link.run(), solve);
+        let layout = Layout::new(Header { rank: self.rank, ranks: self.ranks, ..header })
+            .with::<f64>(Section::Potential, reply.potential.len())
+            .with::<[f64; 3]>(Section::Field, reply.e.len())
+            .with::<u64>(Section::Cells, self.cells.len())
+            .with::<f64>(Section::Answer, 4);
+        let answer = [self.charge, self.outside as f64, reply.iterations as f64, reply.residual];
+        let cells = &self.cells;
+        self.link.send(&layout, 1, |payload| {
+            layout.section_mut::<f64>(payload, Section::Potential)?.copy_from_slice(reply.potential);
+            layout.section_mut::<[f64; 3]>(payload, Section::Field)?.copy_from_slice(reply.e);
+            layout.section_mut::<u64>(payload, Section::Cells)?.copy_from_slice(cells);
+            layout.section_mut::<f64>(payload, Section::Answer)?.copy_from_slice(&answer);
+            Ok(())
+        })?;
+        self.asked = None;
+        Ok(())
+    }
+
+    /// Tells the DEM process why this one ends.
+    pub fn fail(&mut self, reason: &str) {
+        let header = Header::new(MessageKind::End, self.link.run(), 0);
+        let header = Header { rank: self.rank, ranks: self.ranks, ..header };
+        let layout = Layout::new(header).with::<u8>(Section::Text, reason.len());
+        let _ = self.link.send(&layout, 1, |payload| {
+            layout.section_mut::<u8>(payload, Section::Text)?.copy_from_slice(reason.as_bytes());
+            Ok(())
+        });
+    }
+
+    fn section<T: amberfield_wire::Element>(&self, section: Section) -> Result<&[T], CouplingError> {
+        self.asked.as_ref().ok_or_else(no_request)?.sections().get(section).map_err(of_dem)
+    }
+}
+
+fn read(message: &Message) -> Result<Asked, WireError> {
+    let header = message.header();
+    if message.kind != MessageKind::Charges {
+        return Err(WireError::Unexpected { kind: header.kind, solve: header.solve, rank: 0, ranks: 1 });
+    }
+    let numbers = message.sections().exactly::<f64>(Section::Request, 5)?;
+    Ok(Asked {
+        solve: header.solve,
+        permittivity: numbers[0],
+        tolerance: numbers[3],
+        neutralising_background: numbers[4] != 0.0,
+    })
+}
+
+fn of_dem(error: WireError) -> CouplingError {
+    CouplingError::Wire { peer: "DEM process", error }
+}
+
+fn no_request() -> CouplingError {
+    CouplingError::SharedMemory("no request has been received".into())
+}
+
+fn no_mesh() -> CouplingError {
+    CouplingError::SharedMemory("the mesh has not been sent".into())
+}

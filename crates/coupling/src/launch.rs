@@ -1,0 +1,120 @@
+//! Starting the field process, watching it, ending it.
+
+use crate::{CouplingError, SolverSettings};
+use std::path::{Path, PathBuf};
+use std::process::{Child, Command, ExitStatus, Stdio};
+use std::time::{Duration, Instant};
+
+/// The program, and the variable that names another one.
+const PROGRAM: &str = "electricFieldFoam";
+const VARIABLE: &str = "AMBERFIELD_SOLVER";
+/// What OpenFOAM's libraries want to know before they start, and where Debian's package has it.
+const PROJECT: (&str, &str) = ("WM_PROJECT_DIR", "/usr/share/openfoam");
+/// How long a solver that was told to end may take.
+const FAREWELL: Duration = Duration::from_secs(10);
+
+/// A field process of ours.
+#[derive(Debug)]
+pub(crate) struct Process {
+    child: Child,
+    ended: Option<ExitStatus>,
+}
+
+impl Process {
+    /// Starts the solver of a case for a run.
+    pub(crate) fn start(settings: &SolverSettings, run: &str) -> Result<Self, CouplingError> {
+        let program = program();
+        let failed = |why: String| CouplingError::Start { program: program.display().to_string(), why };
+        let case = settings.case.canonicalize().map_err(|error| {
+            failed(format!("its case {} cannot be opened: {error}", settings.case.display()))
+        })?;
+        let mut command = Command::new(&program);
+        if settings.ranks > 1 {
+            decompose(&case, settings.ranks).map_err(failed)?;
+            command = Command::new("mpirun");
+            command.args(["--oversubscribe", "--allow-run-as-root", "-np"]).arg(settings.ranks.to_string());
+            command.arg(&program).arg("-parallel");
+        }
+        command.arg("-case").arg(&case).arg("-run").arg(run).stdin(Stdio::null());
+        if std::env::var_os(PROJECT.0).is_none() {
+            command.env(PROJECT.0, PROJECT.1);
+        }
+        let (out, err) = match &settings.log {
+            None => (Stdio::null(), Stdio::null()),
+            Some(path) => {
+                let log = std::fs::File::create(path).and_then(|file| Ok((file.try_clone()?, file)));
+                let (out, err) =
+                    log.map_err(|error| failed(format!("cannot write {}: {error}", path.display())))?;
+                (out.into(), err.into())
+            }
+        };
+        let child = command.stdout(out).stderr(err).spawn().map_err(|error| failed(error.to_string()))?;
+        Ok(Self { child, ended: None })
+    }
+
+    /// Whether it still runs; else how it ended.
+    pub(crate) fn check(&mut self) -> Result<(), String> {
+        if self.ended.is_none() {
+            self.ended = self.child.try_wait().ok().flatten();
+        }
+        self.ended.map_or(Ok(()), |status| Err(status.to_string()))
+    }
+
+    /// Waits until it has ended, for a while if it was told to, then kills it.
+    pub(crate) fn end(&mut self, told: bool) {
+        let start = Instant::now();
+        while told && self.check().is_ok() && start.elapsed() < FAREWELL {
+            std::thread::sleep(Duration::from_millis(2));
+        }
+        if self.check().is_ok() {
+            let _ = self.child.kill();
+            let _ = self.child.wait();
+        }
+    }
+}
+
+impl Drop for Process {
+    fn drop(&mut self) {
+        self.end(false);
+    }
+}
+
+/// The solver's program: the one that the environment names, one beside this program, one that the project has built
+/// above it, or one on the path.
+fn program() -> PathBuf {
+    if let Some(named) = std::env::var_os(VARIABLE) {
+        return named.into();
+    }
+    let own = std::env::current_exe().unwrap_or_default();
+    let beside = own.with_file_name(PROGRAM);
+    let built = own.ancestors().map(|folder| folder.join("openfoam-solver/build").join(PROGRAM));
+    std::iter::once(beside).chain(built).find(|path| path.is_file()).unwrap_or_else(|| PROGRAM.into())
+}
+
+/// Cuts a case into as many parts as there are ranks, along its longest sides, unless it is cut so already.
+fn decompose(case: &Path, ranks: u32) -> Result<(), String> {
+    let is_cut = |rank: u32| case.join(format!("processor{rank}/constant/polyMesh")).is_dir();
+    if (0..ranks).all(is_cut) && !is_cut(ranks) {
+        return Ok(());
+    }
+    let dictionary = case.join("system/decomposeParDict");
+    if !dictionary.is_file() {
+        let text = format!(
+            "FoamFile {{ version 2.0; format ascii; class dictionary; object decomposeParDict; }}\n\
+             numberOfSubdomains {ranks};\nmethod hierarchical;\nhierarchicalCoeffs {{ n ({ranks} 1 1); delta 0.001; order xyz; }}\n"
+        );
+        std::fs::write(&dictionary, text)
+            .map_err(|error| format!("cannot write {}: {error}", dictionary.display()))?;
+    }
+    let mut command = Command::new("decomposePar");
+    command.args(["-force", "-case"]).arg(case).stdin(Stdio::null());
+    if std::env::var_os(PROJECT.0).is_none() {
+        command.env(PROJECT.0, PROJECT.1);
+    }
+    let output = command.output().map_err(|error| format!("decomposePar: {error}"))?;
+    if !output.status.success() {
+        let text = String::from_utf8_lossy(&output.stderr);
+        return Err(format!("decomposePar failed ({}): {}", output.status, text.trim()));
+    }
+    Ok(())
+}

@@ -1,0 +1,174 @@
+//! The header of every message, and the unit of its payload.
+
+use crate::WireError;
+use iceoryx2::prelude::ZeroCopySend;
+use std::mem::{align_of, offset_of, size_of};
+
+/// Raised with every change of a message.
+pub const PROTOCOL_VERSION: u32 = 1;
+/// Sections of a message at most.
+pub(crate) const MOST_SECTIONS: usize = 20;
+
+/// Unit of payloads: a cache line.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, ZeroCopySend)]
+#[repr(C)]
+#[repr(align(64))]
+#[type_name("amberfield Block64 1")]
+pub struct Block64 {
+    /// Whatever the sections make of them.
+    pub words: [u64; 8],
+}
+
+/// What a message is about.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[repr(u32)]
+pub enum MessageKind {
+    /// Field to DEM, once per rank: the rank's part of the mesh.
+    Mesh = 1,
+    /// DEM to field: charges and boundary data of one far-field solve.
+    Charges = 2,
+    /// Field to DEM: the answer.
+    Fields = 3,
+    /// DEM to field: save your state under the given name.
+    Checkpoint = 4,
+    /// Field to DEM: saved.
+    Saved = 5,
+    /// Either way: this was the last message; a text says why.
+    End = 6,
+}
+
+impl MessageKind {
+    fn of(number: u32) -> Result<Self, WireError> {
+        use MessageKind::{Charges, Checkpoint, End, Fields, Mesh, Saved};
+        [Mesh, Charges, Fields, Checkpoint, Saved, End]
+            .into_iter()
+            .find(|kind| *kind as u32 == number)
+            .ok_or(WireError::Kind(number))
+    }
+}
+
+/// What a section holds; vectors are three `f64`.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[repr(u32)]
+pub enum Section {
+    /// Text, UTF-8.
+    Text = 1,
+    /// Places of the charges [m].
+    Positions = 2,
+    /// Charges [C].
+    Charges = 3,
+    /// Places of the image charges [m].
+    ImagePositions = 4,
+    /// Image charges [C].
+    ImageCharges = 5,
+    /// By boundary face: potential [V] or outward slope [V/m].
+    Boundary = 6,
+    /// Numbers of a request: permittivity [F/m], radius of the clouds [m] (0: nearest cell), shape, relative tolerance of the
+    /// linear solver, 1 for a neutralising background.
+    Request = 7,
+    /// Potential at the cells' centres [V].
+    Potential = 8,
+    /// E at the cells' centres [V/m].
+    Field = 9,
+    /// Cell of each charge (`u64`); `u64::MAX` where it is another rank's.
+    Cells = 10,
+    /// Numbers of an answer: charge in the cells [C], charges outside the mesh, iterations, residual.
+    Answer = 11,
+    /// Cell centres [m].
+    Centres = 12,
+    /// Cell volumes [m³].
+    Volumes = 13,
+    /// Where each cell's faces begin (`u64`), one more than there are cells.
+    FirstFace = 14,
+    /// Outward unit normal of each cell's faces.
+    FaceNormals = 15,
+    /// Normal times face centre [m].
+    FaceOffsets = 16,
+    /// Beyond each face (`i64`): a cell c of all ranks as c, a boundary face b of this rank as −1 − b.
+    FaceNeighbours = 17,
+    /// What is added to a neighbour's coordinates [m].
+    FaceShifts = 18,
+    /// By boundary face, 10 numbers: centre [m], outward unit normal, area [m²], cell of this rank, 1 for a prescribed potential
+    /// and 0 for a prescribed slope, its value [V or V/m].
+    BoundaryFaces = 19,
+    /// Numbers of a mesh: lower and upper corner [m], 1 for each periodic axis, first cell of this rank, cells of all ranks.
+    MeshNumbers = 20,
+}
+
+/// Where a section lies.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, ZeroCopySend)]
+#[repr(C)]
+#[type_name("amberfield SectionEntry 1")]
+pub struct SectionEntry {
+    /// A [`Section`].
+    pub section: u32,
+    /// Size of an element [bytes].
+    pub element: u32,
+    /// Number of elements.
+    pub count: u64,
+    /// Block in which it begins.
+    pub first_block: u64,
+}
+
+/// What stands before every payload.
+#[derive(Clone, Copy, Debug, Default, PartialEq, ZeroCopySend)]
+#[repr(C)]
+#[type_name("amberfield Header 1")]
+pub struct Header {
+    /// [`PROTOCOL_VERSION`] of the sender.
+    pub version: u32,
+    /// A [`MessageKind`].
+    pub kind: u32,
+    /// Number of the run.
+    pub run: u64,
+    /// Number of the solve that a message asks for or answers.
+    pub solve: u64,
+    /// Rank of the sender among the field processes, and how many there are.
+    pub rank: u32,
+    /// See `rank`.
+    pub ranks: u32,
+    /// Sections used.
+    pub section_count: u64,
+    /// Where they lie.
+    pub sections: [SectionEntry; MOST_SECTIONS],
+}
+
+impl Header {
+    /// A header without sections.
+    #[must_use]
+    pub fn new(kind: MessageKind, run: u64, solve: u64) -> Self {
+        Self {
+            version: PROTOCOL_VERSION,
+            kind: kind as u32,
+            run,
+            solve,
+            rank: 0,
+            ranks: 1,
+            section_count: 0,
+            sections: [SectionEntry::default(); MOST_SECTIONS],
+        }
+    }
+
+    /// The kind of message, once version and run are those expected.
+    ///
+    /// # Errors
+    /// Another version, another run, an unknown kind.
+    pub fn check(&self, run: u64) -> Result<MessageKind, WireError> {
+        if self.version != PROTOCOL_VERSION {
+            return Err(WireError::Version { theirs: self.version, ours: PROTOCOL_VERSION });
+        }
+        if self.run != run {
+            return Err(WireError::Run { theirs: self.run, ours: run });
+        }
+        MessageKind::of(self.kind)
+    }
+}
+
+const _: () = {
+    assert!(size_of::<Block64>() == 64 && align_of::<Block64>() == 64);
+    assert!(size_of::<SectionEntry>() == 24);
+    assert!(size_of::<Header>() == 40 + 24 * MOST_SECTIONS && align_of::<Header>() == 8);
+    assert!(
+        offset_of!(Header, run) == 8 && offset_of!(Header, rank) == 24 && offset_of!(Header, sections) == 40
+    );
+};

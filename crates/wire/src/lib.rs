@@ -1,0 +1,13 @@
+//! What travels between the DEM process and the field process, with its layout asserted on both sides.
+//!
+//! A message is a [`Header`] and a payload of [`Block64`]s. The header says what kind of message it is and where its
+//! [`Section`]s lie: flat arrays, each beginning on a block. A new quantity is a new section. Whoever changes anything here raises
+//! [`PROTOCOL_VERSION`].
+
+mod error;
+mod header;
+mod sections;
+
+pub use error::WireError;
+pub use header::{Block64, Header, MessageKind, PROTOCOL_VERSION, Section, SectionEntry};
+pub use sections::{Element, Layout, Sections};

@@ -1,0 +1,141 @@
+/*---------------------------------------------------------------------------*\
+    amberfield: the electric field of charged grains
+    SPDX-License-Identifier: GPL-3.0-or-later
+\*---------------------------------------------------------------------------*/
+
+#include "fieldSide.H"
+#include "PstreamReduceOps.H"
+#include "error.H"
+
+#include <cfenv>
+
+static_assert(sizeof(Foam::scalar) == sizeof(double), "build OpenFOAM in double precision");
+
+namespace
+{
+
+//- No floating-point traps inside
+class noTraps
+{
+    std::fenv_t environment_;
+
+public:
+
+    noTraps()
+    {
+        std::feholdexcept(&environment_);
+    }
+
+    ~noTraps()
+    {
+        std::fesetenv(&environment_);
+    }
+};
+
+} // End anonymous namespace
+
+
+Foam::fieldSide::fieldSide(const string& run)
+:
+    field_(nullptr),
+    request_()
+{
+    noTraps quiet;
+    field_ = amberfield_field_open
+    (
+        run.c_str(),
+        uint32_t(Pstream::parRun() ? Pstream::myProcNo() : 0),
+        uint32_t(Pstream::parRun() ? Pstream::nProcs() : 1)
+    );
+    const bool failed = amberfield_field_error(field_)[0] != '\0';
+    check(failed ? AmberfieldStatus_Failed : AmberfieldStatus_Ok);
+}
+
+
+Foam::fieldSide::~fieldSide()
+{
+    noTraps quiet;
+    amberfield_field_close(field_);
+}
+
+
+void Foam::fieldSide::check(const AmberfieldStatus status)
+{
+    const bool failed = status == AmberfieldStatus_Failed;
+    const string reason(failed ? amberfield_field_error(field_) : "");
+    if (failed)
+    {
+        amberfield_field_fail(field_, reason.c_str());
+    }
+    if (returnReduce(failed, orOp<bool>()))
+    {
+        FatalErrorInFunction
+            << (failed ? reason : string("another rank failed"))
+            << exit(FatalError);
+    }
+}
+
+
+void Foam::fieldSide::sendMesh(const meshDescription& mesh)
+{
+    noTraps quiet;
+    const AmberfieldMesh view(mesh.view());
+    check(amberfield_field_send_mesh(field_, &view));
+}
+
+
+bool Foam::fieldSide::wait()
+{
+    noTraps quiet;
+    const AmberfieldStatus status = amberfield_field_wait(field_, &request_);
+    check(status);
+    return status == AmberfieldStatus_Ok;
+}
+
+
+void Foam::fieldSide::density(scalarField& rho)
+{
+    noTraps quiet;
+    check(amberfield_field_density(field_, rho.data(), uint64_t(rho.size())));
+}
+
+
+Foam::tmp<Foam::scalarField> Foam::fieldSide::boundary(const label faces)
+{
+    noTraps quiet;
+    tmp<scalarField> values(new scalarField(faces));
+    check(amberfield_field_boundary(field_, values.ref().data(), uint64_t(faces)));
+    return values;
+}
+
+
+void Foam::fieldSide::reply
+(
+    const scalarField& V,
+    const vectorField& E,
+    const label iterations,
+    const scalar residual
+)
+{
+    noTraps quiet;
+    check
+    (
+        amberfield_field_reply
+        (
+            field_,
+            V.cdata(),
+            reinterpret_cast<const scalar*>(E.cdata()),
+            uint64_t(V.size()),
+            uint64_t(iterations),
+            residual
+        )
+    );
+}
+
+
+void Foam::fieldSide::fail(const string& reason)
+{
+    noTraps quiet;
+    amberfield_field_fail(field_, reason.c_str());
+    FatalErrorInFunction << reason << exit(FatalError);
+}

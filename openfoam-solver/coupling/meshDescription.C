@@ -1,0 +1,217 @@
+/*---------------------------------------------------------------------------*\
+    amberfield: the electric field of charged grains
+    SPDX-License-Identifier: GPL-3.0-or-later
+\*---------------------------------------------------------------------------*/
+
+#include "meshDescription.H"
+#include "fixedGradientFvPatchFields.H"
+#include "fixedValueFvPatchFields.H"
+#include "globalIndex.H"
+#include "syncTools.H"
+#include "zeroGradientFvPatchFields.H"
+
+namespace
+{
+
+//- Shifts that are shorter, over the face's size, are no shifts
+const Foam::scalar smallShift = 1e-6;
+
+//- Whether a patch prescribes the potential
+bool isConductor(const Foam::fvPatchScalarField& V)
+{
+    return V.type() == Foam::fixedValueFvPatchScalarField::typeName;
+}
+
+//- Whether a patch prescribes the slope
+bool isInsulator(const Foam::fvPatchScalarField& V)
+{
+    return V.type() == Foam::fixedGradientFvPatchScalarField::typeName
+        || V.type() == Foam::zeroGradientFvPatchScalarField::typeName;
+}
+
+//- Prescribed potentials or slopes of a patch
+Foam::scalarField prescribed(const Foam::fvPatchScalarField& V)
+{
+    if (isConductor(V))
+    {
+        return V;
+    }
+    if (V.type() == Foam::fixedGradientFvPatchScalarField::typeName)
+    {
+        return Foam::refCast<const Foam::fixedGradientFvPatchScalarField>(V).gradient();
+    }
+    return Foam::scalarField(V.size(), Foam::scalar(0));
+}
+
+} // End anonymous namespace
+
+
+Foam::wordList Foam::meshDescription::farTypes(const volScalarField& V)
+{
+    wordList types(V.boundaryField().types());
+    forAll(types, patchi)
+    {
+        const fvPatchScalarField& pV = V.boundaryField()[patchi];
+        if (isInsulator(pV))
+        {
+            types[patchi] = fixedGradientFvPatchScalarField::typeName;
+        }
+        else if (!isConductor(pV) && !pV.coupled())
+        {
+            FatalErrorInFunction
+                << "patch " << pV.patch().name() << " of field " << V.name()
+                << " has the condition " << pV.type()
+                << "; give it fixedValue, fixedGradient, zeroGradient or cyclic"
+                << exit(FatalError);
+        }
+    }
+    return types;
+}
+
+
+Foam::meshDescription::meshDescription(const volScalarField& V)
+:
+    view_(),
+    centres_(V.mesh().C().primitiveField()),
+    volumes_(V.mesh().V())
+{
+    const fvMesh& mesh = V.mesh();
+    const label nInternal = mesh.nInternalFaces();
+    const label nBoundary = mesh.nFaces() - nInternal;
+    const globalIndex globalCells(mesh.nCells());
+
+    // Beyond coupled faces: the other side's cell and face centre
+    labelList otherCell(nBoundary, -1);
+    pointField otherCentre(nBoundary, Zero);
+    forAll(mesh.boundaryMesh(), patchi)
+    {
+        const polyPatch& patch = mesh.boundaryMesh()[patchi];
+        if (!patch.coupled())
+        {
+            continue;
+        }
+        if (!refCast<const coupledPolyPatch>(patch).parallel())
+        {
+            FatalErrorInFunction
+                << "patch " << patch.name() << " turns what crosses it; only"
+                << " cyclic patches that move it along an axis are possible"
+                << exit(FatalError);
+        }
+        forAll(patch, i)
+        {
+            const label b = patch.start() + i - nInternal;
+            otherCell[b] = globalCells.toGlobal(patch.faceCells()[i]);
+            otherCentre[b] = patch.faceCentres()[i];
+        }
+    }
+    syncTools::swapBoundaryFaceList(mesh, otherCell);
+    syncTools::swapBoundaryFaceList(mesh, otherCentre);
+
+    // Boundary faces, patch by patch
+    labelList boundaryIndex(nBoundary, -1);
+    forAll(V.boundaryField(), patchi)
+    {
+        const fvPatchScalarField& pV = V.boundaryField()[patchi];
+        const fvPatch& patch = pV.patch();
+        if (!isConductor(pV) && !isInsulator(pV))
+        {
+            continue;
+        }
+        patches_.append(patchi);
+        const scalarField values(prescribed(pV));
+        const vectorField nf(patch.nf());
+        forAll(patch, i)
+        {
+            boundaryIndex[patch.start() + i - nInternal] = label(boundary_.size());
+            const vector& c = patch.Cf()[i];
+            const vector& n = nf[i];
+            boundary_.push_back
+            ({{
+                c.x(), c.y(), c.z(), n.x(), n.y(), n.z(), patch.magSf()[i],
+                double(patch.faceCells()[i]), isConductor(pV) ? 1.0 : 0.0, values[i]
+            }});
+        }
+    }
+    const globalIndex globalBoundary(label(boundary_.size()));
+
+    // Faces, cell by cell
+    label count = 0;
+    forAll(mesh.cells(), celli)
+    {
+        count += mesh.cells()[celli].size();
+    }
+    normals_.resize(count);
+    offsets_.resize(count);
+    shifts_.resize(count);
+    neighbours_.resize(count);
+    firstFace_.assign(1, 0);
+    Vector<bool> periodic(false, false, false);
+    label entry = 0;
+    forAll(mesh.cells(), celli)
+    {
+        for (const label facei : mesh.cells()[celli])
+        {
+            const bool owner = mesh.faceOwner()[facei] == celli;
+            const vector area((owner ? 1.0 : -1.0)*mesh.faceAreas()[facei]);
+            const vector n(area/max(mag(area), VSMALL));
+            normals_[entry] = n;
+            offsets_[entry] = n & mesh.faceCentres()[facei];
+            shifts_[entry] = Zero;
+            if (facei < nInternal)
+            {
+                const label other = owner ? mesh.faceNeighbour()[facei] : mesh.faceOwner()[facei];
+                neighbours_[entry] = globalCells.toGlobal(other);
+            }
+            else if (otherCell[facei - nInternal] >= 0)
+            {
+                const vector shift(mesh.faceCentres()[facei] - otherCentre[facei - nInternal]);
+                neighbours_[entry] = otherCell[facei - nInternal];
+                if (mag(shift) > smallShift*sqrt(mag(area)))
+                {
+                    shifts_[entry] = shift;
+                    for (direction axis = 0; axis < 3; ++axis)
+                    {
+                        if (mag(shift[axis]) > 0.999*mag(shift))
+                        {
+                            periodic[axis] = true;
+                        }
+                    }
+                }
+            }
+            else if (boundaryIndex[facei - nInternal] >= 0)
+            {
+                neighbours_[entry] = -1 - int64_t(boundaryIndex[facei - nInternal]);
+            }
+            else
+            {
+                FatalErrorInFunction
+                    << "face " << facei << " belongs to no patch with a condition"
+                    << exit(FatalError);
+            }
+            ++entry;
+        }
+        firstFace_.push_back(uint64_t(entry));
+    }
+
+    const boundBox box(mesh.points(), true);
+    for (direction axis = 0; axis < 3; ++axis)
+    {
+        view_.low[axis] = box.min()[axis];
+        view_.high[axis] = box.max()[axis];
+        view_.periodic[axis] = returnReduce(periodic[axis], orOp<bool>()) ? 1 : 0;
+    }
+    view_.first_cell = uint64_t(globalCells.toGlobal(0));
+    view_.all_cells = uint64_t(globalCells.size());
+    view_.first_boundary = uint64_t(globalBoundary.toGlobal(0));
+    view_.cells = uint64_t(mesh.nCells());
+    view_.faces = uint64_t(count);
+    view_.boundary = uint64_t(boundary_.size());
+    view_.centres = reinterpret_cast<const double*>(centres_.cdata());
+    view_.volumes = volumes_.cdata();
+    view_.first_face = firstFace_.data();
+    view_.face_normals = reinterpret_cast<const double*>(normals_.cdata());
+    view_.face_offsets = offsets_.cdata();
+    view_.face_neighbours = neighbours_.data();
+    view_.face_shifts = reinterpret_cast<const double*>(shifts_.cdata());
+    view_.boundary_faces = boundary_.empty() ? nullptr : boundary_.front().data();
+}
