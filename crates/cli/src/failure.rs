@@ -7,6 +7,8 @@ use amberfield_scene::SceneError;
 
 /// Bad input.
 const EXIT_INPUT: u8 = 2;
+/// A peer that is lost or does not answer.
+const EXIT_PEER: u8 = 3;
 /// An answer outside its tolerance.
 const EXIT_TOLERANCE: u8 = 4;
 /// A bug of ours; the code of a panic.
@@ -40,13 +42,17 @@ impl Failure {
 
     /// A simulation that cannot go on.
     pub(crate) fn while_running(error: &DemError) -> Self {
-        Self::outside_tolerance(error.to_string())
+        match error {
+            DemError::Field(error @ FieldError::Solver(_)) => Self::of_field(error),
+            error => Self::outside_tolerance(error.to_string()),
+        }
     }
 
     /// A field that cannot be computed.
     pub(crate) fn of_field(error: &FieldError) -> Self {
         match error {
             FieldError::Tolerance { .. } => Self::outside_tolerance(error.to_string()),
+            FieldError::Solver(message) => Self { code: EXIT_PEER, message: message.clone() },
             error => Self::bad_input(error.to_string()),
         }
     }

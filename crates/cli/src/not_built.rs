@@ -7,11 +7,6 @@ use amberfield_scene::Scene;
 pub(crate) fn refuse(scene: &Scene, motion: bool) -> Result<(), Failure> {
     let field = scene.electric_field.as_ref();
     let asked = [
-        (
-            scene.solver.is_some(),
-            "coupling with OpenFOAM",
-            "remove [solver] and give [domain]: the internal grid computes the field",
-        ),
         (scene.gas, "coupled gas flow", "remove [gas]"),
         (
             motion && field.is_some_and(|field| field.enable_collision_charge_transfer),

@@ -1,6 +1,7 @@
 //! What a simulation is made of.
 
 use crate::field_crate::Choice;
+use crate::field_crate::far::Connect;
 use amberfield_core::{Domain, FieldSettings, Material, Particles, TimeSettings, Wall};
 
 /// The electric field of a scene.
@@ -12,6 +13,8 @@ pub struct FieldStageSetup {
     pub member: Vec<bool>,
     /// Parameters chosen earlier; `None` lets the field choose.
     pub choice: Option<Choice>,
+    /// A field solver of another process; `None`: the internal grid.
+    pub solver: Option<Connect>,
 }
 
 /// A scene, validated by `Simulation::new`.

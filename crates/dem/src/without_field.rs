@@ -13,6 +13,21 @@ pub enum Choice {}
 #[error("this build has no electric field; build amberfield-dem with its feature `field`")]
 pub struct FieldError;
 
+/// Fields over somebody else's mesh.
+pub mod far {
+    use super::FieldError;
+
+    /// How a far level is reached.
+    #[derive(Clone, Debug)]
+    pub enum Connect {}
+
+    impl Connect {
+        pub(crate) fn connect(&self) -> Result<(), FieldError> {
+            match *self {}
+        }
+    }
+}
+
 /// A field.
 #[derive(Debug)]
 pub enum ElectricField {}
@@ -43,6 +58,23 @@ impl ElectricField {
     }
 
     pub(crate) fn with_choice(_: &Domain, _: &FieldSettings, choice: &Choice) -> Result<Self, FieldError> {
+        match *choice {}
+    }
+
+    pub(crate) fn over_mesh(
+        (): (),
+        _: &FieldSettings,
+        _: &[Vector3<f64>],
+        _: &[f64],
+    ) -> Result<Self, FieldError> {
+        Err(FieldError)
+    }
+
+    pub(crate) fn over_mesh_with_choice(
+        (): (),
+        _: &FieldSettings,
+        choice: &Choice,
+    ) -> Result<Self, FieldError> {
         match *choice {}
     }
 

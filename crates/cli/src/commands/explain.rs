@@ -3,11 +3,12 @@
 use crate::arguments::ExplainOptions;
 use crate::failure::Failure;
 use crate::print::line;
-use crate::run::{domain_of, members, scene_name, setup_of};
+use crate::run::{connect_solver, domain_of, field_of, members, scene_name, setup_of};
 use crate::{machine, not_built, plan_text};
 use amberfield_core::{Axis, Boundary, Domain, Side};
 use amberfield_dem::Simulation;
 use amberfield_field::ElectricField;
+use amberfield_field::far::Connect;
 use amberfield_scene::{ElectricFieldSettings, Purpose, Scene, read_scene};
 use std::mem::size_of;
 
@@ -16,7 +17,7 @@ const BYTES_PER_MOVING_GRAIN: usize = 1200;
 
 /// Says what a scene will do.
 pub(crate) fn explain(options: &ExplainOptions) -> Result<(), Failure> {
-    let scene = read_scene(&options.scene, &options.set, Purpose::Explain)?;
+    let mut scene = read_scene(&options.scene, &options.set, Purpose::Explain)?;
     print_scene(&scene_name(&options.scene), &scene);
     if let Some(field) = &scene.electric_field {
         print_settings(field);
@@ -25,7 +26,8 @@ pub(crate) fn explain(options: &ExplainOptions) -> Result<(), Failure> {
         line(format_args!("warning: {warning}"));
     }
     not_built::refuse(&scene, scene.time.is_some())?;
-    if scene.time.is_some() { explain_run(&scene) } else { explain_field(&scene) }
+    let solver = connect_solver(&mut scene)?;
+    if scene.time.is_some() { explain_run(&scene, solver) } else { explain_field(&scene, solver) }
 }
 
 fn print_scene(name: &str, scene: &Scene) {
@@ -75,8 +77,9 @@ fn print_settings(field: &ElectricFieldSettings) {
     }
 }
 
-fn explain_run(scene: &Scene) -> Result<(), Failure> {
-    let simulation = Simulation::new(setup_of(scene, None)?).map_err(|error| Failure::at_start(&error))?;
+fn explain_run(scene: &Scene, solver: Option<Connect>) -> Result<(), Failure> {
+    let simulation =
+        Simulation::new(setup_of(scene, None, solver)?).map_err(|error| Failure::at_start(&error))?;
     for text in plan_text::lines(simulation.plan()) {
         line(format_args!("{text}"));
     }
@@ -106,7 +109,7 @@ fn explain_run(scene: &Scene) -> Result<(), Failure> {
     Ok(())
 }
 
-fn explain_field(scene: &Scene) -> Result<(), Failure> {
+fn explain_field(scene: &Scene, solver: Option<Connect>) -> Result<(), Failure> {
     let Some(settings) = &scene.electric_field else {
         line(format_args!("nothing to compute: the scene has neither [time] nor [electric_field]"));
         return Ok(());
@@ -118,8 +121,7 @@ fn explain_field(scene: &Scene) -> Result<(), Failure> {
     let positions: Vec<_> =
         indices.iter().map(|index| domain.wrap(scene.particles.position[*index])).collect();
     let charges: Vec<_> = indices.iter().map(|index| scene.particles.charge[*index]).collect();
-    let field = ElectricField::new(domain, &settings.field, &positions, &charges)
-        .map_err(|error| Failure::of_field(&error))?;
+    let field = field_of(domain, &settings.field, solver, &positions, &charges)?;
     for text in plan_text::lines(&field.plan()) {
         line(format_args!("{text}"));
     }

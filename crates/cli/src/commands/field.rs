@@ -2,7 +2,7 @@
 
 use crate::arguments::FieldOptions;
 use crate::failure::Failure;
-use crate::run::{domain_of, members, parameters, scene_name};
+use crate::run::{connect_solver, domain_of, field_of, members, parameters, scene_name};
 use crate::{not_built, print};
 use amberfield_core::{Method, Vector3};
 use amberfield_field::{ElectricField, FieldValues, Wanted};
@@ -17,11 +17,12 @@ use std::time::Instant;
 /// Computes the electric field at the particles of a scene.
 pub(crate) fn field(options: &FieldOptions) -> Result<(), Failure> {
     let out = out_file(options)?;
-    let scene = read_scene(&options.scene, &overrides(options), Purpose::Field)?;
+    let mut scene = read_scene(&options.scene, &overrides(options), Purpose::Field)?;
     not_built::refuse(&scene, false)?;
     for warning in &scene.warnings {
         tracing::warn!("{warning}");
     }
+    let solver = connect_solver(&mut scene)?;
     let settings = scene.electric_field.as_ref().expect("the purpose needs it");
     let domain = domain_of(&scene)?;
     let member = members(&scene);
@@ -30,8 +31,7 @@ pub(crate) fn field(options: &FieldOptions) -> Result<(), Failure> {
     let positions: Vec<_> =
         indices.iter().map(|index| domain.wrap(scene.particles.position[*index])).collect();
     let charges: Vec<_> = indices.iter().map(|index| scene.particles.charge[*index]).collect();
-    let mut field = ElectricField::new(domain, &settings.field, &positions, &charges)
-        .map_err(|error| Failure::of_field(&error))?;
+    let mut field = field_of(domain, &settings.field, solver, &positions, &charges)?;
     let wanted = Wanted { potential: true, components: options.components };
     let mut values = FieldValues::default();
     let mut seconds: BTreeMap<String, Vec<f64>> = BTreeMap::new();

@@ -4,7 +4,7 @@ use crate::arguments::{Common, RunOptions};
 use crate::failure::Failure;
 use crate::logging::Log;
 use crate::progress::Progress;
-use crate::run::{Clock, Ending, Existing, RunFolder, Saved, Session, scene_name, setup_of};
+use crate::run::{Clock, Ending, Existing, RunFolder, Saved, Session, connect_solver, scene_name, setup_of};
 use crate::{interrupt, not_built, plan_text, print};
 use amberfield_dem::Simulation;
 use amberfield_scene::{Purpose, read_checkpoint, read_scene, write_json, write_text};
@@ -22,7 +22,7 @@ pub(crate) fn run(options: &RunOptions, common: &Common, log: &Log) -> Result<()
     };
     let out = out_folder(options)?;
     RunFolder::check(&out, existing, &options.scene)?;
-    let scene = read_scene(&options.scene, &options.set, Purpose::Run)?;
+    let mut scene = read_scene(&options.scene, &options.set, Purpose::Run)?;
     not_built::refuse(&scene, true)?;
     for warning in &scene.warnings {
         tracing::warn!("{warning}");
@@ -33,7 +33,8 @@ pub(crate) fn run(options: &RunOptions, common: &Common, log: &Log) -> Result<()
         .as_ref()
         .map(|checkpoint| read_checkpoint::<Saved>(checkpoint, scene.hash()))
         .transpose()?;
-    let setup = setup_of(&scene, None)?;
+    let solver = connect_solver(&mut scene)?;
+    let setup = setup_of(&scene, None, solver)?;
     let (simulation, earlier) = match saved {
         Some(Saved { state, history, wall_s, stage_s }) => {
             let clock = Clock { wall_s, stages: stage_s };

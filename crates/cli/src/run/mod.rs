@@ -6,11 +6,13 @@ mod record;
 mod schedule;
 mod session;
 mod setup;
+mod solver;
 mod summary;
 
 pub(crate) use folder::{Existing, RunFolder, is_stale, remove_leftovers};
 pub(crate) use name::scene_name;
 pub(crate) use record::Clock;
 pub(crate) use session::{Saved, Session};
-pub(crate) use setup::{domain_of, members, parameters, setup_of};
+pub(crate) use setup::{domain_of, field_of, members, parameters, setup_of};
+pub(crate) use solver::connect_solver;
 pub(crate) use summary::Ending;

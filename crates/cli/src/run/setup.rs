@@ -1,9 +1,10 @@
 //! Description to set-up of a simulation.
 
 use crate::failure::Failure;
-use amberfield_core::Domain;
+use amberfield_core::{Domain, FieldSettings, Vector3};
 use amberfield_dem::{FieldStageSetup, Setup};
-use amberfield_field::Choice;
+use amberfield_field::far::Connect;
+use amberfield_field::{Choice, ElectricField};
 use amberfield_scene::Scene;
 use serde_json::{Map, Value, json};
 
@@ -36,13 +37,18 @@ pub(crate) fn parameters(choice: &Choice) -> Value {
     }
 }
 
-/// The simulation that a scene asks for; `choice` are field parameters chosen earlier.
-pub(crate) fn setup_of(scene: &Scene, choice: Option<Choice>) -> Result<Setup, Failure> {
+/// The simulation that a scene asks for, with its field solver; `choice` are field parameters chosen earlier.
+pub(crate) fn setup_of(
+    scene: &Scene,
+    choice: Option<Choice>,
+    solver: Option<Connect>,
+) -> Result<Setup, Failure> {
     let time = scene.time.clone().ok_or_else(|| Failure::bad_input("the scene has no [time]; add it"))?;
     let field = scene.electric_field.as_ref().map(|field| FieldStageSetup {
         settings: field.field.clone(),
         member: members(scene),
         choice,
+        solver,
     });
     Ok(Setup {
         domain: domain_of(scene)?.clone(),
@@ -52,4 +58,21 @@ pub(crate) fn setup_of(scene: &Scene, choice: Option<Choice>) -> Result<Setup, F
         time,
         field,
     })
+}
+
+/// The field of a scene's charges: on the internal grid, or over a field solver's mesh.
+pub(crate) fn field_of(
+    domain: &Domain,
+    settings: &FieldSettings,
+    solver: Option<Connect>,
+    positions: &[Vector3<f64>],
+    charges: &[f64],
+) -> Result<ElectricField, Failure> {
+    let field = match solver {
+        None => ElectricField::new(domain, settings, positions, charges),
+        Some(solver) => {
+            solver.connect().and_then(|solver| ElectricField::over_mesh(solver, settings, positions, charges))
+        }
+    };
+    field.map_err(|error| Failure::of_field(&error))
 }

@@ -110,15 +110,20 @@ impl FieldStage {
         particles: &Particles,
         state: Option<&FieldState>,
     ) -> Result<Self, DemError> {
-        let FieldStageSetup { settings, member, choice } = setup;
+        let FieldStageSetup { settings, member, choice, solver } = setup;
         let members = || (0..particles.len()).filter(|&i| member[i]);
         let smallest_radius = members().map(|i| particles.radius[i]).fold(f64::INFINITY, f64::min);
-        let field = match state.map(|s| &s.choice).or(choice.as_ref()) {
-            Some(choice) => ElectricField::with_choice(domain, &settings, choice)?,
-            None => {
-                let position: Vec<_> = members().map(|i| domain.wrap(particles.position[i])).collect();
-                let charge: Vec<_> = members().map(|i| particles.charge[i]).collect();
-                ElectricField::new(domain, &settings, &position, &charge)?
+        let known = state.map(|s| &s.choice).or(choice.as_ref());
+        let position = || members().map(|i| domain.wrap(particles.position[i])).collect::<Vec<_>>();
+        let charge = || members().map(|i| particles.charge[i]).collect::<Vec<_>>();
+        let field = match (solver, known) {
+            (None, Some(choice)) => ElectricField::with_choice(domain, &settings, choice)?,
+            (None, None) => ElectricField::new(domain, &settings, &position(), &charge())?,
+            (Some(solver), Some(choice)) => {
+                ElectricField::over_mesh_with_choice(solver.connect()?, &settings, choice)?
+            }
+            (Some(solver), None) => {
+                ElectricField::over_mesh(solver.connect()?, &settings, &position(), &charge())?
             }
         };
         let mut stage = Self {
@@ -364,7 +369,7 @@ mod tests {
             })
             .collect();
         let settings = FieldSettings { method: Method::Direct, tolerance: 1e-2, ..FieldSettings::default() };
-        let setup = FieldStageSetup { settings, member: vec![true; 4], choice: None };
+        let setup = FieldStageSetup { settings, member: vec![true; 4], choice: None, solver: None };
         let mut stage = FieldStage::new(&domain, setup, &particles, None).expect("a good scene");
         let grains = Grains::new(&particles, vec![0; 4], false);
         stage.evaluate(&domain, &grains, &particles, STEP).expect("a good scene");

@@ -15,6 +15,7 @@ pub use mesh::{BoundaryFace, CellFace, Condition, FarMesh, FarMeshParts, Neighbo
 use crate::FieldError;
 use nalgebra::Vector3;
 use std::fmt;
+use std::sync::Arc;
 
 /// What the far level's source is made of.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -66,6 +67,32 @@ pub struct FarValues {
     pub iterations: u64,
     /// Its residual, relative.
     pub residual: f64,
+}
+
+/// How a far level is reached when a field is built, and again after it was lost.
+#[derive(Clone)]
+pub struct Connect(Arc<dyn Fn() -> Result<Box<dyn FarField>, FieldError> + Send + Sync>);
+
+impl Connect {
+    /// By calling `connect`.
+    #[must_use]
+    pub fn new(connect: impl Fn() -> Result<Box<dyn FarField>, FieldError> + Send + Sync + 'static) -> Self {
+        Self(Arc::new(connect))
+    }
+
+    /// Reaches it.
+    ///
+    /// # Errors
+    /// Nobody there.
+    pub fn connect(&self) -> Result<Box<dyn FarField>, FieldError> {
+        (self.0)()
+    }
+}
+
+impl fmt::Debug for Connect {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.write_str("Connect")
+    }
 }
 
 /// Somebody who solves for the far level's potential.

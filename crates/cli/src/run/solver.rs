@@ -1,0 +1,89 @@
+//! The scene's field solver: started before anything else, because its mesh may bring the box.
+
+use crate::failure::Failure;
+use amberfield_core::{Axis, Domain, Method};
+use amberfield_coupling::{Announced, CouplingError, RemoteSolver, SolverSettings};
+use amberfield_field::FieldError;
+use amberfield_field::far::{Connect, FarField};
+use amberfield_scene::{Scene, SolverLoss};
+use std::sync::Mutex;
+use std::time::Duration;
+
+/// Relative tolerance of the linear solver over the field's, unless the scene says it.
+const FAR_TOLERANCE: f64 = 1e-4;
+/// What the solver prints, in its case's folder.
+const LOG: &str = "log.electricFieldFoam";
+
+/// Reaches the scene's field solver, if it has one; the scene's box is the mesh's where it has none of its own.
+pub(crate) fn connect_solver(scene: &mut Scene) -> Result<Option<Connect>, Failure> {
+    let (Some(solver), Some(field)) = (&scene.solver, &scene.electric_field) else { return Ok(None) };
+    refuse(field.field.method, solver.on_solver_loss)?;
+    let settings = SolverSettings {
+        case: solver.openfoam_case.clone(),
+        start: solver.start,
+        ranks: solver.ranks,
+        timeout: Duration::from_secs_f64(solver.timeout_s),
+        far_tolerance: field.far_tolerance.unwrap_or(FAR_TOLERANCE * field.field.tolerance),
+        log: Some(solver.openfoam_case.join(LOG)),
+    };
+    let connected = connect(&settings).map_err(|error| Failure::of_field(&error.into()))?;
+    let mesh = connected.mesh();
+    tracing::info!("field solver: {} cells, {} boundary faces", mesh.cell_count(), mesh.boundary().len());
+    match &scene.domain {
+        None => scene.domain = Some(mesh.domain().clone()),
+        Some(domain) => agree(domain, mesh.domain())?,
+    }
+    // The one that is there first, then new ones.
+    let first = Mutex::new(Some(connected));
+    Ok(Some(Connect::new(move || {
+        let waiting = first.lock().unwrap_or_else(|poisoned| poisoned.into_inner()).take();
+        let solver = match waiting {
+            Some(solver) => solver,
+            None => connect(&settings)?,
+        };
+        Ok(Box::new(solver) as Box<dyn FarField>)
+    })))
+}
+
+fn connect(settings: &SolverSettings) -> Result<RemoteSolver, CouplingError> {
+    Announced::new(settings.clone())?.connect()
+}
+
+/// Refuses what is not built over a solver's mesh.
+fn refuse(method: Method, loss: SolverLoss) -> Result<(), Failure> {
+    if method != Method::P3m {
+        return Err(Failure::bad_input(format!(
+            "this version has no method {method} over a field solver's mesh; set electric_field.method = \"p3m\", or remove [solver]"
+        )));
+    }
+    if loss != SolverLoss::Stop {
+        return Err(Failure::bad_input(
+            "this version has no other solver.on_solver_loss than \"stop\"; set it, or leave it out",
+        ));
+    }
+    Ok(())
+}
+
+/// Refuses a box that is not the mesh's.
+fn agree(domain: &Domain, mesh: &Domain) -> Result<(), Failure> {
+    const SAME: f64 = 1e-6;
+    for axis in Axis::ALL {
+        let ends = |box_of: &Domain| [box_of.min()[axis.index()], box_of.max()[axis.index()]];
+        let ([low, high], [mesh_low, mesh_high]) = (ends(domain), ends(mesh));
+        let periodic = domain.is_periodic(axis);
+        let far = SAME * (mesh_high - mesh_low);
+        if periodic != mesh.is_periodic(axis) {
+            let [ours, theirs] = if periodic { ["", "not "] } else { ["not ", ""] };
+            return Err(FieldError::Settings(format!(
+                "[domain] is {ours}periodic along {axis}, the mesh of [solver] openfoam_case is {theirs}cyclic there; make them agree, or leave [domain] out"
+            )))
+            .map_err(|error| Failure::of_field(&error));
+        }
+        if periodic && ((low - mesh_low).abs() > far || (high - mesh_high).abs() > far) {
+            return Err(Failure::bad_input(format!(
+                "[domain] reaches from {low} to {high} m along {axis}, the mesh of [solver] openfoam_case from {mesh_low} to {mesh_high} m; a periodic axis must be the same in both"
+            )));
+        }
+    }
+    Ok(())
+}
