@@ -109,6 +109,13 @@ Foam::tmp<Foam::scalarField> Foam::fieldSide::boundary(const label faces)
 }
 
 
+void Foam::fieldSide::guess(scalarField& V)
+{
+    noTraps quiet;
+    check(amberfield_field_guess(field_, V.data(), uint64_t(V.size())));
+}
+
+
 void Foam::fieldSide::reply
 (
     const scalarField& V,

@@ -115,6 +115,14 @@ enum AmberfieldStatus amberfield_field_boundary(struct AmberfieldField *field,
                                                 double *values,
                                                 uint64_t faces);
 
+// Copies the potential [V] to start from to this rank's cells; leaves it where there is none, which is the usual case.
+//
+// # Safety
+// As amberfield_field_error; `potential` has room for `cells` numbers, this rank's cells.
+enum AmberfieldStatus amberfield_field_guess(struct AmberfieldField *field,
+                                             double *potential,
+                                             uint64_t cells);
+
 // Answers a request: potential [V] and E [V/m] (three doubles each) at this rank's cell centres.
 //
 // # Safety

@@ -209,6 +209,28 @@ pub unsafe extern "C" fn amberfield_field_boundary(
     }
 }
 
+/// Copies the potential [V] to start from to this rank's cells; leaves it where there is none, which is the usual case.
+///
+/// # Safety
+/// As amberfield_field_error; `potential` has room for `cells` numbers, this rank's cells.
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn amberfield_field_guess(
+    field: *mut AmberfieldField,
+    potential: *mut f64,
+    cells: u64,
+) -> AmberfieldStatus {
+    // SAFETY: the caller's promise.
+    unsafe {
+        let potential = slice_mut(potential, cells as usize);
+        with(field, |side| {
+            if let Some(guess) = side.guess()? {
+                potential.copy_from_slice(guess);
+            }
+            Ok(AmberfieldStatus::Ok)
+        })
+    }
+}
+
 /// Answers a request: potential [V] and E [V/m] (three doubles each) at this rank's cell centres.
 ///
 /// # Safety

@@ -8,5 +8,6 @@ mod field_side;
 pub use field_side::{
     AmberfieldField, AmberfieldMesh, AmberfieldRequest, AmberfieldStatus, amberfield_field_boundary,
     amberfield_field_close, amberfield_field_density, amberfield_field_error, amberfield_field_fail,
-    amberfield_field_open, amberfield_field_reply, amberfield_field_send_mesh, amberfield_field_wait,
+    amberfield_field_guess, amberfield_field_open, amberfield_field_reply, amberfield_field_send_mesh,
+    amberfield_field_wait,
 };

@@ -113,6 +113,9 @@ impl FarField for BoxSolver {
         }
         let count = source.len();
         values.potential.resize(count, 0.0);
+        if request.guess.len() == count {
+            values.potential.copy_from_slice(request.guess);
+        }
         let mut product = vec![0.0; count];
         self.apply(&values.potential, &mut product);
         let mut rest: Vec<f64> = source.iter().zip(&product).map(|(b, a)| b - a).collect();

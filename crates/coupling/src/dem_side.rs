@@ -38,6 +38,8 @@ pub struct RemoteSolver {
     cells: Vec<usize>,
     /// Number of the last solve.
     solve: u64,
+    /// Whether the last solve was answered.
+    healthy: bool,
     // Dropped in this order: the link says goodbye, the process ends, the run's place goes.
     link: Link,
     process: Option<Process>,
@@ -97,7 +99,7 @@ impl Announced {
         let parts = parts.map_err(of_solver)?;
         let cells = parts.iter().map(|part| part.centres.len()).collect();
         let mesh = assemble(&parts)?;
-        Ok(RemoteSolver { settings, mesh, cells, solve: 0, link, process, _root: root })
+        Ok(RemoteSolver { settings, mesh, cells, solve: 0, healthy: true, link, process, _root: root })
     }
 }
 
@@ -117,6 +119,10 @@ impl RemoteSolver {
             .with::<[f64; 3]>(Section::ImagePositions, request.image_positions.len())
             .with::<f64>(Section::ImageCharges, request.image_charges.len())
             .with::<f64>(Section::Boundary, request.boundary.len());
+        let layout = match request.guess.len() {
+            0 => layout,
+            cells => layout.with::<f64>(Section::Guess, cells),
+        };
         self.link.send(&layout, self.settings.ranks as usize, |payload| {
             layout.section_mut::<f64>(payload, Section::Request)?.copy_from_slice(&numbers);
             let places = layout.section_mut::<[f64; 3]>(payload, Section::Positions)?;
@@ -126,6 +132,9 @@ impl RemoteSolver {
             write_vectors(places, request.image_positions);
             layout.section_mut::<f64>(payload, Section::ImageCharges)?.copy_from_slice(request.image_charges);
             layout.section_mut::<f64>(payload, Section::Boundary)?.copy_from_slice(request.boundary);
+            if !request.guess.is_empty() {
+                layout.section_mut::<f64>(payload, Section::Guess)?.copy_from_slice(request.guess);
+            }
             Ok(())
         })
     }
@@ -188,7 +197,9 @@ impl FarField for RemoteSolver {
     }
 
     fn solve(&mut self, request: &FarRequest<'_>, values: &mut FarValues) -> Result<(), FieldError> {
-        Ok(self.exchange(request, values)?)
+        let outcome = self.exchange(request, values);
+        self.healthy = outcome.is_ok();
+        Ok(outcome?)
     }
 }
 
@@ -202,7 +213,7 @@ impl Drop for RemoteSolver {
             Ok(())
         });
         if let Some(process) = &mut self.process {
-            process.end(said.is_ok());
+            process.end(said.is_ok() && self.healthy);
         }
     }
 }

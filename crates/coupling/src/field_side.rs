@@ -46,6 +46,7 @@ pub struct FieldSide {
     ranks: u32,
     /// The rank's cells, for mapping, once they were sent.
     mesh: Option<FarMesh>,
+    first_cell: usize,
     first_boundary: usize,
     density: Option<([f64; 2], SmoothDensity)>,
     asked: Option<Message>,
@@ -54,6 +55,8 @@ pub struct FieldSide {
     charge: f64,
     outside: u64,
     positions: Vec<Vector3<f64>>,
+    // Dropped after the link.
+    root: RunRoot,
 }
 
 impl FieldSide {
@@ -69,6 +72,7 @@ impl FieldSide {
             rank,
             ranks,
             mesh: None,
+            first_cell: 0,
             first_boundary: 0,
             density: None,
             asked: None,
@@ -77,6 +81,7 @@ impl FieldSide {
             charge: 0.0,
             outside: 0,
             positions: Vec::new(),
+            root,
         })
     }
 
@@ -86,6 +91,7 @@ impl FieldSide {
     /// A mesh that makes no sense, a DEM process that is gone.
     pub fn send_mesh(&mut self, part: &MeshPart<'_>, first_boundary: usize) -> Result<(), CouplingError> {
         self.mesh = Some(own_cells(part)?);
+        self.first_cell = part.first_cell as usize;
         self.first_boundary = first_boundary;
         let layout = part.layout(mesh_header(self.link.run(), self.rank, self.ranks));
         self.link.send(&layout, 1, |payload| part.write(&layout, payload))
@@ -100,7 +106,12 @@ impl FieldSide {
         let message = match self.link.receive(0, Duration::MAX, || self.link.dem_is_alive()) {
             Ok(message) => message,
             Err(CouplingError::Ended { .. }) => return Ok(None),
-            Err(error) => return Err(error),
+            Err(error) => {
+                if matches!(error, CouplingError::Lost { .. }) {
+                    self.root.inherit();
+                }
+                return Err(error);
+            }
         };
         let asked = read(&message).map_err(of_dem)?;
         self.asked = Some(message);
@@ -117,6 +128,18 @@ impl FieldSide {
         all.get(self.first_boundary..last).ok_or_else(|| {
             of_dem(WireError::Count { section: Section::Boundary, theirs: all.len(), ours: last })
         })
+    }
+
+    /// Potential at this rank's cell centres to start from [V]; `None`: from where the solver is.
+    ///
+    /// # Errors
+    /// Fewer of them than there are cells.
+    pub fn guess(&self) -> Result<Option<&[f64]>, CouplingError> {
+        let Ok(all) = self.section::<f64>(Section::Guess) else { return Ok(None) };
+        let cells = self.first_cell..self.first_cell + self.mesh.as_ref().map_or(0, FarMesh::cell_count);
+        let ours = cells.end;
+        let error = || of_dem(WireError::Count { section: Section::Guess, theirs: all.len(), ours });
+        all.get(cells).map(Some).ok_or_else(error)
     }
 
     /// Density [C/m³] at this rank's cell centres of what was asked for, and each charge's cell.

@@ -18,6 +18,7 @@ use std::time::{Duration, Instant};
 
 type Ipc = ipc_threadsafe::Service;
 type Sample = iceoryx2::sample::Sample<Ipc, [Block64], Header>;
+type Outbox = Publisher<Ipc, [Block64], Header>;
 
 /// How long a receiver waits before it looks whether its peer lives.
 const SLICE: Duration = Duration::from_millis(20);
@@ -77,7 +78,7 @@ pub(crate) struct Link {
     config: Config,
     channel: Channel<Ipc, [Block64], Header>,
     /// With the most blocks that it can send.
-    publisher: Option<(Publisher<Ipc, [Block64], Header>, usize)>,
+    publisher: Option<(Outbox, usize)>,
     notifier: Notifier<Ipc>,
     subscriber: Subscriber<Ipc, [Block64], Header>,
     listener: Listener<Ipc>,
@@ -187,7 +188,7 @@ impl Link {
         Ok(())
     }
 
-    fn new_publisher(&self, blocks: usize) -> Result<Publisher<Ipc, [Block64], Header>, CouplingError> {
+    fn new_publisher(&self, blocks: usize) -> Result<Outbox, CouplingError> {
         said(
             self.channel
                 .publisher_builder()

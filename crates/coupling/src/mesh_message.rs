@@ -159,16 +159,18 @@ pub(crate) fn own_cells(part: &MeshPart<'_>) -> Result<FarMesh, CouplingError> {
     let own = part.first_cell..part.first_cell + part.centres.len() as u64;
     let mut boundary: Vec<[f64; BOUNDARY_NUMBERS]> = part.boundary_faces.to_vec();
     let mut neighbours = part.face_neighbours.to_vec();
-    for cell in 0..part.centres.len() {
-        for face in part.first_face[cell] as usize..part.first_face[cell + 1] as usize {
-            let beyond = part.face_neighbours[face];
-            if beyond >= 0 && !own.contains(&(beyond as u64)) {
-                let [nx, ny, nz] = part.face_normals[face];
-                let [cx, cy, cz] = part.centres[cell];
-                neighbours[face] = -1 - boundary.len() as i64;
+    for (cell, ends) in part.first_face.windows(2).enumerate() {
+        let faces = ends[0] as usize..ends[1] as usize;
+        for (neighbour, normal) in neighbours[faces.clone()].iter_mut().zip(&part.face_normals[faces]) {
+            if *neighbour < 0 {
+                continue;
+            }
+            if own.contains(&(*neighbour as u64)) {
+                *neighbour -= part.first_cell as i64;
+            } else {
+                let ([cx, cy, cz], [nx, ny, nz]) = (part.centres[cell], *normal);
+                *neighbour = -1 - boundary.len() as i64;
                 boundary.push([cx, cy, cz, nx, ny, nz, 1.0, cell as f64, 0.0, 0.0]);
-            } else if beyond >= 0 {
-                neighbours[face] = beyond - part.first_cell as i64;
             }
         }
     }

@@ -69,6 +69,11 @@ impl RunRoot {
         self.run
     }
 
+    /// Removes the place when this is dropped: its maker is dead.
+    pub(crate) fn inherit(&mut self) {
+        self.owned = true;
+    }
+
     pub(crate) fn path(&self) -> PathBuf {
         Path::new(SHARED).join(&self.name)
     }

@@ -116,6 +116,7 @@ fn request<'a>(
         image_charges: &[],
         boundary,
         permittivity: 2.0,
+        guess: &[],
         neutralising_background: false,
     }
 }

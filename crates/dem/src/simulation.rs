@@ -12,6 +12,7 @@ use crate::integrate::{Bounds, ChunkMotion, drift, kick};
 use crate::material_pairs::{Features, PairTable};
 use crate::neighbours::Neighbours;
 use crate::pair_forces::pair_forces;
+use crate::state::State;
 use crate::timing::{Stage, Stopwatch};
 use crate::walls::Walls;
 use amberfield_core::{Domain, OnExit, Particles, Plan, TimeSettings, Vector3};
@@ -51,6 +52,8 @@ pub struct Simulation {
     keys: Vec<(u64, u32, u32)>,
     order: Vec<u32>,
     warned_unstable: bool,
+    /// State before a step in which another process may be lost.
+    rescued: Option<State>,
     watch: Stopwatch,
 }
 
@@ -62,6 +65,8 @@ impl Simulation {
     /// fails.
     pub fn step(&mut self) -> Result<(), DemError> {
         self.watch.start();
+        let may_be_lost = self.field.as_ref().is_some_and(|field| field.may_be_lost(self.step_s, self.speed));
+        self.rescued = may_be_lost.then(|| self.state());
         self.step_index += 1;
         let motion =
             drift(&mut self.grains, self.time.gravity_m_s2, self.step_s, &self.bounds, &mut self.motion);
@@ -78,6 +83,11 @@ impl Simulation {
         kick(&mut self.grains, &self.neighbours, self.step_s, &mut self.new_force, &mut self.new_torque);
         self.watch.lap(Stage::Integrate);
         Ok(())
+    }
+
+    /// The state before the step that failed, where a field solver was asked in it: nothing is lost with the solver.
+    pub fn rescued(&mut self) -> Option<State> {
+        self.rescued.take()
     }
 
     /// Contact, wall and field forces at the present positions, into `new_force` and `new_torque`; pushes

@@ -40,6 +40,8 @@ pub(crate) struct WallHistory {
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub(crate) struct FieldState {
     pub(crate) choice: Choice,
+    /// Of a field solver in another process, at its cells [V].
+    pub(crate) far_potential: Vec<f64>,
     pub(crate) forecast: crate::field_stage::Forecast,
     pub(crate) energy: crate::field_stage::EnergyForecast,
     pub(crate) control: crate::field_stage::IntervalControl,

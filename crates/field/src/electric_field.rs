@@ -301,6 +301,23 @@ impl ElectricField {
         Ok(self.error_measured)
     }
 
+    /// What a field solver of another process found last, at its cells' centres [V]: state of a run; empty without one.
+    #[must_use]
+    pub fn far_potential(&self) -> &[f64] {
+        self.method.far_potential()
+    }
+
+    /// Goes on from a field solver's state of an earlier run, as [`Self::far_potential`] gave it.
+    pub fn start_from(&mut self, far_potential: &[f64]) {
+        self.method.start_from(far_potential);
+    }
+
+    /// Whether a field solver of another process has a part in it.
+    #[must_use]
+    pub fn has_solver(&self) -> bool {
+        self.mesh_cells.is_some()
+    }
+
     /// Parameters in force.
     #[must_use]
     pub fn choice(&self) -> &Choice {

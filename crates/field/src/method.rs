@@ -20,6 +20,14 @@ pub trait FieldMethod: fmt::Debug + Send + Sync {
         out: &mut FieldValues,
     ) -> Result<(), FieldError>;
 
+    /// What a field solver of another process found last, at its cells' centres [V]; empty without one.
+    fn far_potential(&self) -> &[f64] {
+        &[]
+    }
+
+    /// Lets a field solver start its next solve from what it found in an earlier run [V].
+    fn start_from(&mut self, _far_potential: &[f64]) {}
+
     /// Mean number of partners that were summed for a particle in the last evaluation, images included.
     fn pairs_per_particle(&self) -> f64;
 

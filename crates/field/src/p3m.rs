@@ -237,6 +237,16 @@ impl FieldMethod for P3m {
         check_result(&out.e)
     }
 
+    fn far_potential(&self) -> &[f64] {
+        self.far.as_ref().map_or(&[], FarLevel::potential)
+    }
+
+    fn start_from(&mut self, potential: &[f64]) {
+        if let Some(far) = &mut self.far {
+            far.start_from(potential);
+        }
+    }
+
     fn pairs_per_particle(&self) -> f64 {
         self.near.pairs_per_particle()
     }

@@ -91,6 +91,8 @@ pub enum Section {
     /// By boundary face, 10 numbers: centre [m], outward unit normal, area [m²], cell of this rank, 1 for a prescribed potential
     /// and 0 for a prescribed slope, its value [V or V/m].
     BoundaryFaces = 19,
+    /// Potential at the cells' centres of all ranks to start the linear solver from [V]; absent: from where it is.
+    Guess = 21,
     /// Numbers of a mesh: lower and upper corner [m], 1 for each periodic axis, first cell of this rank, cells of all ranks.
     MeshNumbers = 20,
 }

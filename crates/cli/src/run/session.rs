@@ -83,7 +83,12 @@ impl<'a> Session<'a> {
                 break Ending::Interrupted;
             }
             if let Err(error) = self.step(progress) {
-                // The grains are between two steps: there is nothing to save but what is known.
+                // The grains are between two steps: what can be saved is the state before, if it was kept.
+                if let Some(state) = self.simulation.rescued() {
+                    let path = self.checkpoint_of(state.step_index());
+                    self.save(state)?;
+                    tracing::warn!("the state before it is saved; go on with --resume {}", path.display());
+                }
                 write_summary(self, first, &before, Ending::Failed, Some(error.message()))?;
                 return Err(error);
             }
@@ -115,20 +120,25 @@ impl<'a> Session<'a> {
 
     /// Path of the checkpoint of the present step.
     pub(crate) fn checkpoint_path(&self) -> PathBuf {
-        self.folder.file(&format!("checkpoints/step_{:012}.amber", self.simulation.step_index()))
+        self.checkpoint_of(self.simulation.step_index())
+    }
+
+    fn checkpoint_of(&self, step: u64) -> PathBuf {
+        self.folder.file(&format!("checkpoints/step_{step:012}.amber"))
     }
 
     fn checkpoint(&mut self) -> Result<(), Failure> {
+        self.save(self.simulation.state())
+    }
+
+    fn save(&mut self, state: State) -> Result<(), Failure> {
         let clock = self.clock();
-        let saved = Saved {
-            state: self.simulation.state(),
-            history: self.schedule.history,
-            wall_s: clock.wall_s,
-            stage_s: clock.stages,
-        };
-        let path = self.checkpoint_path();
+        let step = state.step_index();
+        let saved =
+            Saved { state, history: self.schedule.history, wall_s: clock.wall_s, stage_s: clock.stages };
+        let path = self.checkpoint_of(step);
         write_checkpoint(&path, self.scene.hash(), &saved)?;
-        tracing::debug!(step = self.simulation.step_index(), "checkpoint {}", path.display());
+        tracing::debug!(step, "checkpoint {}", path.display());
         Ok(())
     }
 

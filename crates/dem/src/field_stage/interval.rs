@@ -83,6 +83,11 @@ impl IntervalControl {
         self.age >= self.intervals.steps_now
     }
 
+    /// Whether the field will be due by its interval in the next step.
+    pub(crate) fn may_be_due(&self) -> bool {
+        self.age + 1 >= self.intervals.steps_now
+    }
+
     /// Books an evaluation and chooses the next interval of at most `most` steps. `check` is `None` when no
     /// step was taken since the last evaluation.
     pub(crate) fn evaluated(

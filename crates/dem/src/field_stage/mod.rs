@@ -12,6 +12,7 @@
 
 mod forecast;
 mod interval;
+mod members;
 
 pub(crate) use forecast::{EnergyForecast, Forecast};
 pub(crate) use interval::IntervalControl;
@@ -26,10 +27,13 @@ use crate::state::FieldState;
 use amberfield_core::constants::{VACUUM_PERMITTIVITY, coulomb_constant};
 use amberfield_core::{CouplingInterval, Domain, FieldSettings, ForceLimit, Particles, Vector3};
 use amberfield_laws::{force_limit, time_step_limits};
+use members::Members;
 use serde::{Deserialize, Serialize};
 
 /// Largest travel of any grain between evaluations, over the smallest radius.
 const MOST_TRAVEL: f64 = 0.5;
+/// What a grain may gain in speed within a step, when it is guessed whether the field will be due.
+const FASTER: f64 = 4.0;
 
 /// The potential costs little on top of E, and spares the energy an evaluation of its own.
 const WANTED: Wanted = Wanted { potential: true, components: false };
@@ -45,32 +49,6 @@ pub struct Limited {
     pub grain_steps: u64,
     /// Largest electric force before limiting, over the whole run [N].
     pub largest_force_n: f64,
-}
-
-/// Members of the field: sorted indices, positions inside the domain, charges.
-#[derive(Debug, Default)]
-pub(crate) struct Members {
-    index: Vec<u32>,
-    position: Vec<Vector3<f64>>,
-    charge: Vec<f64>,
-    /// Grains, members or not.
-    count: usize,
-}
-
-impl Members {
-    fn collect(&mut self, member: &[bool], domain: &Domain, grains: &Grains, particles: &Particles) {
-        self.index.clear();
-        self.position.clear();
-        self.charge.clear();
-        self.count = grains.len();
-        for (i, &original) in grains.original.iter().enumerate() {
-            if member[original as usize] {
-                self.index.push(i as u32);
-                self.position.push(domain.wrap(grains.position(i)));
-                self.charge.push(particles.charge[original as usize]);
-            }
-        }
-    }
 }
 
 /// What the force limiter finds in a chunk: grains limited, largest force before limiting [N].
@@ -116,7 +94,7 @@ impl FieldStage {
         let known = state.map(|s| &s.choice).or(choice.as_ref());
         let position = || members().map(|i| domain.wrap(particles.position[i])).collect::<Vec<_>>();
         let charge = || members().map(|i| particles.charge[i]).collect::<Vec<_>>();
-        let field = match (solver, known) {
+        let mut field = match (solver, known) {
             (None, Some(choice)) => ElectricField::with_choice(domain, &settings, choice)?,
             (None, None) => ElectricField::new(domain, &settings, &position(), &charge())?,
             (Some(solver), Some(choice)) => {
@@ -126,6 +104,9 @@ impl FieldStage {
                 ElectricField::over_mesh(solver.connect()?, &settings, &position(), &charge())?
             }
         };
+        if let Some(state) = state {
+            field.start_from(&state.far_potential);
+        }
         let mut stage = Self {
             field,
             settings,
@@ -158,6 +139,7 @@ impl FieldStage {
     pub(crate) fn state(&self) -> FieldState {
         FieldState {
             choice: self.field.choice().clone(),
+            far_potential: self.field.far_potential().to_vec(),
             forecast: self.forecast.clone(),
             energy: self.energy,
             control: self.control,
@@ -182,6 +164,12 @@ impl FieldStage {
     /// did to the field stays until the next evaluation, and counts in the error that it measures.
     pub(crate) fn reorder(&mut self, order: &[u32]) {
         self.forecast.reorder(order);
+    }
+
+    /// Whether the next step may ask another process for the field, which may be lost.
+    pub(crate) fn may_be_lost(&self, step: f64, speed: f64) -> bool {
+        let far = self.travel + FASTER * step * speed > MOST_TRAVEL * self.smallest_radius;
+        self.field.has_solver() && (far || self.control.may_be_due())
     }
 
     /// Books a step of length `step` [s] at largest speed `speed` [m/s]; whether E is due.
@@ -313,7 +301,10 @@ impl FieldStage {
     ) -> Result<f64, DemError> {
         self.onlookers.collect(&self.member, domain, grains, particles);
         let Members { position, charge, .. } = &self.onlookers;
+        let before = self.field.far_potential().to_vec();
         self.field.evaluate(position, charge, WANTED, &mut self.values)?;
+        // A field solver goes on from where the motion left it.
+        self.field.start_from(&before);
         Ok(self.energy_of(&self.onlookers, domain))
     }
 

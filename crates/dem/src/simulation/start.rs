@@ -155,6 +155,7 @@ impl Simulation {
             keys: Vec::new(),
             order: Vec::new(),
             warned_unstable: false,
+            rescued: None,
             watch: Stopwatch::default(),
         };
         run.resize_scratch();

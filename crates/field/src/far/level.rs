@@ -39,6 +39,8 @@ pub(crate) struct FarLevel {
     boundary: Vec<f64>,
     cells: Vec<u32>,
     values: FarValues,
+    /// Where the next solve is to start from; empty: where the solver is.
+    guess: Vec<f64>,
 }
 
 impl FarLevel {
@@ -59,6 +61,7 @@ impl FarLevel {
             boundary: Vec::new(),
             cells: Vec::new(),
             values: FarValues::default(),
+            guess: Vec::new(),
             solver,
         }
     }
@@ -154,13 +157,27 @@ impl FarLevel {
             image_charges: &self.image_charges,
             boundary: &self.boundary,
             permittivity: self.permittivity,
+            guess: &self.guess,
             neutralising_background: self.neutralising_background,
         };
         self.solver.solve(&request, &mut self.values)?;
+        self.guess.clear();
         let mesh = self.solver.mesh();
         self.fits.fit(mesh, &self.values.potential, &self.boundary);
         self.locate(positions);
         Ok(())
+    }
+
+    /// What the next solve starts from at the cells' centres [V]: the potential of the last one, unless told otherwise.
+    pub(crate) fn potential(&self) -> &[f64] {
+        if self.guess.is_empty() { &self.values.potential } else { &self.guess }
+    }
+
+    /// Starts the next solve from a potential of an earlier run [V].
+    pub(crate) fn start_from(&mut self, potential: &[f64]) {
+        if potential.len() == self.mesh().cell_count() {
+            self.guess = potential.to_vec();
+        }
     }
 
     /// E [V/m] and potential [V] at the grains, after [`Self::solve`].

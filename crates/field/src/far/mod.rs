@@ -48,6 +48,9 @@ pub struct FarRequest<'a> {
     pub boundary: &'a [f64],
     /// Permittivity of the medium [F/m].
     pub permittivity: f64,
+    /// φ at the cells' centres to start from [V], so that a run that is resumed goes on bit for bit; empty: from where the
+    /// solver is.
+    pub guess: &'a [f64],
     /// Whether the mean density is taken off, where no face fixes the potential.
     pub neutralising_background: bool,
 }

@@ -1,0 +1,148 @@
+//! Everything that `openfoam-solver/` needs, and its build.
+//!
+//! Debian's OpenFOAM package has programs and libraries, but no headers and no wmake: the headers come from the matching source
+//! package, by the system's own package sources turned into source ones, into a folder below `target/`.
+
+use crate::shell::{cargo, run as execute, works};
+use anyhow::{Context, Result, bail};
+use std::path::{Path, PathBuf};
+use std::process::Command;
+
+/// What is installed from Debian where it is missing.
+const PACKAGES: [&str; 5] = ["openfoam", "g++", "make", "cmake", "bzip2"];
+/// Folders of the headers that the solver includes.
+const HEADERS: [&str; 4] = ["finiteVolume", "meshTools", "OpenFOAM", "OSspecific/POSIX"];
+/// What running anything linked to OpenFOAM wants to know, and where Debian has it.
+const PROJECT: (&str, &str) = ("WM_PROJECT_DIR", "/usr/share/openfoam");
+
+/// Installs what is missing, fetches the headers, builds the C library, the solver and its self-test, and runs that.
+pub(crate) fn run(root: &Path) -> Result<()> {
+    provide_packages()?;
+    let headers = provide_headers(root)?;
+    execute(&mut cargo(root, &["build", "--release", "-p", "amberfield-capi"]))?;
+    let (source, build) = (root.join("openfoam-solver"), root.join("openfoam-solver/build"));
+    let library = root.join("target/release/libamberfield_capi.a");
+    execute(
+        Command::new("cmake")
+            .args(["-S".as_ref(), source.as_os_str(), "-B".as_ref(), build.as_os_str()])
+            .arg(format!("-DFOAM_SRC={}", headers.display()))
+            .arg(format!("-DAMBERFIELD_LIB={}", library.display())),
+    )?;
+    execute(Command::new("cmake").arg("--build").arg(&build).args(["--parallel", "2"]))?;
+    let mut test = Command::new(build.join("selfTest"));
+    if std::env::var_os(PROJECT.0).is_none() {
+        test.env(PROJECT.0, PROJECT.1);
+    }
+    execute(&mut test).context("the build computes wrong numbers; is -D__restrict__= among the flags?")
+}
+
+fn provide_packages() -> Result<()> {
+    let missing: Vec<&str> = PACKAGES.into_iter().filter(|package| installed(package).is_none()).collect();
+    if missing.is_empty() {
+        return Ok(());
+    }
+    println!("installing {} with apt-get", missing.join(", "));
+    execute(Command::new("apt-get").args(["update", "-q"]))
+        .and_then(|()| {
+            let mut install = Command::new("apt-get");
+            install.args(["install", "-y", "-q", "--no-install-recommends"]).args(&missing);
+            execute(install.env("DEBIAN_FRONTEND", "noninteractive"))
+        })
+        .with_context(|| format!("cannot install {}; install it, then try again", missing.join(", ")))
+}
+
+/// Source version of an installed package.
+fn installed(package: &str) -> Option<String> {
+    let query = Command::new("dpkg-query")
+        .args(["-W", "-f", "${db:Status-Status} ${source:Version}", package])
+        .output()
+        .ok()?;
+    let text = String::from_utf8(query.stdout).ok()?;
+    text.strip_prefix("installed ").map(str::to_owned)
+}
+
+/// The `src` folder of the headers.
+fn provide_headers(root: &Path) -> Result<PathBuf> {
+    let version = installed("openfoam").context("OpenFOAM is not installed as a package")?;
+    let folder = root.join("target/openfoam").join(&version);
+    let source = folder.join("src");
+    let complete = folder.join("complete");
+    if complete.is_file() {
+        return Ok(source);
+    }
+    println!("fetching OpenFOAM's headers (source package {version}) into target/openfoam");
+    let apt = private_apt(&folder)?;
+    let with_apt = |arguments: &[&str]| {
+        let mut command = Command::new("apt-get");
+        command.env("APT_CONFIG", &apt).current_dir(&folder).args(arguments);
+        execute(&mut command)
+    };
+    with_apt(&["update", "-q"])?;
+    with_apt(&["source", "-q", "--download-only", &format!("openfoam={version}")])?;
+    let archive = std::fs::read_dir(&folder)?
+        .flatten()
+        .map(|entry| entry.path())
+        .find(|path| path.to_string_lossy().contains(".orig.tar"))
+        .context("the source package has no archive")?;
+    let mut unpack = Command::new("tar");
+    unpack.arg("-xf").arg(&archive).args(["--strip-components=1", "--wildcards", "*/src/*", "*/wmake/*"]);
+    execute(unpack.current_dir(&folder))?;
+    std::fs::remove_file(&archive)?;
+    let wmake = folder.join("wmake");
+    let path = std::env::var("PATH").unwrap_or_default();
+    for header in HEADERS {
+        let mut link = Command::new(wmake.join("wmakeLnInclude"));
+        link.arg("-s").arg(source.join(header)).env("WM_DIR", &wmake).env("WM_PROJECT_DIR", &folder);
+        execute(link.env("PATH", format!("{}:{path}", wmake.display())))?;
+    }
+    std::fs::write(complete, "")?;
+    Ok(source)
+}
+
+/// A configuration of apt with the system's package sources as source ones, and state of its own.
+fn private_apt(folder: &Path) -> Result<PathBuf> {
+    for part in ["apt/lists/partial", "apt/cache/archives/partial", "apt/parts"] {
+        std::fs::create_dir_all(folder.join(part))?;
+    }
+    let system = Path::new("/etc/apt");
+    let parts = std::fs::read_dir(system.join("sources.list.d")).into_iter().flatten().flatten();
+    let mut found = false;
+    for path in parts.map(|entry| entry.path()).chain([system.join("sources.list")]) {
+        let Ok(text) = std::fs::read_to_string(&path) else { continue };
+        let lines = text.lines().map(|line| match line.strip_prefix("Types:") {
+            Some(_) => "Types: deb-src".to_owned(),
+            None if line.starts_with("deb ") => line.replacen("deb ", "deb-src ", 1),
+            None => line.to_owned(),
+        });
+        let lines: Vec<String> = lines.collect();
+        let name = path.file_name().unwrap_or_default();
+        let ending = if text.contains("Types:") { "sources" } else { "list" };
+        let own = folder.join("apt/parts").join(name).with_extension(ending);
+        std::fs::write(own, lines.join("\n") + "\n")?;
+        found = true;
+    }
+    if !found {
+        bail!("no package sources below {}; configure apt, then try again", system.display());
+    }
+    let path = folder.join("apt/apt.conf");
+    let place = folder.join("apt");
+    let place = place.display();
+    std::fs::write(
+        &path,
+        format!(
+            "Dir::State::lists \"{place}/lists\";\nDir::Cache \"{place}/cache\";\n\
+             Dir::Etc::sourcelist \"/dev/null\";\nDir::Etc::sourceparts \"{place}/parts\";\n\
+             APT::Sandbox::User \"root\";\n"
+        ),
+    )?;
+    Ok(path)
+}
+
+/// Whether the solver was built.
+pub(crate) fn is_built(root: &Path) -> bool {
+    works(
+        Command::new(root.join("openfoam-solver/build/electricFieldFoam"))
+            .arg("-help")
+            .env(PROJECT.0, PROJECT.1),
+    )
+}
