@@ -7,6 +7,8 @@ mod support;
 mod capacitor;
 #[path = "charged-ball/check.rs"]
 mod charged_ball;
+#[path = "coupled-settling-bed/check.rs"]
+mod coupled_settling_bed;
 #[path = "grounded-plane/check.rs"]
 mod grounded_plane;
 #[path = "heap/check.rs"]

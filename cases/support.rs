@@ -31,7 +31,16 @@ impl Case {
                     .expect("a copy");
             }
         }
-        Self { folder }
+        let case = Self { folder };
+        for part in ["0", "system"] {
+            let entries = fs::read_dir(source.join("foam").join(part));
+            for path in entries.into_iter().flatten().map(|entry| entry.expect("an entry").path()) {
+                let copy = case.path("foam").join(part);
+                fs::create_dir_all(&copy).expect("a folder");
+                fs::copy(&path, copy.join(path.file_name().expect("a file has a name"))).expect("a copy");
+            }
+        }
+        case
     }
 
     fn path(&self, file: &str) -> PathBuf {

@@ -69,6 +69,9 @@ void Foam::fieldSide::check(const AmberfieldStatus status)
     }
     if (returnReduce(failed, orOp<bool>()))
     {
+        // No destructor runs on the way out
+        amberfield_field_close(field_);
+        field_ = nullptr;
         FatalErrorInFunction
             << (failed ? reason : string("another rank failed"))
             << exit(FatalError);
@@ -144,5 +147,7 @@ void Foam::fieldSide::fail(const string& reason)
 {
     noTraps quiet;
     amberfield_field_fail(field_, reason.c_str());
+    amberfield_field_close(field_);
+    field_ = nullptr;
     FatalErrorInFunction << reason << exit(FatalError);
 }

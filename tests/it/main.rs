@@ -6,5 +6,6 @@ mod bad_input;
 mod explain_and_doctor;
 mod field;
 mod interrupt;
+mod openfoam;
 mod run;
 mod scenes;

@@ -51,7 +51,7 @@ pub enum CouplingError {
     },
     /// The field process cannot be started.
     #[error(
-        "cannot start {program}: {why}; build it with `cargo xtask openfoam`, or name it in the environment variable AMBERFIELD_SOLVER"
+        "cannot start the field solver {program}: {why} (`cargo xtask openfoam` builds it; the environment variable AMBERFIELD_SOLVER names another)"
     )]
     Start {
         /// Program.

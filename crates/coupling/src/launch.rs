@@ -1,6 +1,7 @@
 //! Starting the field process, watching it, ending it.
 
 use crate::{CouplingError, SolverSettings};
+use std::os::unix::process::CommandExt as _;
 use std::path::{Path, PathBuf};
 use std::process::{Child, Command, ExitStatus, Stdio};
 use std::time::{Duration, Instant};
@@ -18,16 +19,18 @@ const FAREWELL: Duration = Duration::from_secs(10);
 pub(crate) struct Process {
     child: Child,
     ended: Option<ExitStatus>,
+    log: Option<PathBuf>,
 }
 
 impl Process {
     /// Starts the solver of a case for a run.
     pub(crate) fn start(settings: &SolverSettings, run: &str) -> Result<Self, CouplingError> {
-        let program = program();
+        let program = solver_program();
         let failed = |why: String| CouplingError::Start { program: program.display().to_string(), why };
         let case = settings.case.canonicalize().map_err(|error| {
             failed(format!("its case {} cannot be opened: {error}", settings.case.display()))
         })?;
+        provide_mesh(&case).map_err(failed)?;
         let mut command = Command::new(&program);
         if settings.ranks > 1 {
             decompose(&case, settings.ranks).map_err(failed)?;
@@ -48,8 +51,10 @@ impl Process {
                 (out.into(), err.into())
             }
         };
+        // A group of its own: an interrupt at the terminal is the DEM process's to handle.
+        command.process_group(0);
         let child = command.stdout(out).stderr(err).spawn().map_err(|error| failed(error.to_string()))?;
-        Ok(Self { child, ended: None })
+        Ok(Self { child, ended: None, log: settings.log.clone() })
     }
 
     /// Whether it still runs; else how it ended.
@@ -57,7 +62,12 @@ impl Process {
         if self.ended.is_none() {
             self.ended = self.child.try_wait().ok().flatten();
         }
-        self.ended.map_or(Ok(()), |status| Err(status.to_string()))
+        let Some(status) = self.ended else { return Ok(()) };
+        let log = self.log.as_ref().and_then(|path| std::fs::read_to_string(path).ok());
+        match log.as_deref().map(last_words).filter(|words| !words.is_empty()) {
+            Some(words) => Err(format!("{status}: {words}")),
+            None => Err(status.to_string()),
+        }
     }
 
     /// Waits until it has ended, for a while if it was told to, then kills it.
@@ -79,9 +89,20 @@ impl Drop for Process {
     }
 }
 
+/// What OpenFOAM says of a fatal error: the lines before it says where.
+fn last_words(log: &str) -> String {
+    let lines = log.lines().map(str::trim).skip_while(|line| !line.contains("FOAM FATAL")).skip(1);
+    let lines = lines
+        .map(|line| line.trim_start_matches(|c: char| c == '[' || c == ']' || c.is_ascii_digit()).trim());
+    let words: Vec<&str> =
+        lines.skip_while(|line| line.is_empty()).take_while(|line| !line.is_empty()).collect();
+    words.join(" ")
+}
+
 /// The solver's program: the one that the environment names, one beside this program, one that the project has built
 /// above it, or one on the path.
-fn program() -> PathBuf {
+#[must_use]
+pub fn solver_program() -> PathBuf {
     if let Some(named) = std::env::var_os(VARIABLE) {
         return named.into();
     }
@@ -91,10 +112,29 @@ fn program() -> PathBuf {
     std::iter::once(beside).chain(built).find(|path| path.is_file()).unwrap_or_else(|| PROGRAM.into())
 }
 
-/// Cuts a case into as many parts as there are ranks, along its longest sides, unless it is cut so already.
+/// Makes the mesh of a case that has only a recipe for it.
+fn provide_mesh(case: &Path) -> Result<(), String> {
+    let has = |path: &str| case.join(path).exists();
+    if has("constant/polyMesh/points") || has("constant/polyMesh/points.gz") {
+        return Ok(());
+    }
+    if !has("system/blockMeshDict") {
+        return Err(format!(
+            "its case {} has neither constant/polyMesh nor system/blockMeshDict; make the mesh",
+            case.display()
+        ));
+    }
+    tool("blockMesh", case, &[])
+}
+
+/// Cuts a case into as many parts as there are ranks, along x unless it says otherwise, anew where its mesh or potential is
+/// newer than the parts.
 fn decompose(case: &Path, ranks: u32) -> Result<(), String> {
-    let is_cut = |rank: u32| case.join(format!("processor{rank}/constant/polyMesh")).is_dir();
-    if (0..ranks).all(is_cut) && !is_cut(ranks) {
+    let time_of = |path: PathBuf| path.metadata().and_then(|data| data.modified()).ok();
+    let part = |rank: u32| time_of(case.join(format!("processor{rank}/constant/polyMesh/points")));
+    let newest = ["constant/polyMesh/points", "0/phiE", "system/decomposeParDict"];
+    let newest = newest.iter().filter_map(|path| time_of(case.join(path))).max();
+    if part(ranks).is_none() && (0..ranks).all(|rank| part(rank) > newest) {
         return Ok(());
     }
     let dictionary = case.join("system/decomposeParDict");
@@ -106,15 +146,23 @@ fn decompose(case: &Path, ranks: u32) -> Result<(), String> {
         std::fs::write(&dictionary, text)
             .map_err(|error| format!("cannot write {}: {error}", dictionary.display()))?;
     }
-    let mut command = Command::new("decomposePar");
-    command.args(["-force", "-case"]).arg(case).stdin(Stdio::null());
+    tool("decomposePar", case, &["-force"])
+}
+
+/// Runs one of OpenFOAM's own programs on a case.
+fn tool(name: &str, case: &Path, options: &[&str]) -> Result<(), String> {
+    let mut command = Command::new(name);
+    command.args(options).arg("-case").arg(case).stdin(Stdio::null());
     if std::env::var_os(PROJECT.0).is_none() {
         command.env(PROJECT.0, PROJECT.1);
     }
-    let output = command.output().map_err(|error| format!("decomposePar: {error}"))?;
-    if !output.status.success() {
-        let text = String::from_utf8_lossy(&output.stderr);
-        return Err(format!("decomposePar failed ({}): {}", output.status, text.trim()));
+    let output = command.output().map_err(|error| format!("{name}: {error}"))?;
+    if output.status.success() {
+        return Ok(());
     }
-    Ok(())
+    Err(format!(
+        "{name} failed ({}): {}",
+        output.status,
+        last_words(&String::from_utf8_lossy(&output.stderr))
+    ))
 }

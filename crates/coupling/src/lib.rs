@@ -16,5 +16,6 @@ pub use box_solver::BoxSolver;
 pub use dem_side::{Announced, RemoteSolver, SolverSettings};
 pub use error::CouplingError;
 pub use field_side::{Asked, FieldSide, Reply};
+pub use launch::solver_program;
 pub use mesh_message::MeshPart;
 pub use run_root::{RunRoot, stale_runs};

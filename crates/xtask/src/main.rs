@@ -18,7 +18,7 @@ use std::process::ExitCode;
 const USAGE: &str = "\
 cargo xtask check [--without tests]   what CI asks: fmt, clippy, tidy, docs, deny, tests
 cargo xtask test                      every test: documentation examples, units, commands, cases at smoke size;
-                                      installs nothing, uses cargo-nextest where it is installed
+                                      builds the field solver first (see openfoam); uses cargo-nextest where it is installed
 cargo xtask tidy                      the repository's own rules
 cargo xtask deny                      licences and sources of everything that is linked; installs cargo-deny where
                                       it is missing

@@ -3,7 +3,7 @@
 //! Debian's OpenFOAM package has programs and libraries, but no headers and no wmake: the headers come from the matching source
 //! package, by the system's own package sources turned into source ones, into a folder below `target/`.
 
-use crate::shell::{cargo, run as execute, works};
+use crate::shell::{cargo, run as execute};
 use anyhow::{Context, Result, bail};
 use std::path::{Path, PathBuf};
 use std::process::Command;
@@ -136,13 +136,4 @@ fn private_apt(folder: &Path) -> Result<PathBuf> {
         ),
     )?;
     Ok(path)
-}
-
-/// Whether the solver was built.
-pub(crate) fn is_built(root: &Path) -> bool {
-    works(
-        Command::new(root.join("openfoam-solver/build/electricFieldFoam"))
-            .arg("-help")
-            .env(PROJECT.0, PROJECT.1),
-    )
 }

@@ -1,13 +1,15 @@
-//! Every test of the repository, with nothing to install by hand.
+//! Every test of the repository; installs what they need and says so.
 
+use crate::openfoam;
 use crate::shell::{cargo, run as execute, works};
 use anyhow::Result;
 use std::path::Path;
 
-/// Documentation examples, then unit tests, command tests and cases at smoke size.
+/// The field solver, documentation examples, then unit tests, command tests and cases at smoke size.
 ///
 /// The documentation examples come first so that the last line counts the tests proper.
 pub(crate) fn run(root: &Path) -> Result<()> {
+    openfoam::run(root)?;
     execute(&mut cargo(root, &["test", "--workspace", "--doc"]))?;
     if works(&mut cargo(root, &["nextest", "--version"])) {
         execute(&mut cargo(root, &["nextest", "run", "--workspace", "--no-fail-fast"]))

@@ -23,21 +23,18 @@ pub(crate) fn doctor(options: &DoctorOptions) -> Result<(), Failure> {
     }
     match machine::shared_memory() {
         Some((total, free)) => line(format_args!(
-            "shared memory: /dev/shm {}, {} free (not used by this version)",
+            "shared memory: /dev/shm {}, {} free (a run with a field solver needs some 100 bytes a grain and a cell)",
             machine::bytes(total),
             machine::bytes(free)
         )),
-        None => line(format_args!("shared memory: no /dev/shm (not used by this version)")),
+        None => line(format_args!("shared memory: no /dev/shm; a run cannot have a field solver")),
     }
     match openfoam() {
-        Some(place) => line(format_args!(
-            "OpenFOAM: found at {}; the coupling is not part of this version, the internal grid is used",
-            place.display()
-        )),
-        None => line(format_args!(
-            "OpenFOAM: not found; the coupling is not part of this version, the internal grid is used"
-        )),
+        Some(place) => line(format_args!("OpenFOAM: found at {}", place.display())),
+        None => line(format_args!("OpenFOAM: not found; without [solver] the internal grid is used")),
     }
+    line(format_args!("field solver: {}", amberfield_coupling::solver_program().display()));
+    stale_memory(options.clean);
     stale_runs(options.clean)
 }
 
@@ -49,6 +46,18 @@ fn openfoam() -> Option<PathBuf> {
         std::env::split_paths(&path).map(|folder| folder.join("foamDictionary")).find(|file| file.is_file())
     };
     project.filter(|folder| folder.is_dir()).or_else(application)
+}
+
+/// Runs in shared memory whose DEM process went away.
+fn stale_memory(clean: bool) {
+    let stale = amberfield_coupling::stale_runs(clean);
+    if stale.is_empty() {
+        line(format_args!("stale shared memory: none"));
+    }
+    for name in stale {
+        let what = if clean { "removed" } else { "doctor --clean removes it" };
+        line(format_args!("stale shared memory: {name} ({what})"));
+    }
 }
 
 /// Run folders here and one level below whose process went away.
