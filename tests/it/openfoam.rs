@@ -179,6 +179,24 @@ fn periodic_box_agrees_and_refuses_a_net_charge() {
     assert!(answer.stderr.contains("net charge"), "{}", answer.stderr);
 }
 
+/// 20 000 grains, three tenths of the volume, on cells of 2.9 diameters.
+#[test]
+fn coarse_mesh_errs_by_less_than_8_in_1000() {
+    const MOST: f64 = 8e-3;
+    let many = ["--set", "particles.generate.count=20000", "--set", "particles.generate.radius_m=1.727e-4"];
+    let wall = ("wall", "type fixedValue; value uniform 0;");
+    let faces = "x = 'grounded'\ny = 'grounded'\nz = 'grounded'";
+    for charge in ["bipolar = 1e-12", "constant = 1e-12"] {
+        let scene = Box::new(&[wall; 6], faces, charge);
+        good(&scene.field("coupled.csv", &[&many[..], &["--tolerance", "5e-3"]].concat()));
+        scene.alone();
+        good(&scene.field("exact.csv", &[&many[..], &["--tolerance", "1e-5"]].concat()));
+        let error = difference(&scene.e("coupled.csv"), &scene.e("exact.csv"));
+        println!("{charge}: {error:.2e}");
+        assert!(error < MOST, "{charge}: {error:e}");
+    }
+}
+
 #[test]
 fn bad_cases_are_refused_by_name() {
     let scene = Box::grounded();
@@ -247,6 +265,35 @@ fn a_killed_solver_ends_the_run_which_goes_on_bit_for_bit() {
             .map(|row| (row, name))
     };
     assert_eq!(last("out").unwrap().0, last("whole").unwrap().0);
+}
+
+#[test]
+fn a_run_that_waits_starts_a_killed_solver_again_and_nothing_is_lost() {
+    let scene = Box::grounded();
+    let text = scene.bench.read("scene.toml") + "on_solver_loss = 'wait'\n[output]\nhistory_every_s = 1e-5\n";
+    scene.bench.write("scene.toml", text.replace("end_s = 1e-3", "end_s = 6e-3").replace("1e-12", "1e-13"));
+    good(&scene.bench.run(&["run", "scene.toml", "--out", "quiet", "--no-progress"]));
+    let mut run = scene
+        .bench
+        .command(&["run", "scene.toml", "--out", "out", "--no-progress"])
+        .stdout(Stdio::piped())
+        .stderr(Stdio::piped())
+        .spawn()
+        .unwrap();
+    let begun = Instant::now();
+    while std::fs::read_to_string(scene.bench.path("out/history.csv")).map_or(0, |text| text.lines().count())
+        < 4
+    {
+        assert!(begun.elapsed() < DEADLINE && run.try_wait().unwrap().is_none(), "the run must begin");
+        std::thread::sleep(Duration::from_millis(2));
+    }
+    kill_process(scene.solver(), Signal::KILL).unwrap();
+    let output = run.wait_with_output().unwrap();
+    let said = String::from_utf8_lossy(&output.stderr).into_owned();
+    assert_eq!(output.status.code(), Some(0), "{said}");
+    assert!(said.contains("waiting for a new one"), "{said}");
+    let rows = |out: &str| Table::parse(&scene.bench.read(&format!("{out}/history.csv"))).without_clocks();
+    assert_eq!(rows("out"), rows("quiet"));
 }
 
 #[test]

@@ -104,6 +104,17 @@ impl Announced {
 }
 
 impl RemoteSolver {
+    /// Asks for the far field and takes the answer.
+    pub(crate) fn ask_for(
+        &mut self,
+        request: &FarRequest<'_>,
+        values: &mut FarValues,
+    ) -> Result<(), CouplingError> {
+        let outcome = self.exchange(request, values);
+        self.healthy = outcome.is_ok();
+        outcome
+    }
+
     fn ask(&mut self, request: &FarRequest<'_>) -> Result<(), CouplingError> {
         let (radius, shape) = match request.source {
             FarSource::Clouds { radius_m, shape } => (radius_m, shape),
@@ -197,9 +208,7 @@ impl FarField for RemoteSolver {
     }
 
     fn solve(&mut self, request: &FarRequest<'_>, values: &mut FarValues) -> Result<(), FieldError> {
-        let outcome = self.exchange(request, values);
-        self.healthy = outcome.is_ok();
-        Ok(outcome?)
+        Ok(self.ask_for(request, values)?)
     }
 }
 

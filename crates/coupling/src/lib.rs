@@ -1,6 +1,6 @@
 //! Who waits for whom: the far field in another process, or a stand-in for it in this one.
 //!
-//! The only code that opens iceoryx2 ([`link`]). The DEM side owns the run's folder in shared memory and creates everything in
+//! The only code that opens iceoryx2 (`link.rs`). The DEM side owns the run's folder in shared memory and creates everything in
 //! it; the field side opens what it finds.
 
 mod box_solver;
@@ -10,6 +10,7 @@ mod field_side;
 mod launch;
 mod link;
 mod mesh_message;
+mod patient;
 mod run_root;
 
 pub use box_solver::BoxSolver;
@@ -18,4 +19,5 @@ pub use error::CouplingError;
 pub use field_side::{Asked, FieldSide, Reply};
 pub use launch::solver_program;
 pub use mesh_message::MeshPart;
+pub use patient::PatientSolver;
 pub use run_root::{RunRoot, stale_runs};

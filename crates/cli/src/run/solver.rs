@@ -2,7 +2,7 @@
 
 use crate::failure::Failure;
 use amberfield_core::{Axis, Domain, Method};
-use amberfield_coupling::{Announced, CouplingError, RemoteSolver, SolverSettings};
+use amberfield_coupling::{Announced, CouplingError, PatientSolver, RemoteSolver, SolverSettings};
 use amberfield_field::FieldError;
 use amberfield_field::far::{Connect, FarField};
 use amberfield_scene::{Scene, SolverLoss};
@@ -33,6 +33,7 @@ pub(crate) fn connect_solver(scene: &mut Scene) -> Result<Option<Connect>, Failu
         None => scene.domain = Some(mesh.domain().clone()),
         Some(domain) => agree(domain, mesh.domain())?,
     }
+    let waits = solver.on_solver_loss == SolverLoss::Wait;
     // The one that is there first, then new ones.
     let first = Mutex::new(Some(connected));
     Ok(Some(Connect::new(move || {
@@ -41,7 +42,11 @@ pub(crate) fn connect_solver(scene: &mut Scene) -> Result<Option<Connect>, Failu
             Some(solver) => solver,
             None => connect(&settings)?,
         };
-        Ok(Box::new(solver) as Box<dyn FarField>)
+        Ok(if waits {
+            Box::new(PatientSolver::new(settings.clone(), solver))
+        } else {
+            Box::new(solver) as Box<dyn FarField>
+        })
     })))
 }
 
@@ -56,9 +61,9 @@ fn refuse(method: Method, loss: SolverLoss) -> Result<(), Failure> {
             "this version has no method {method} over a field solver's mesh; set electric_field.method = \"p3m\", or remove [solver]"
         )));
     }
-    if loss != SolverLoss::Stop {
+    if loss == SolverLoss::Fallback {
         return Err(Failure::bad_input(
-            "this version has no other solver.on_solver_loss than \"stop\"; set it, or leave it out",
+            "this version has no solver.on_solver_loss = \"fallback\"; set \"stop\" or \"wait\"",
         ));
     }
     Ok(())

@@ -1,0 +1,81 @@
+//! A field solver that may be lost and found again.
+
+use crate::CouplingError;
+use crate::dem_side::{Announced, RemoteSolver, SolverSettings};
+use amberfield_field::FieldError;
+use amberfield_field::far::{FarField, FarMesh, FarRequest, FarValues};
+
+/// Solvers that are started for one solve before it is given up.
+const ATTEMPTS: usize = 3;
+
+/// Starts a lost solver again, or waits for somebody to, and asks again from where the lost one was: the answer is the same.
+#[derive(Debug)]
+pub struct PatientSolver {
+    settings: SolverSettings,
+    solver: Option<RemoteSolver>,
+    mesh: FarMesh,
+    /// Potential of the last solve.
+    last: Vec<f64>,
+}
+
+impl PatientSolver {
+    /// Around a solver that is there.
+    #[must_use]
+    pub fn new(settings: SolverSettings, solver: RemoteSolver) -> Self {
+        let mesh = solver.mesh().clone();
+        Self { settings, solver: Some(solver), mesh, last: Vec::new() }
+    }
+
+    /// A new solver of the same mesh.
+    fn again(&self) -> Result<RemoteSolver, FieldError> {
+        let solver = Announced::new(self.settings.clone()).and_then(Announced::connect)?;
+        let (old, new) = (&self.mesh, solver.mesh());
+        if old.centres() != new.centres() || old.boundary() != new.boundary() {
+            return Err(FieldError::Solver(format!(
+                "the field solver came back with another mesh or other conditions ({} cells instead of {}, {} boundary faces instead of {}); restore the case, then resume",
+                new.cell_count(),
+                old.cell_count(),
+                new.boundary().len(),
+                old.boundary().len()
+            )));
+        }
+        Ok(solver)
+    }
+}
+
+impl FarField for PatientSolver {
+    fn mesh(&self) -> &FarMesh {
+        &self.mesh
+    }
+
+    fn solve(&mut self, request: &FarRequest<'_>, values: &mut FarValues) -> Result<(), FieldError> {
+        let mut attempt = 0;
+        let mut guess = request.guess;
+        loop {
+            let error = match &mut self.solver {
+                None => None,
+                Some(solver) => match solver.ask_for(&FarRequest { guess, ..*request }, values) {
+                    Ok(()) => {
+                        self.last.clone_from(&values.potential);
+                        return Ok(());
+                    }
+                    Err(error @ (CouplingError::Lost { .. } | CouplingError::TimedOut { .. })) => Some(error),
+                    Err(error) => return Err(error.into()),
+                },
+            };
+            attempt += 1;
+            if let Some(error) = error {
+                if attempt > ATTEMPTS {
+                    return Err(error.into());
+                }
+                tracing::warn!("{error}; waiting for a new one");
+            }
+            // The lost one goes first, with all that it held.
+            self.solver = None;
+            self.solver = Some(self.again()?);
+            if guess.is_empty() {
+                guess = &self.last;
+            }
+        }
+    }
+}
