@@ -179,6 +179,26 @@ fn periodic_box_agrees_and_refuses_a_net_charge() {
     assert!(answer.stderr.contains("net charge"), "{}", answer.stderr);
 }
 
+/// The published hybrid: the same cells, the same operator, the same gradient.
+#[test]
+fn kolehmainen_over_openfoam_is_that_of_the_internal_grid() {
+    let scene = Box::grounded();
+    let radius = ["--method", "kolehmainen", "--set", "electric_field.field_cutoff_radius=2e-3"];
+    good(
+        &scene
+            .field("coupled.csv", &[&radius[..], &["--set", "electric_field.far_tolerance=1e-10"]].concat()),
+    );
+    scene.alone();
+    good(
+        &scene.field(
+            "alone.csv",
+            &[&radius[..], &["--set", "electric_field.grid.cells=[12, 12, 10]"]].concat(),
+        ),
+    );
+    let error = difference(&scene.e("coupled.csv"), &scene.e("alone.csv"));
+    assert!(error < 1e-6, "{error:e}");
+}
+
 /// 20 000 grains, three tenths of the volume, on cells of 2.9 diameters.
 #[test]
 fn coarse_mesh_errs_by_less_than_8_in_1000() {

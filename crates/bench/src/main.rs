@@ -34,6 +34,9 @@ struct Arguments {
     /// Goes on where a broken-off run of the section `field` stopped: keeps the rows of its newest file
     #[arg(long)]
     resume: bool,
+    /// Measures nothing: writes the page of the rows that are there
+    #[arg(long, conflicts_with_all = ["sections", "resume", "peers"])]
+    page: bool,
     /// Folder of the report
     #[arg(long, default_value = "docs/reports")]
     out: PathBuf,
@@ -72,6 +75,9 @@ fn run(arguments: &Arguments) -> Result<()> {
         .ancestors()
         .nth(2)
         .expect("this crate lies two folders below the repository's root");
+    if arguments.page {
+        return page::write(&Store::new(root.join(&arguments.out))?);
+    }
     let peers = if arguments.peers { Some(Peers::install(root)?) } else { None };
     let context = Context {
         quick: arguments.quick,

@@ -80,6 +80,29 @@ impl BoxSolver {
             }
         }
     }
+
+    /// E of a cell by Gauss' theorem, linear between centres [V/m].
+    fn field(&self, cell: usize, potential: &[f64], boundary: &[f64]) -> Vector3<f64> {
+        let (here, volume) = (self.mesh.centres()[cell], self.mesh.volumes()[cell]);
+        let on_faces = self.mesh.faces_of(cell).iter().map(|face| {
+            let (value, across) = match face.neighbour {
+                Neighbour::Cell { cell: other, shift } => {
+                    let across = self.mesh.centres()[other as usize] + shift - here;
+                    (0.5 * (potential[cell] + potential[other as usize]), across.norm())
+                }
+                Neighbour::Boundary(index) => {
+                    let half = face.offset - face.normal.dot(&here);
+                    let value = match self.mesh.boundary()[index as usize].condition {
+                        Condition::Potential(_) => boundary[index as usize],
+                        Condition::Slope(_) => potential[cell] + half * boundary[index as usize],
+                    };
+                    (value, 2.0 * half)
+                }
+            };
+            face.normal * (value * volume / across)
+        });
+        -on_faces.sum::<Vector3<f64>>() / volume
+    }
 }
 
 impl FarField for BoxSolver {
@@ -138,7 +161,8 @@ impl FarField for BoxSolver {
             square = next;
         }
         values.residual = if aim > 0.0 { RESIDUAL * (square / aim).sqrt() } else { 0.0 };
-        values.e.resize(count, Vector3::zeros());
+        values.e.clear();
+        values.e.extend((0..count).map(|cell| self.field(cell, &values.potential, request.boundary)));
         Ok(())
     }
 }

@@ -1,19 +1,18 @@
 //! The evaluator: one scene's field, with the parameters chosen for it.
 
-use crate::boundary_field::BoundaryField;
 use crate::cutoff::Cutoff;
 use crate::direct::Direct;
 use crate::far::{FarField, FarLevel};
 use crate::images::{Geometry, ImageLattice};
 use crate::inputs::{check_charges_in_box, check_finite};
 use crate::kolehmainen::Kolehmainen;
+use crate::outside::Outside;
 use crate::p3m::{P3m, P3mParameters};
 use crate::tuning::Tuner;
 use crate::{FieldError, FieldMethod, FieldValues, Wanted};
 use amberfield_core::constants::VACUUM_PERMITTIVITY;
 use amberfield_core::{Domain, FieldSettings, Method, Plan};
 use nalgebra::Vector3;
-use rayon::prelude::*;
 use serde::{Deserialize, Serialize};
 
 /// Parameters chosen for a scene. Written to the run folder and reused on resume, so that results never
@@ -74,46 +73,6 @@ pub struct ElectricField {
     error_measured: Option<Measured>,
 }
 
-/// The field that is there without any charge: of the faces, and external.
-#[derive(Debug)]
-struct Outside {
-    boundary: Option<BoundaryField>,
-    external: Vector3<f64>,
-    centre: Vector3<f64>,
-    values: Vec<(Vector3<f64>, f64)>,
-}
-
-impl Outside {
-    /// `None` where there is nothing to add.
-    fn new(domain: &Domain, settings: &FieldSettings) -> Result<Option<Self>, FieldError> {
-        /// The quadrature of the faces' field costs little: it takes no part of the tolerance worth naming.
-        const SHARE: f64 = 1e-3;
-        let boundary = match settings.method {
-            // Its mesh has the faces' values in its own boundary conditions.
-            Method::Kolehmainen => None,
-            Method::P3m => BoundaryField::with_tolerance(domain, SHARE * settings.tolerance)?,
-            _ => BoundaryField::new(domain)?,
-        };
-        let external = settings.external_field_v_m;
-        let nothing = boundary.is_none() && external == Vector3::zeros();
-        let outside = Self { boundary, external, centre: domain.centre(), values: Vec::new() };
-        Ok((!nothing).then_some(outside))
-    }
-
-    /// E = boundary + external, V = boundary − E_external·(x − centre).
-    fn evaluate(&mut self, positions: &[Vector3<f64>]) -> &[(Vector3<f64>, f64)] {
-        self.values.resize(positions.len(), (Vector3::zeros(), 0.0));
-        self.values.par_iter_mut().zip(positions).for_each(|(value, position)| {
-            let (e, potential) = match &self.boundary {
-                Some(boundary) => boundary.evaluate(position),
-                None => (Vector3::zeros(), 0.0),
-            };
-            *value = (e + self.external, potential - self.external.dot(&(position - self.centre)));
-        });
-        &self.values
-    }
-}
-
 impl ElectricField {
     /// Chooses parameters for the given particles (positions in m, charges in C) and builds what they need.
     ///
@@ -162,6 +121,10 @@ impl ElectricField {
         charges: &[f64],
     ) -> Result<Self, FieldError> {
         check_finite(positions, charges)?;
+        if settings.method == Method::Kolehmainen {
+            let choice = Choice::Kolehmainen { cutoff_m: cutoff_radius(settings)? };
+            return Self::over_mesh_with_choice(solver, settings, &choice);
+        }
         let far = far_level(solver, settings);
         // Near level and middle grid are those of a periodic box as large as the middle grid's; no face of it takes charge.
         let domain = far.domain_of_grid();
@@ -181,12 +144,27 @@ impl ElectricField {
         settings: &FieldSettings,
         choice: &Choice,
     ) -> Result<Self, FieldError> {
-        let Choice::P3m(parameters) = choice else {
-            return Err(FieldError::Settings(format!(
-                "a mesh's field cannot have the parameters {choice:?}"
-            )));
-        };
-        Self::over_far(far_level(solver, settings), settings, *parameters)
+        match choice {
+            Choice::P3m(parameters) => Self::over_far(far_level(solver, settings), settings, *parameters),
+            Choice::Kolehmainen { cutoff_m } => {
+                let (permittivity, background) =
+                    (settings.relative_permittivity, settings.neutralising_background);
+                let (domain, cells) = (solver.mesh().domain().clone(), solver.mesh().cell_count());
+                Ok(Self {
+                    outside: Outside::new(&domain, settings)?,
+                    domain,
+                    mesh_cells: Some(cells),
+                    settings: settings.clone(),
+                    choice: choice.clone(),
+                    method: Box::new(Kolehmainen::over(solver, permittivity, background, *cutoff_m)?),
+                    error_estimated: None,
+                    error_measured: None,
+                })
+            }
+            choice => Err(FieldError::Settings(format!(
+                "a field solver's mesh cannot have the parameters {choice:?}; choose method p3m or kolehmainen"
+            ))),
+        }
     }
 
     fn over_far(
@@ -196,7 +174,7 @@ impl ElectricField {
     ) -> Result<Self, FieldError> {
         if settings.method != Method::P3m {
             return Err(FieldError::Settings(format!(
-                "method {} has no far level on a solver's mesh; choose method p3m",
+                "method {} has no far level on a solver's mesh; choose method p3m or kolehmainen",
                 settings.method
             )));
         }

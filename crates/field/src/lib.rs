@@ -17,6 +17,7 @@ mod inputs;
 mod kolehmainen;
 mod method;
 mod near;
+mod outside;
 mod p3m;
 mod plan;
 mod processor;

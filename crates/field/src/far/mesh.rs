@@ -48,6 +48,15 @@ pub enum Condition {
     Slope(f64),
 }
 
+impl Condition {
+    /// The potential [V] or slope [V/m].
+    #[must_use]
+    pub fn value(self) -> f64 {
+        let (Self::Potential(value) | Self::Slope(value)) = self;
+        value
+    }
+}
+
 /// A face at the end of the mesh.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct BoundaryFace {
@@ -219,8 +228,9 @@ fn check(parts: &FarMeshParts) -> Result<(), FieldError> {
         }
     }
     for (place, face) in parts.boundary.iter().enumerate() {
-        let (Condition::Potential(value) | Condition::Slope(value)) = face.condition;
-        let finite = value.is_finite() && face.area > 0.0 && face.centre.iter().all(|x| x.is_finite());
+        let finite = face.condition.value().is_finite()
+            && face.area > 0.0
+            && face.centre.iter().all(|x| x.is_finite());
         if face.cell as usize >= cells || !finite || (face.normal.norm() - 1.0).abs() > 1e-6 {
             return bad("boundary face", place, &format!("{face:?}"));
         }

@@ -13,6 +13,7 @@ pub(crate) use level::FarLevel;
 pub use mesh::{BoundaryFace, CellFace, Condition, FarMesh, FarMeshParts, Neighbour};
 
 use crate::FieldError;
+use crate::inputs::NET_CHARGE_ROUND_OFF;
 use nalgebra::Vector3;
 use std::fmt;
 use std::sync::Arc;
@@ -70,6 +71,25 @@ pub struct FarValues {
     pub iterations: u64,
     /// Its residual, relative.
     pub residual: f64,
+}
+
+/// Refuses a net charge [C] that no face of a mesh takes, in a medium of a permittivity [F/m].
+pub(crate) fn check_net_charge(
+    mesh: &FarMesh,
+    permittivity: f64,
+    neutralising_background: bool,
+    charges: &[f64],
+) -> Result<(), FieldError> {
+    if neutralising_background || mesh.has_conductor() {
+        return Ok(());
+    }
+    let of_slopes = || mesh.boundary().iter().map(|face| permittivity * face.condition.value() * face.area);
+    let net_charge_c = charges.iter().sum::<f64>() + of_slopes().sum::<f64>();
+    let all = charges.iter().map(|charge| charge.abs()).sum::<f64>() + of_slopes().map(f64::abs).sum::<f64>();
+    if net_charge_c.abs() > NET_CHARGE_ROUND_OFF * all {
+        return Err(FieldError::NetCharge { net_charge_c });
+    }
+    Ok(())
 }
 
 /// How a far level is reached when a field is built, and again after it was lost.

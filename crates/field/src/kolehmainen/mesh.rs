@@ -159,6 +159,19 @@ impl Mesh {
         self.axes.each_ref().map(|axis| axis.cells)
     }
 
+    /// A cell's number.
+    #[expect(clippy::cast_possible_truncation, reason = "fewer than 2³² cells")]
+    pub(super) fn number(&self, [x, y, z]: [usize; 3]) -> u32 {
+        let [_, ny, nz] = self.cells();
+        ((x * ny + y) * nz + z) as u32
+    }
+
+    /// The cell of a number.
+    pub(super) fn place(&self, number: u32) -> [usize; 3] {
+        let ([_, ny, nz], number) = (self.cells(), number as usize);
+        [number / (ny * nz), number / nz % ny, number % nz]
+    }
+
     /// Cell size [m].
     pub(super) fn spacing(&self) -> Vector3<f64> {
         Vector3::from_fn(|axis, _| self.axes[axis].spacing)
@@ -172,14 +185,14 @@ impl Mesh {
     }
 
     /// Solves −∇²φ = Σ charge/(permittivity · cell volume) with the faces' conditions.
-    pub(super) fn solve(&mut self, cells: &[[usize; 3]], charges: &[f64], permittivity: f64) {
+    pub(super) fn solve_for(&mut self, cells: &[u32], charges: &[f64], permittivity: f64) {
         match &self.walls {
             Some(walls) => self.potential.copy_from_slice(walls),
             None => self.potential.fill(0.0),
         }
         let factor = 1.0 / (permittivity * self.spacing().product());
         for (cell, charge) in cells.iter().zip(charges) {
-            let index = self.index(*cell);
+            let index = self.index(self.place(*cell));
             self.potential[index] += charge * factor;
         }
         self.forward();
@@ -188,22 +201,22 @@ impl Mesh {
     }
 
     /// Potential of a cell [V].
-    pub(super) fn potential(&self, cell: [usize; 3]) -> f64 {
-        self.solved(cell) + self.faces.as_ref().map_or(0.0, |faces| faces.evaluate(&self.centre(cell)).1)
+    pub(super) fn potential_of(&self, cell: [usize; 3]) -> f64 {
+        self.solved(cell) + self.faces.as_ref().map_or(0.0, |faces| faces.evaluate(&self.centre_of(cell)).1)
     }
 
     /// E = −∇φ of a cell [V/m], by Gauss' theorem with linear interpolation to the faces.
-    pub(super) fn field(&self, cell: [usize; 3]) -> Vector3<f64> {
+    pub(super) fn field_of(&self, cell: [usize; 3]) -> Vector3<f64> {
         let solved = Vector3::from_fn(|axis, _| {
             (self.face(cell, axis, Side::Min) - self.face(cell, axis, Side::Max)) / self.axes[axis].spacing
         });
         match &self.faces {
             None => solved,
-            Some(faces) => solved + faces.evaluate(&self.centre(cell)).0,
+            Some(faces) => solved + faces.evaluate(&self.centre_of(cell)).0,
         }
     }
 
-    fn centre(&self, cell: [usize; 3]) -> Vector3<f64> {
+    pub(super) fn centre_of(&self, cell: [usize; 3]) -> Vector3<f64> {
         self.origin + Vector3::from_fn(|axis, _| (cell[axis] as f64 + 0.5) * self.axes[axis].spacing)
     }
 
@@ -320,7 +333,7 @@ impl Mesh {
     }
 
     /// Memory held [bytes].
-    pub(super) fn memory_bytes(&self) -> usize {
+    pub(super) fn bytes(&self) -> usize {
         let walls = self.walls.as_ref().map_or(0, Vec::len);
         (self.potential.len() + self.lines.len() + self.inverse.len() + walls) * size_of::<f64>()
     }

@@ -1,10 +1,12 @@
 //! The published hybrid of mesh and pairs, reproduced for comparison.
 
+mod cells;
 mod inverse;
 mod lattice;
 mod mesh;
 
 use crate::cutoff::{check_radius, coulomb};
+use crate::far::FarField;
 use crate::image_cells::ImageCells;
 use crate::images::ImageLattice;
 use crate::inputs::{check_charges_in_box, check_result};
@@ -12,6 +14,7 @@ use crate::stopwatch::Stopwatch;
 use crate::{FieldError, FieldMethod, FieldValues, Wanted};
 use amberfield_core::Domain;
 use amberfield_core::constants::{VACUUM_PERMITTIVITY, coulomb_constant};
+use cells::{Cells, SolverCells};
 use mesh::Mesh;
 use nalgebra::Vector3;
 use rayon::prelude::*;
@@ -39,14 +42,17 @@ pub struct Kolehmainen {
     relative_permittivity: f64,
     neutralising_background: bool,
     radius: f64,
-    mesh: Mesh,
-    images: ImageCells<[i32; 3]>,
+    mesh: Box<dyn Cells>,
+    images: ImageCells<InCell>,
     wrapped: Vec<Vector3<f64>>,
-    cells: Vec<[usize; 3]>,
+    cells: Vec<u32>,
     sums: Vec<PairSums>,
     pairs_per_particle: f64,
     stopwatch: Stopwatch,
 }
+
+/// An image's cell, and by how many periods it is moved.
+type InCell = (u32, [i32; 3]);
 
 /// Sums over the partners of one particle, over k_e.
 #[derive(Clone, Copy, Debug, Default)]
@@ -73,44 +79,76 @@ impl Kolehmainen {
     ) -> Result<Self, FieldError> {
         check_radius(radius_m)?;
         let cells = choose_cells(domain, radius_m, cells)?;
-        Ok(Self {
+        let mesh = Box::new(Mesh::new(domain, cells)?);
+        Ok(Self::on(domain, relative_permittivity, neutralising_background, radius_m, mesh))
+    }
+
+    /// The hybrid over a field solver's mesh, whose faces, gradient and mapping of charges are the solver's own.
+    ///
+    /// # Errors
+    /// A radius below the diagonal of the largest cell, taken as a cube.
+    pub fn over(
+        solver: Box<dyn FarField>,
+        relative_permittivity: f64,
+        neutralising_background: bool,
+        radius_m: f64,
+    ) -> Result<Self, FieldError> {
+        check_radius(radius_m)?;
+        let diagonal = 3.0_f64.sqrt() * solver.mesh().largest_cell();
+        if radius_m < diagonal * (1.0 - 1e-9) {
+            return Err(FieldError::Settings(format!(
+                "cut-off radius {radius_m:e} m is below the largest cell's diagonal {diagonal:e} m; raise electric_field.field_cutoff_radius or refine the mesh"
+            )));
+        }
+        let domain = solver.mesh().domain().clone();
+        let mesh = Box::new(SolverCells::new(solver, neutralising_background));
+        Ok(Self::on(&domain, relative_permittivity, neutralising_background, radius_m, mesh))
+    }
+
+    fn on(
+        domain: &Domain,
+        relative_permittivity: f64,
+        neutralising_background: bool,
+        radius: f64,
+        mesh: Box<dyn Cells>,
+    ) -> Self {
+        Self {
             domain: domain.clone(),
             lattice: ImageLattice::periodic_only(domain),
             relative_permittivity,
             neutralising_background,
-            radius: radius_m,
-            mesh: Mesh::new(domain, cells)?,
+            radius,
+            mesh,
             images: ImageCells::default(),
             wrapped: Vec::new(),
             cells: Vec::new(),
             sums: Vec::new(),
             pairs_per_particle: 0.0,
             stopwatch: Stopwatch::default(),
-        })
+        }
     }
 
     /// Sums over pairs within the radius, and over the centres of their cells where these differ.
     fn sum_pairs(&mut self, charges: &[f64]) {
         let cells = &self.cells;
-        let count = self.mesh.cells().map(signed);
         self.images.build(&self.lattice, &self.wrapped, charges, self.radius, |index, image| {
-            std::array::from_fn(|axis| signed(cells[index][axis]) + image.periods[axis] * count[axis])
+            (cells[index], image.periods)
         });
-        let (images, spacing) = (&self.images, self.mesh.spacing());
+        let (images, mesh, extent) = (&self.images, &self.mesh, self.domain.extent());
         self.sums.resize(self.wrapped.len(), PairSums::default());
         self.sums.par_iter_mut().zip(&self.wrapped).zip(cells).enumerate().for_each(
-            |(index, ((sums, at), cell))| {
-                let own = cell.map(signed);
+            |(index, ((sums, at), &own))| {
+                let here = mesh.centre(own);
                 let mut total = PairSums::default();
                 images.for_each_partner(index, at, |k, d, _| {
                     total.partners += 1;
                     let (potential, e) = coulomb(images.charge[k], &d);
                     total.near_potential += potential;
                     total.near += e;
-                    let other = images.extra[k];
-                    if other != own {
-                        let d =
-                            Vector3::from_fn(|axis, _| f64::from(own[axis] - other[axis]) * spacing[axis]);
+                    let (other, periods) = images.extra[k];
+                    if (other, periods) != (own, [0; 3]) {
+                        let moved = Vector3::from(periods.map(f64::from)).component_mul(&extent);
+                        let d = here - mesh.centre(other) - moved;
                         let (potential, e) = coulomb(images.charge[k], &d);
                         total.correction_potential -= potential;
                         total.correction -= e;
@@ -157,9 +195,7 @@ impl FieldMethod for Kolehmainen {
         self.stopwatch.restart();
         self.wrapped.clear();
         self.wrapped.extend(positions.iter().map(|position| self.domain.wrap(*position)));
-        self.cells.clear();
-        self.cells.extend(self.wrapped.iter().map(|position| self.mesh.cell_of(position)));
-        self.mesh.solve(&self.cells, charges, permittivity);
+        self.mesh.solve(&self.wrapped, charges, permittivity, &mut self.cells)?;
         self.stopwatch.lap("mesh");
         self.sum_pairs(charges);
         self.stopwatch.lap("pairs");
@@ -168,7 +204,7 @@ impl FieldMethod for Kolehmainen {
     }
 
     fn grid_cells(&self) -> Option<[usize; 3]> {
-        Some(self.mesh.cells())
+        self.mesh.counts()
     }
 
     fn pairs_per_particle(&self) -> f64 {
@@ -183,14 +219,9 @@ impl FieldMethod for Kolehmainen {
         self.mesh.memory_bytes()
             + self.images.memory_bytes()
             + self.wrapped.capacity() * size_of::<Vector3<f64>>()
-            + self.cells.capacity() * size_of::<[usize; 3]>()
+            + self.cells.capacity() * size_of::<u32>()
             + self.sums.capacity() * size_of::<PairSums>()
     }
-}
-
-#[expect(clippy::cast_possible_truncation, clippy::cast_possible_wrap, reason = "cells per axis, checked")]
-fn signed(cells: usize) -> i32 {
-    cells as i32
 }
 
 /// Cells per axis, given or by the radius, whose diagonal is at most the radius.

@@ -1,0 +1,138 @@
+//! Cells with a field that is constant in each, whoever solves for it.
+
+use super::mesh::Mesh;
+use crate::FieldError;
+use crate::far::{FarField, FarRequest, FarSource, FarValues, check_net_charge};
+use nalgebra::Vector3;
+use std::fmt::Debug;
+
+/// Cells that take each charge whole and answer with a potential and a field.
+pub(super) trait Cells: Debug + Send + Sync {
+    /// Finds each charge's cell and solves ∇²φ = −ρ/permittivity [F/m].
+    fn solve(
+        &mut self,
+        positions: &[Vector3<f64>],
+        charges: &[f64],
+        permittivity: f64,
+        cells: &mut Vec<u32>,
+    ) -> Result<(), FieldError>;
+
+    /// Centre of a cell [m].
+    fn centre(&self, cell: u32) -> Vector3<f64>;
+
+    /// Potential of a cell [V].
+    fn potential(&self, cell: u32) -> f64;
+
+    /// E of a cell [V/m].
+    fn field(&self, cell: u32) -> Vector3<f64>;
+
+    /// Cells along each axis, where they are a box's.
+    fn counts(&self) -> Option<[usize; 3]>;
+
+    /// Memory held [bytes].
+    fn memory_bytes(&self) -> usize;
+}
+
+impl Cells for Mesh {
+    fn solve(
+        &mut self,
+        positions: &[Vector3<f64>],
+        charges: &[f64],
+        permittivity: f64,
+        cells: &mut Vec<u32>,
+    ) -> Result<(), FieldError> {
+        cells.clear();
+        cells.extend(positions.iter().map(|position| self.number(self.cell_of(position))));
+        self.solve_for(cells, charges, permittivity);
+        Ok(())
+    }
+
+    fn centre(&self, cell: u32) -> Vector3<f64> {
+        self.centre_of(self.place(cell))
+    }
+
+    fn potential(&self, cell: u32) -> f64 {
+        self.potential_of(self.place(cell))
+    }
+
+    fn field(&self, cell: u32) -> Vector3<f64> {
+        self.field_of(self.place(cell))
+    }
+
+    fn counts(&self) -> Option<[usize; 3]> {
+        Some(self.cells())
+    }
+
+    fn memory_bytes(&self) -> usize {
+        self.bytes()
+    }
+}
+
+/// The cells of a field solver's mesh, its own gradient and its own boundary conditions.
+#[derive(Debug)]
+pub(super) struct SolverCells {
+    solver: Box<dyn FarField>,
+    neutralising_background: bool,
+    boundary: Vec<f64>,
+    values: FarValues,
+    guess: Vec<f64>,
+}
+
+impl SolverCells {
+    pub(super) fn new(solver: Box<dyn FarField>, neutralising_background: bool) -> Self {
+        let boundary = solver.mesh().boundary().iter().map(|face| face.condition.value()).collect();
+        Self { solver, neutralising_background, boundary, values: FarValues::default(), guess: Vec::new() }
+    }
+}
+
+impl Cells for SolverCells {
+    fn solve(
+        &mut self,
+        positions: &[Vector3<f64>],
+        charges: &[f64],
+        permittivity: f64,
+        cells: &mut Vec<u32>,
+    ) -> Result<(), FieldError> {
+        check_net_charge(self.solver.mesh(), permittivity, self.neutralising_background, charges)?;
+        let request = FarRequest {
+            source: FarSource::NearestCell,
+            positions,
+            charges,
+            image_positions: &[],
+            image_charges: &[],
+            boundary: &self.boundary,
+            permittivity,
+            guess: &self.guess,
+            neutralising_background: self.neutralising_background,
+        };
+        self.solver.solve(&request, &mut self.values)?;
+        cells.clone_from(&self.values.cells);
+        match cells.iter().position(|&cell| cell as usize >= self.values.potential.len()) {
+            Some(index) => Err(FieldError::Settings(format!(
+                "grain at index {index} lies outside the mesh at {:?} m; enlarge the mesh or move the grain",
+                positions[index].as_slice()
+            ))),
+            None => Ok(()),
+        }
+    }
+
+    fn centre(&self, cell: u32) -> Vector3<f64> {
+        self.solver.mesh().centres()[cell as usize]
+    }
+
+    fn potential(&self, cell: u32) -> f64 {
+        self.values.potential[cell as usize]
+    }
+
+    fn field(&self, cell: u32) -> Vector3<f64> {
+        self.values.e[cell as usize]
+    }
+
+    fn counts(&self) -> Option<[usize; 3]> {
+        None
+    }
+
+    fn memory_bytes(&self) -> usize {
+        self.values.potential.capacity() * size_of::<[f64; 4]>()
+    }
+}
