@@ -29,6 +29,10 @@ pub(crate) fn run(root: &Path, with_tests: bool) -> Result<()> {
         let dem = ["clippy", "-p", "amberfield-dem", "--no-default-features", "--all-targets"];
         execute(cargo(root, &dem).args(["--", "-D", "warnings"]))
     });
+    step("clippy without coupling and plots", &|| {
+        let cli = ["clippy", "-p", "amberfield-cli", "--no-default-features", "--bins"];
+        execute(cargo(root, &cli).args(["--", "-D", "warnings"]))
+    });
     step("docs", &|| documentation(root));
     step("deny", &|| deny::run(root));
     step("bench, quick", &|| {

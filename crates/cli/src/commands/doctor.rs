@@ -33,8 +33,7 @@ pub(crate) fn doctor(options: &DoctorOptions) -> Result<(), Failure> {
         Some(place) => line(format_args!("OpenFOAM: found at {}", place.display())),
         None => line(format_args!("OpenFOAM: not found; without [solver] the internal grid is used")),
     }
-    line(format_args!("field solver: {}", amberfield_coupling::solver_program().display()));
-    stale_memory(options.clean);
+    solver(options.clean);
     stale_runs(options.clean)
 }
 
@@ -48,8 +47,10 @@ fn openfoam() -> Option<PathBuf> {
     project.filter(|folder| folder.is_dir()).or_else(application)
 }
 
-/// Runs in shared memory whose DEM process went away.
-fn stale_memory(clean: bool) {
+/// Which program is the field solver, and runs in shared memory whose DEM process went away.
+#[cfg(feature = "coupling")]
+fn solver(clean: bool) {
+    line(format_args!("field solver: {}", amberfield_coupling::solver_program().display()));
     let stale = amberfield_coupling::stale_runs(clean);
     if stale.is_empty() {
         line(format_args!("stale shared memory: none"));
@@ -58,6 +59,12 @@ fn stale_memory(clean: bool) {
         let what = if clean { "removed" } else { "doctor --clean removes it" };
         line(format_args!("stale shared memory: {name} ({what})"));
     }
+}
+
+/// Without the feature there is none.
+#[cfg(not(feature = "coupling"))]
+fn solver(_: bool) {
+    line(format_args!("field solver: not part of this build"));
 }
 
 /// Run folders here and one level below whose process went away.

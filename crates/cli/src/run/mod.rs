@@ -6,6 +6,7 @@ mod record;
 mod schedule;
 mod session;
 mod setup;
+#[cfg_attr(not(feature = "coupling"), path = "without_solver.rs")]
 mod solver;
 mod summary;
 
