@@ -214,13 +214,8 @@ impl FarField for RemoteSolver {
 
 impl Drop for RemoteSolver {
     fn drop(&mut self) {
-        let text = b"the run is over";
         let header = Header::new(MessageKind::End, self.link.run(), self.solve);
-        let layout = Layout::new(header).with::<u8>(Section::Text, text.len());
-        let said = self.link.send(&layout, self.settings.ranks as usize, |payload| {
-            layout.section_mut::<u8>(payload, Section::Text)?.copy_from_slice(text);
-            Ok(())
-        });
+        let said = self.link.end(header, self.settings.ranks as usize, "the run is over");
         if let Some(process) = &mut self.process {
             process.end(said.is_ok() && self.healthy);
         }

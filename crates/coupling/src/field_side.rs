@@ -245,11 +245,8 @@ impl FieldSide {
     pub fn fail(&mut self, reason: &str) {
         let header = Header::new(MessageKind::End, self.link.run(), 0);
         let header = Header { rank: self.rank, ranks: self.ranks, ..header };
-        let layout = Layout::new(header).with::<u8>(Section::Text, reason.len());
-        let _ = self.link.send(&layout, 1, |payload| {
-            layout.section_mut::<u8>(payload, Section::Text)?.copy_from_slice(reason.as_bytes());
-            Ok(())
-        });
+        // Whoever is not there to hear it needs no reason.
+        let _ = self.link.end(header, 1, reason);
     }
 
     fn section<T: amberfield_wire::Element>(&self, section: Section) -> Result<&[T], CouplingError> {

@@ -5,7 +5,7 @@
 
 use crate::CouplingError;
 use crate::run_root::RunRoot;
-use amberfield_wire::{Block64, Header, Layout, MessageKind, Sections, WireError};
+use amberfield_wire::{Block64, Header, Layout, MessageKind, Section, Sections, WireError};
 use iceoryx2::node::NodeView as _;
 use iceoryx2::port::listener::Listener;
 use iceoryx2::port::notifier::Notifier;
@@ -186,6 +186,15 @@ impl Link {
         }
         said(self.notifier.notify())?;
         Ok(())
+    }
+
+    /// Says that this was the last message, and why.
+    pub(crate) fn end(&mut self, header: Header, receivers: usize, why: &str) -> Result<(), CouplingError> {
+        let layout = Layout::new(header).with::<u8>(Section::Text, why.len());
+        self.send(&layout, receivers, |payload| {
+            layout.section_mut::<u8>(payload, Section::Text)?.copy_from_slice(why.as_bytes());
+            Ok(())
+        })
     }
 
     fn new_publisher(&self, blocks: usize) -> Result<Outbox, CouplingError> {

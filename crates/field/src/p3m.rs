@@ -238,12 +238,12 @@ impl FieldMethod for P3m {
     }
 
     fn far_potential(&self) -> &[f64] {
-        self.far.as_ref().map_or(&[], FarLevel::potential)
+        self.far.as_ref().map_or(&[], |far| far.solver().potential())
     }
 
     fn start_from(&mut self, potential: &[f64]) {
         if let Some(far) = &mut self.far {
-            far.start_from(potential);
+            far.solver_mut().start_from(potential);
         }
     }
 

@@ -3,7 +3,6 @@
 use crate::failure::Failure;
 use amberfield_core::{Axis, Domain, Method};
 use amberfield_coupling::{Announced, CouplingError, PatientSolver, RemoteSolver, SolverSettings};
-use amberfield_field::FieldError;
 use amberfield_field::far::{Connect, FarField};
 use amberfield_scene::{Scene, SolverLoss};
 use std::sync::Mutex;
@@ -79,10 +78,9 @@ fn agree(domain: &Domain, mesh: &Domain) -> Result<(), Failure> {
         let far = SAME * (mesh_high - mesh_low);
         if periodic != mesh.is_periodic(axis) {
             let [ours, theirs] = if periodic { ["", "not "] } else { ["not ", ""] };
-            return Err(FieldError::Settings(format!(
+            return Err(Failure::bad_input(format!(
                 "[domain] is {ours}periodic along {axis}, the mesh of [solver] openfoam_case is {theirs}cyclic there; make them agree, or leave [domain] out"
-            )))
-            .map_err(|error| Failure::of_field(&error));
+            )));
         }
         if periodic && ((low - mesh_low).abs() > far || (high - mesh_high).abs() > far) {
             return Err(Failure::bad_input(format!(

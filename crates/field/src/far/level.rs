@@ -10,7 +10,7 @@
 use super::images::WallImages;
 use super::local_fit::LocalFits;
 use super::mesh::{Condition, FarMesh};
-use super::{FarField, FarRequest, FarSource, FarValues, check_net_charge};
+use super::{FarField, FarRequest, FarSolver, FarSource, check_net_charge};
 use crate::FieldError;
 use amberfield_core::{Axis, Boundary, Domain};
 use amberfield_laws::kaiser_bessel_cloud::Cloud;
@@ -26,7 +26,7 @@ const DEPTH_OF_CELL: f64 = 4.0;
 /// The far level's share of the field.
 #[derive(Debug)]
 pub(crate) struct FarLevel {
-    solver: Box<dyn FarField>,
+    solver: FarSolver,
     images: WallImages,
     depth: f64,
     fits: LocalFits,
@@ -37,9 +37,6 @@ pub(crate) struct FarLevel {
     image_charges: Vec<f64>,
     boundary: Vec<f64>,
     cells: Vec<u32>,
-    values: FarValues,
-    /// Where the next solve is to start from; empty: where the solver is.
-    guess: Vec<f64>,
 }
 
 impl FarLevel {
@@ -59,9 +56,7 @@ impl FarLevel {
             image_charges: Vec::new(),
             boundary: Vec::new(),
             cells: Vec::new(),
-            values: FarValues::default(),
-            guess: Vec::new(),
-            solver,
+            solver: FarSolver::new(solver),
         }
     }
 
@@ -140,27 +135,24 @@ impl FarLevel {
             image_charges: &self.image_charges,
             boundary: &self.boundary,
             permittivity: self.permittivity,
-            guess: &self.guess,
+            guess: &[],
             neutralising_background: self.neutralising_background,
         };
-        self.solver.solve(&request, &mut self.values)?;
-        self.guess.clear();
+        self.solver.solve(&request)?;
         let mesh = self.solver.mesh();
-        self.fits.fit(mesh, &self.values.potential, &self.boundary);
+        self.fits.fit(mesh, &self.solver.values.potential, &self.boundary);
         self.locate(positions);
         Ok(())
     }
 
-    /// What the next solve starts from at the cells' centres [V]: the potential of the last one, unless told otherwise.
-    pub(crate) fn potential(&self) -> &[f64] {
-        if self.guess.is_empty() { &self.values.potential } else { &self.guess }
+    /// The solver's state.
+    pub(crate) fn solver(&self) -> &FarSolver {
+        &self.solver
     }
 
-    /// Starts the next solve from a potential of an earlier run [V].
-    pub(crate) fn start_from(&mut self, potential: &[f64]) {
-        if potential.len() == self.mesh().cell_count() {
-            self.guess = potential.to_vec();
-        }
+    /// The solver's state, to start from another.
+    pub(crate) fn solver_mut(&mut self) -> &mut FarSolver {
+        &mut self.solver
     }
 
     /// E [V/m] and potential [V] at the grains, after [`Self::solve`].

@@ -7,10 +7,12 @@ mod images;
 mod level;
 mod local_fit;
 mod mesh;
+mod solver;
 
 pub use density::SmoothDensity;
 pub(crate) use level::FarLevel;
 pub use mesh::{BoundaryFace, CellFace, Condition, FarMesh, FarMeshParts, Neighbour};
+pub(crate) use solver::FarSolver;
 
 use crate::FieldError;
 use crate::inputs::NET_CHARGE_ROUND_OFF;

@@ -2,7 +2,7 @@
 
 use super::mesh::Mesh;
 use crate::FieldError;
-use crate::far::{FarField, FarRequest, FarSource, FarValues, check_net_charge};
+use crate::far::{FarField, FarRequest, FarSolver, FarSource, check_net_charge};
 use nalgebra::Vector3;
 use std::fmt::Debug;
 
@@ -25,6 +25,16 @@ pub(super) trait Cells: Debug + Send + Sync {
 
     /// E of a cell [V/m].
     fn field(&self, cell: u32) -> Vector3<f64>;
+
+    /// The field solver of another process and its state; `None` where the cells are solved for here.
+    fn solver(&self) -> Option<&FarSolver> {
+        None
+    }
+
+    /// The same, to start from another state.
+    fn solver_mut(&mut self) -> Option<&mut FarSolver> {
+        None
+    }
 
     /// Cells along each axis, where they are a box's.
     fn counts(&self) -> Option<[usize; 3]>;
@@ -71,17 +81,15 @@ impl Cells for Mesh {
 /// The cells of a field solver's mesh, its own gradient and its own boundary conditions.
 #[derive(Debug)]
 pub(super) struct SolverCells {
-    solver: Box<dyn FarField>,
+    solver: FarSolver,
     neutralising_background: bool,
     boundary: Vec<f64>,
-    values: FarValues,
-    guess: Vec<f64>,
 }
 
 impl SolverCells {
     pub(super) fn new(solver: Box<dyn FarField>, neutralising_background: bool) -> Self {
         let boundary = solver.mesh().boundary().iter().map(|face| face.condition.value()).collect();
-        Self { solver, neutralising_background, boundary, values: FarValues::default(), guess: Vec::new() }
+        Self { solver: FarSolver::new(solver), neutralising_background, boundary }
     }
 }
 
@@ -102,12 +110,13 @@ impl Cells for SolverCells {
             image_charges: &[],
             boundary: &self.boundary,
             permittivity,
-            guess: &self.guess,
+            guess: &[],
             neutralising_background: self.neutralising_background,
         };
-        self.solver.solve(&request, &mut self.values)?;
-        cells.clone_from(&self.values.cells);
-        match cells.iter().position(|&cell| cell as usize >= self.values.potential.len()) {
+        self.solver.solve(&request)?;
+        let values = &self.solver.values;
+        cells.clone_from(&values.cells);
+        match cells.iter().position(|&cell| cell as usize >= values.potential.len()) {
             Some(index) => Err(FieldError::Settings(format!(
                 "grain at index {index} lies outside the mesh at {:?} m; enlarge the mesh or move the grain",
                 positions[index].as_slice()
@@ -116,16 +125,24 @@ impl Cells for SolverCells {
         }
     }
 
+    fn solver(&self) -> Option<&FarSolver> {
+        Some(&self.solver)
+    }
+
+    fn solver_mut(&mut self) -> Option<&mut FarSolver> {
+        Some(&mut self.solver)
+    }
+
     fn centre(&self, cell: u32) -> Vector3<f64> {
         self.solver.mesh().centres()[cell as usize]
     }
 
     fn potential(&self, cell: u32) -> f64 {
-        self.values.potential[cell as usize]
+        self.solver.values.potential[cell as usize]
     }
 
     fn field(&self, cell: u32) -> Vector3<f64> {
-        self.values.e[cell as usize]
+        self.solver.values.e[cell as usize]
     }
 
     fn counts(&self) -> Option<[usize; 3]> {
@@ -133,6 +150,6 @@ impl Cells for SolverCells {
     }
 
     fn memory_bytes(&self) -> usize {
-        self.values.potential.capacity() * size_of::<[f64; 4]>()
+        self.solver.values.potential.capacity() * size_of::<[f64; 4]>()
     }
 }

@@ -6,7 +6,7 @@ mod lattice;
 mod mesh;
 
 use crate::cutoff::{check_radius, coulomb};
-use crate::far::FarField;
+use crate::far::{FarField, FarSolver};
 use crate::image_cells::ImageCells;
 use crate::images::ImageLattice;
 use crate::inputs::{check_charges_in_box, check_result};
@@ -201,6 +201,16 @@ impl FieldMethod for Kolehmainen {
         self.stopwatch.lap("pairs");
         self.fill(wanted, out);
         check_result(&out.e)
+    }
+
+    fn far_potential(&self) -> &[f64] {
+        self.mesh.solver().map_or(&[], FarSolver::potential)
+    }
+
+    fn start_from(&mut self, far_potential: &[f64]) {
+        if let Some(solver) = self.mesh.solver_mut() {
+            solver.start_from(far_potential);
+        }
     }
 
     fn grid_cells(&self) -> Option<[usize; 3]> {
