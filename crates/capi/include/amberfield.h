@@ -68,6 +68,8 @@ typedef struct AmberfieldRequest {
   double tolerance;
   // 1 where the mean density is to be taken off if no face fixes the potential.
   uint64_t neutralising_background;
+  // Time of the charges [s].
+  double time;
 } AmberfieldRequest;
 
 #ifdef __cplusplus

@@ -76,6 +76,8 @@ pub struct AmberfieldRequest {
     pub tolerance: f64,
     /// 1 where the mean density is to be taken off if no face fixes the potential.
     pub neutralising_background: u64,
+    /// Time of the charges [s].
+    pub time: f64,
 }
 
 /// Opens a run by its name, for a rank of so many. Never NULL; amberfield_field_error is empty when it worked.
@@ -164,6 +166,7 @@ pub unsafe extern "C" fn amberfield_field_wait(
                         permittivity: asked.permittivity,
                         tolerance: asked.tolerance,
                         neutralising_background: u64::from(asked.neutralising_background),
+                        time: asked.time_s,
                     };
                     AmberfieldStatus::Ok
                 }

@@ -1,7 +1,7 @@
 //! The DEM side: owns the run, starts the field process, asks it for fields.
 
 use crate::CouplingError;
-use crate::launch::Process;
+use crate::launch::{Process, RUN};
 use crate::link::{Link, Message, SideOf};
 use crate::mesh_message::{MeshPart, assemble};
 use crate::run_root::RunRoot;
@@ -17,6 +17,8 @@ use std::time::{Duration, Instant};
 pub struct SolverSettings {
     /// Folder of the case.
     pub case: PathBuf,
+    /// Another program than `electricFieldFoam`, inside which our function object runs.
+    pub application: Option<String>,
     /// Whether this program starts the solver, or somebody else does.
     pub start: bool,
     /// Processes of the solver.
@@ -82,8 +84,11 @@ impl Announced {
         let mut process = if settings.start {
             Some(Process::start(&settings, root.name())?)
         } else {
-            let case = settings.case.display();
-            tracing::info!("waiting for `electricFieldFoam -case {case} -run {}`", root.name());
+            let (case, run) = (settings.case.display(), root.name());
+            match &settings.application {
+                None => tracing::info!("waiting for `electricFieldFoam -case {case} -run {run}`"),
+                Some(program) => tracing::info!("waiting for `{RUN}={run} {program} -case {case}`"),
+            }
             None
         };
         let mut messages: Vec<Option<Message>> = (0..settings.ranks).map(|_| None).collect();
@@ -121,7 +126,8 @@ impl RemoteSolver {
             FarSource::NearestCell => (0.0, 0.0),
         };
         let background = f64::from(u8::from(request.neutralising_background));
-        let numbers = [request.permittivity, radius, shape, self.settings.far_tolerance, background];
+        let numbers =
+            [request.permittivity, radius, shape, self.settings.far_tolerance, background, request.time_s];
         let header = Header::new(MessageKind::Charges, self.link.run(), self.solve);
         let layout = Layout::new(header)
             .with::<f64>(Section::Request, numbers.len())

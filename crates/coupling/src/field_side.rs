@@ -23,6 +23,8 @@ pub struct Asked {
     pub tolerance: f64,
     /// Whether the mean density is to be taken off where no face fixes the potential.
     pub neutralising_background: bool,
+    /// Time of the charges [s].
+    pub time_s: f64,
 }
 
 /// What a rank answers.
@@ -259,12 +261,13 @@ fn read(message: &Message) -> Result<Asked, WireError> {
     if message.kind != MessageKind::Charges {
         return Err(WireError::Unexpected { kind: header.kind, solve: header.solve, rank: 0, ranks: 1 });
     }
-    let numbers = message.sections().exactly::<f64>(Section::Request, 5)?;
+    let numbers = message.sections().exactly::<f64>(Section::Request, 6)?;
     Ok(Asked {
         solve: header.solve,
         permittivity: numbers[0],
         tolerance: numbers[3],
         neutralising_background: numbers[4] != 0.0,
+        time_s: numbers[5],
     })
 }
 

@@ -1,6 +1,7 @@
 //! Starting the field process, watching it, ending it.
 
 use crate::{CouplingError, SolverSettings};
+use std::ffi::OsString;
 use std::os::unix::process::CommandExt as _;
 use std::path::{Path, PathBuf};
 use std::process::{Child, Command, ExitStatus, Stdio};
@@ -11,8 +12,10 @@ const PROGRAM: &str = "electricFieldFoam";
 const VARIABLE: &str = "AMBERFIELD_SOLVER";
 /// What OpenFOAM's libraries want to know before they start, and where Debian's package has it.
 const PROJECT: (&str, &str) = ("WM_PROJECT_DIR", "/usr/share/openfoam");
-/// How long a solver that was told to end may take.
-const FAREWELL: Duration = Duration::from_secs(10);
+/// What a function object inside another solver reads the run's name in.
+pub(crate) const RUN: &str = "AMBERFIELD_RUN";
+/// Where the system looks for libraries, and the one with our function object.
+const LIBRARIES: (&str, &str) = ("LD_LIBRARY_PATH", "libelectricField.so");
 
 /// A field process of ours.
 #[derive(Debug)]
@@ -20,12 +23,14 @@ pub(crate) struct Process {
     child: Child,
     ended: Option<ExitStatus>,
     log: Option<PathBuf>,
+    /// How long it may take to leave once it was told to.
+    farewell: Duration,
 }
 
 impl Process {
     /// Starts the solver of a case for a run.
     pub(crate) fn start(settings: &SolverSettings, run: &str) -> Result<Self, CouplingError> {
-        let program = solver_program();
+        let program = settings.application.as_ref().map_or_else(solver_program, PathBuf::from);
         let failed = |why: String| CouplingError::Start { program: program.display().to_string(), why };
         let case = settings.case.canonicalize().map_err(|error| {
             failed(format!("its case {} cannot be opened: {error}", settings.case.display()))
@@ -38,7 +43,12 @@ impl Process {
             command.args(["--oversubscribe", "--allow-run-as-root", "-np"]).arg(settings.ranks.to_string());
             command.arg(&program).arg("-parallel");
         }
-        command.arg("-case").arg(&case).arg("-run").arg(run).stdin(Stdio::null());
+        command.arg("-case").arg(&case).stdin(Stdio::null());
+        match settings.application {
+            None => command.arg("-run").arg(run),
+            // Its function object reads the run's name, and is found, in the environment.
+            Some(_) => command.env(RUN, run).env(LIBRARIES.0, library_path()),
+        };
         if std::env::var_os(PROJECT.0).is_none() {
             command.env(PROJECT.0, PROJECT.1);
         }
@@ -54,7 +64,7 @@ impl Process {
         // A group of its own: an interrupt at the terminal is the DEM process's to handle.
         command.process_group(0);
         let child = command.stdout(out).stderr(err).spawn().map_err(|error| failed(error.to_string()))?;
-        Ok(Self { child, ended: None, log: settings.log.clone() })
+        Ok(Self { child, ended: None, log: settings.log.clone(), farewell: settings.timeout })
     }
 
     /// Whether it still runs; else how it ended.
@@ -73,7 +83,7 @@ impl Process {
     /// Waits until it has ended, for a while if it was told to, then kills it.
     pub(crate) fn end(&mut self, told: bool) {
         let start = Instant::now();
-        while told && self.check().is_ok() && start.elapsed() < FAREWELL {
+        while told && self.check().is_ok() && start.elapsed() < self.farewell {
             std::thread::sleep(Duration::from_millis(2));
         }
         if self.check().is_ok() {
@@ -106,10 +116,22 @@ pub fn solver_program() -> PathBuf {
     if let Some(named) = std::env::var_os(VARIABLE) {
         return named.into();
     }
+    near_this_program(PROGRAM).unwrap_or_else(|| PROGRAM.into())
+}
+
+/// A file beside this program, or that the project has built above it.
+fn near_this_program(name: &str) -> Option<PathBuf> {
     let own = std::env::current_exe().unwrap_or_default();
-    let beside = own.with_file_name(PROGRAM);
-    let built = own.ancestors().map(|folder| folder.join("openfoam-solver/build").join(PROGRAM));
-    std::iter::once(beside).chain(built).find(|path| path.is_file()).unwrap_or_else(|| PROGRAM.into())
+    let beside = own.with_file_name(name);
+    let built = own.ancestors().map(|folder| folder.join("openfoam-solver/build").join(name));
+    std::iter::once(beside).chain(built).find(|path| path.is_file())
+}
+
+/// The folders in which the system looks for libraries, with that of the function object.
+fn library_path() -> OsString {
+    let known = std::env::var_os(LIBRARIES.0).unwrap_or_default();
+    let own = near_this_program(LIBRARIES.1).and_then(|path| path.parent().map(PathBuf::from));
+    std::env::join_paths(own.into_iter().chain(std::env::split_paths(&known))).unwrap_or(known)
 }
 
 /// Makes the mesh of a case that has only a recipe for it.

@@ -16,6 +16,7 @@ fn domain() -> Domain {
 fn settings(timeout_s: f64) -> SolverSettings {
     SolverSettings {
         case: "none".into(),
+        application: None,
         start: false,
         ranks: 1,
         timeout: Duration::from_secs_f64(timeout_s),
@@ -118,6 +119,7 @@ fn request<'a>(
         permittivity: 2.0,
         guess: &[],
         neutralising_background: false,
+        time_s: 0.25,
     }
 }
 

@@ -108,14 +108,13 @@ impl Simulation {
             walls.forces(&self.grains, &self.table, self.features, step, force, torque);
             self.watch.lap(Stage::Walls);
         }
-        let mut evaluated = false;
+        // The forces at the start come with a step of zero: the field was evaluated just before.
+        let speed = self.speed;
+        let due = step > 0.0 && self.field.as_mut().is_some_and(|field| field.is_due(step, speed));
+        if due {
+            self.evaluate_field()?;
+        }
         if let Some(field) = &mut self.field {
-            // The forces at the start come with a step of zero: the field was evaluated just before.
-            if step > 0.0 && field.is_due(step, self.speed) {
-                field.evaluate(&self.domain, &self.grains, &self.particles, self.step_s)?;
-                self.limits.set_plasma(field.plasma_limit);
-                evaluated = true;
-            }
             field.add_forces(&self.grains, self.skin, self.step_s, &mut self.new_force);
             if step > 0.0 {
                 field.book_step();
@@ -123,7 +122,7 @@ impl Simulation {
             self.watch.lap(Stage::Field);
         }
         // Charges and pairs are looked at when lists are rebuilt; density and speeds are new here.
-        if evaluated { self.watch_limits() } else { Ok(()) }
+        if due { self.watch_limits() } else { Ok(()) }
     }
 
     /// Whether a grain may have moved by half the skin since the lists were built. The travel is only a
@@ -215,8 +214,11 @@ impl Simulation {
 
     /// Evaluates the field now.
     fn evaluate_field(&mut self) -> Result<(), DemError> {
+        let time_s = self.time_s();
         if let Some(field) = &mut self.field {
+            field.field.at_time(time_s);
             field.evaluate(&self.domain, &self.grains, &self.particles, self.step_s)?;
+            self.limits.set_plasma(field.plasma_limit);
         }
         Ok(())
     }

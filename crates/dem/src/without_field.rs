@@ -96,6 +96,10 @@ impl ElectricField {
         match *self {}
     }
 
+    pub(crate) fn at_time(&mut self, _: f64) {
+        match *self {}
+    }
+
     pub(crate) fn has_solver(&self) -> bool {
         match *self {}
     }

@@ -2,7 +2,7 @@
 
 use crate::cutoff::Cutoff;
 use crate::direct::Direct;
-use crate::far::{FarField, FarLevel};
+use crate::far::{FarField, FarLevel, FarSolver};
 use crate::images::{Geometry, ImageLattice};
 use crate::inputs::{check_charges_in_box, check_finite};
 use crate::kolehmainen::Kolehmainen;
@@ -282,12 +282,21 @@ impl ElectricField {
     /// What a field solver of another process found last, at its cells' centres [V]: state of a run; empty without one.
     #[must_use]
     pub fn far_potential(&self) -> &[f64] {
-        self.method.far_potential()
+        self.method.far_solver().map_or(&[], FarSolver::potential)
     }
 
     /// Goes on from a field solver's state of an earlier run, as [`Self::far_potential`] gave it.
     pub fn start_from(&mut self, far_potential: &[f64]) {
-        self.method.start_from(far_potential);
+        if let Some(solver) = self.method.far_solver_mut() {
+            solver.start_from(far_potential);
+        }
+    }
+
+    /// Says at what time the next evaluation is [s]: a field solver of another process may wait for its own.
+    pub fn at_time(&mut self, time_s: f64) {
+        if let Some(solver) = self.method.far_solver_mut() {
+            solver.at_time(time_s);
+        }
     }
 
     /// Whether a field solver of another process has a part in it.

@@ -1,5 +1,6 @@
 //! What every way to compute the field of charges offers.
 
+use crate::far::FarSolver;
 use crate::{FieldError, FieldValues, Wanted};
 use nalgebra::Vector3;
 use std::fmt;
@@ -20,13 +21,15 @@ pub trait FieldMethod: fmt::Debug + Send + Sync {
         out: &mut FieldValues,
     ) -> Result<(), FieldError>;
 
-    /// What a field solver of another process found last, at its cells' centres [V]; empty without one.
-    fn far_potential(&self) -> &[f64] {
-        &[]
+    /// The field solver of another process that has a part in it, and its state.
+    fn far_solver(&self) -> Option<&FarSolver> {
+        None
     }
 
-    /// Lets a field solver start its next solve from what it found in an earlier run [V].
-    fn start_from(&mut self, _far_potential: &[f64]) {}
+    /// The same, to tell it where and when its next solve is.
+    fn far_solver_mut(&mut self) -> Option<&mut FarSolver> {
+        None
+    }
 
     /// Mean number of partners that were summed for a particle in the last evaluation, images included.
     fn pairs_per_particle(&self) -> f64;

@@ -9,7 +9,7 @@
 //! Φ is the Kaiser–Bessel cloud's of `amberfield_laws::kaiser_bessel_cloud`: nothing is left of the pairs beyond r_c and of
 //! the middle grid beyond R.
 
-use crate::far::FarLevel;
+use crate::far::{FarLevel, FarSolver};
 use crate::grid::level::{GridLevel, GridParameters};
 use crate::inputs::{check_charges_in_box, check_finite, check_result};
 use crate::near::{NearLevel, NearParameters};
@@ -237,14 +237,12 @@ impl FieldMethod for P3m {
         check_result(&out.e)
     }
 
-    fn far_potential(&self) -> &[f64] {
-        self.far.as_ref().map_or(&[], |far| far.solver().potential())
+    fn far_solver(&self) -> Option<&FarSolver> {
+        self.far.as_ref().map(FarLevel::solver)
     }
 
-    fn start_from(&mut self, potential: &[f64]) {
-        if let Some(far) = &mut self.far {
-            far.solver_mut().start_from(potential);
-        }
+    fn far_solver_mut(&mut self) -> Option<&mut FarSolver> {
+        self.far.as_mut().map(FarLevel::solver_mut)
     }
 
     fn pairs_per_particle(&self) -> f64 {

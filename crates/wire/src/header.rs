@@ -5,7 +5,7 @@ use iceoryx2::prelude::ZeroCopySend;
 use std::mem::{align_of, offset_of, size_of};
 
 /// Raised with every change of a message.
-pub const PROTOCOL_VERSION: u32 = 1;
+pub const PROTOCOL_VERSION: u32 = 2;
 /// Sections of a message at most.
 pub(crate) const MOST_SECTIONS: usize = 20;
 
@@ -64,7 +64,7 @@ pub enum Section {
     /// By boundary face: potential [V] or outward slope [V/m].
     Boundary = 6,
     /// Numbers of a request: permittivity [F/m], radius of the clouds [m] (0: nearest cell), shape, relative tolerance of the
-    /// linear solver, 1 for a neutralising background.
+    /// linear solver, 1 for a neutralising background, time of the charges [s].
     Request = 7,
     /// Potential at the cells' centres [V].
     Potential = 8,

@@ -8,8 +8,8 @@ use anyhow::{Context, Result, bail};
 use std::path::{Path, PathBuf};
 use std::process::Command;
 
-/// What is installed from Debian where it is missing.
-const PACKAGES: [&str; 5] = ["openfoam", "g++", "make", "cmake", "bzip2"];
+/// What is installed from Debian where it is missing; one of the examples is a test.
+const PACKAGES: [&str; 6] = ["openfoam", "openfoam-examples", "g++", "make", "cmake", "bzip2"];
 /// Folders of the headers that the solver includes.
 const HEADERS: [&str; 4] = ["finiteVolume", "meshTools", "OpenFOAM", "OSspecific/POSIX"];
 /// What running anything linked to OpenFOAM wants to know, and where Debian has it.

@@ -10,20 +10,21 @@ use std::time::Duration;
 
 /// Relative tolerance of the linear solver over the field's, unless the scene says it.
 const FAR_TOLERANCE: f64 = 1e-4;
-/// What the solver prints, in its case's folder.
-const LOG: &str = "log.electricFieldFoam";
 
 /// Reaches the scene's field solver, if it has one; the scene's box is the mesh's where it has none of its own.
 pub(crate) fn connect_solver(scene: &mut Scene) -> Result<Option<Connect>, Failure> {
     let (Some(solver), Some(field)) = (&scene.solver, &scene.electric_field) else { return Ok(None) };
     refuse(field.field.method, solver.on_solver_loss)?;
+    // What it prints stays in its case's folder, as is usual.
+    let program = solver.application.as_deref().unwrap_or("electricFieldFoam");
     let settings = SolverSettings {
         case: solver.openfoam_case.clone(),
+        application: solver.application.clone(),
         start: solver.start,
         ranks: solver.ranks,
         timeout: Duration::from_secs_f64(solver.timeout_s),
         far_tolerance: field.far_tolerance.unwrap_or(FAR_TOLERANCE * field.field.tolerance),
-        log: Some(solver.openfoam_case.join(LOG)),
+        log: Some(solver.openfoam_case.join(format!("log.{program}"))),
     };
     let connected = connect(&settings).map_err(|error| Failure::of_field(&error.into()))?;
     let mesh = connected.mesh();

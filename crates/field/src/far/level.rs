@@ -137,6 +137,7 @@ impl FarLevel {
             permittivity: self.permittivity,
             guess: &[],
             neutralising_background: self.neutralising_background,
+            time_s: 0.0,
         };
         self.solver.solve(&request)?;
         let mesh = self.solver.mesh();

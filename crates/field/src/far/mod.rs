@@ -12,7 +12,7 @@ mod solver;
 pub use density::SmoothDensity;
 pub(crate) use level::FarLevel;
 pub use mesh::{BoundaryFace, CellFace, Condition, FarMesh, FarMeshParts, Neighbour};
-pub(crate) use solver::FarSolver;
+pub use solver::FarSolver;
 
 use crate::FieldError;
 use crate::inputs::NET_CHARGE_ROUND_OFF;
@@ -56,6 +56,8 @@ pub struct FarRequest<'a> {
     pub guess: &'a [f64],
     /// Whether the mean density is taken off, where no face fixes the potential.
     pub neutralising_background: bool,
+    /// Time at which the charges are where they are [s].
+    pub time_s: f64,
 }
 
 /// What a far level answers.

@@ -5,39 +5,48 @@ use crate::FieldError;
 
 /// A far field with its state.
 #[derive(Debug)]
-pub(crate) struct FarSolver {
+pub struct FarSolver {
     solver: Box<dyn FarField>,
     /// What was found last.
     pub(crate) values: FarValues,
     /// Where the next solve is to start from; empty: where the solver is.
     guess: Vec<f64>,
+    /// Time of the next solve [s].
+    time_s: f64,
 }
 
 impl FarSolver {
     pub(crate) fn new(solver: Box<dyn FarField>) -> Self {
-        Self { solver, values: FarValues::default(), guess: Vec::new() }
+        Self { solver, values: FarValues::default(), guess: Vec::new(), time_s: 0.0 }
     }
 
     pub(crate) fn mesh(&self) -> &FarMesh {
         self.solver.mesh()
     }
 
-    /// Solves, from where it is to start; the request's own guess does not count.
+    /// Solves, from where it is to start; the request's own guess and time do not count.
     pub(crate) fn solve(&mut self, request: &FarRequest<'_>) -> Result<(), FieldError> {
-        self.solver.solve(&FarRequest { guess: &self.guess, ..*request }, &mut self.values)?;
+        let request = FarRequest { guess: &self.guess, time_s: self.time_s, ..*request };
+        self.solver.solve(&request, &mut self.values)?;
         self.guess.clear();
         Ok(())
     }
 
     /// What the next solve starts from at the cells' centres [V]: the potential of the last one, unless told otherwise.
-    pub(crate) fn potential(&self) -> &[f64] {
+    #[must_use]
+    pub fn potential(&self) -> &[f64] {
         if self.guess.is_empty() { &self.values.potential } else { &self.guess }
     }
 
     /// Starts the next solve from a potential of an earlier run [V].
-    pub(crate) fn start_from(&mut self, potential: &[f64]) {
+    pub fn start_from(&mut self, potential: &[f64]) {
         if potential.len() == self.mesh().cell_count() {
             self.guess = potential.to_vec();
         }
+    }
+
+    /// Says at what time the next solve is [s].
+    pub fn at_time(&mut self, time_s: f64) {
+        self.time_s = time_s;
     }
 }

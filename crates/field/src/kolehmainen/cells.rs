@@ -112,6 +112,7 @@ impl Cells for SolverCells {
             permittivity,
             guess: &[],
             neutralising_background: self.neutralising_background,
+            time_s: 0.0,
         };
         self.solver.solve(&request)?;
         let values = &self.solver.values;

@@ -203,14 +203,12 @@ impl FieldMethod for Kolehmainen {
         check_result(&out.e)
     }
 
-    fn far_potential(&self) -> &[f64] {
-        self.mesh.solver().map_or(&[], FarSolver::potential)
+    fn far_solver(&self) -> Option<&FarSolver> {
+        self.mesh.solver()
     }
 
-    fn start_from(&mut self, far_potential: &[f64]) {
-        if let Some(solver) = self.mesh.solver_mut() {
-            solver.start_from(far_potential);
-        }
+    fn far_solver_mut(&mut self) -> Option<&mut FarSolver> {
+        self.mesh.solver_mut()
     }
 
     fn grid_cells(&self) -> Option<[usize; 3]> {

@@ -146,6 +146,8 @@ pub enum SolverLoss {
 pub struct SolverSettings {
     /// Folder of the `OpenFOAM` case.
     pub openfoam_case: PathBuf,
+    /// Another program than `electricFieldFoam`, with our function object in its `controlDict`.
+    pub application: Option<String>,
     /// Whether the solver is started by the run.
     pub start: bool,
     /// MPI ranks.

@@ -25,7 +25,7 @@ pub(super) fn read_solver(
     document: &Table<'_>,
     source: &Source,
 ) -> Result<Option<SolverSettings>, SceneError> {
-    let keys = ["openfoam_case", "start", "ranks", "timeout_s", "on_solver_loss"];
+    let keys = ["openfoam_case", "application", "start", "ranks", "timeout_s", "on_solver_loss"];
     let Some(table) = document.table("solver", &keys)? else { return Ok(None) };
     let case = table.text("openfoam_case")?;
     let case = table.need(case, "openfoam_case", "name the folder with 0/, constant/ and system/")?;
@@ -39,6 +39,7 @@ pub(super) fn read_solver(
     let losses = [("stop", SolverLoss::Stop), ("fallback", SolverLoss::Fallback), ("wait", SolverLoss::Wait)];
     Ok(Some(SolverSettings {
         openfoam_case: folder,
+        application: table.text("application")?.map(str::to_owned),
         start: table.boolean("start")?.unwrap_or(true),
         ranks: u32::try_from(ranks).expect("the range ends at 65536"),
         timeout_s: table.number("timeout_s", TIME)?.unwrap_or(30.0),

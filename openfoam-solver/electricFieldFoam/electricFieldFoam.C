@@ -6,13 +6,9 @@ Application
     electricFieldFoam
 
 Description
-    Solves for the smooth part of the electric field of charged grains, whose
-    positions and charges a DEM process shares:
-
-        div(grad(V)) = -rho/epsilon,    E = -grad(V)
-
-    with the boundary conditions of the case's field phiE, less what the DEM
-    process computes itself.
+    Solves for the smooth part of the electric field of charged grains, which a
+    DEM process moves, on the mesh of a case and with the boundary conditions of
+    its field phiE.
 
 Usage
     electricFieldFoam -case CASE -run RUN
@@ -20,9 +16,7 @@ Usage
 \*---------------------------------------------------------------------------*/
 
 #include "fvCFD.H"
-#include "fieldSide.H"
-#include "fixedGradientFvPatchFields.H"
-#include "meshDescription.H"
+#include "electricField.H"
 
 int main(int argc, char *argv[])
 {
@@ -34,18 +28,12 @@ int main(int argc, char *argv[])
     #include "setRootCase.H"
     #include "createTime.H"
     #include "createMesh.H"
-    #include "createFields.H"
 
-    fieldSide demProcess(args.get<string>("run"));
-    demProcess.sendMesh(description);
+    electricField field(mesh, args.get<string>("run"));
 
-    while (demProcess.wait())
+    while (field.wait())
     {
-        #include "boundaryData.H"
-        #include "VEqn.H"
-        #include "electricField.H"
-
-        demProcess.reply(V, E, performance.nIterations(), performance.finalResidual());
+        field.answer();
     }
 
     Info<< "The run is over." << nl << endl;

@@ -7,6 +7,8 @@
 #include "fixedGradientFvPatchFields.H"
 #include "fixedValueFvPatchFields.H"
 #include "globalIndex.H"
+#include "symmetryFvPatchFields.H"
+#include "symmetryPlaneFvPatchFields.H"
 #include "syncTools.H"
 #include "zeroGradientFvPatchFields.H"
 
@@ -26,7 +28,9 @@ bool isConductor(const Foam::fvPatchScalarField& V)
 bool isInsulator(const Foam::fvPatchScalarField& V)
 {
     return V.type() == Foam::fixedGradientFvPatchScalarField::typeName
-        || V.type() == Foam::zeroGradientFvPatchScalarField::typeName;
+        || V.type() == Foam::zeroGradientFvPatchScalarField::typeName
+        || V.type() == Foam::symmetryFvPatchScalarField::typeName
+        || V.type() == Foam::symmetryPlaneFvPatchScalarField::typeName;
 }
 
 //- Prescribed potentials or slopes of a patch
@@ -51,18 +55,9 @@ Foam::wordList Foam::meshDescription::farTypes(const volScalarField& V)
     wordList types(V.boundaryField().types());
     forAll(types, patchi)
     {
-        const fvPatchScalarField& pV = V.boundaryField()[patchi];
-        if (isInsulator(pV))
+        if (isInsulator(V.boundaryField()[patchi]))
         {
             types[patchi] = fixedGradientFvPatchScalarField::typeName;
-        }
-        else if (!isConductor(pV) && !pV.coupled())
-        {
-            FatalErrorInFunction
-                << "patch " << pV.patch().name() << " of field " << V.name()
-                << " has the condition " << pV.type()
-                << "; give it fixedValue, fixedGradient, zeroGradient or cyclic"
-                << exit(FatalError);
         }
     }
     return types;
@@ -113,9 +108,17 @@ Foam::meshDescription::meshDescription(const volScalarField& V)
     {
         const fvPatchScalarField& pV = V.boundaryField()[patchi];
         const fvPatch& patch = pV.patch();
-        if (!isConductor(pV) && !isInsulator(pV))
+        if (pV.coupled())
         {
             continue;
+        }
+        if (!isConductor(pV) && !isInsulator(pV))
+        {
+            FatalErrorInFunction
+                << "patch " << patch.name() << " of field " << V.name()
+                << " has the condition " << pV.type()
+                << "; give it fixedValue, fixedGradient, zeroGradient, symmetry or cyclic"
+                << exit(FatalError);
         }
         patches_.append(patchi);
         const scalarField values(prescribed(pV));
@@ -178,15 +181,9 @@ Foam::meshDescription::meshDescription(const volScalarField& V)
                     }
                 }
             }
-            else if (boundaryIndex[facei - nInternal] >= 0)
-            {
-                neighbours_[entry] = -1 - int64_t(boundaryIndex[facei - nInternal]);
-            }
             else
             {
-                FatalErrorInFunction
-                    << "face " << facei << " belongs to no patch with a condition"
-                    << exit(FatalError);
+                neighbours_[entry] = -1 - int64_t(boundaryIndex[facei - nInternal]);
             }
             ++entry;
         }

@@ -1,0 +1,186 @@
+/*---------------------------------------------------------------------------*\
+    amberfield: the electric field of charged grains
+    SPDX-License-Identifier: GPL-3.0-or-later
+\*---------------------------------------------------------------------------*/
+
+#include "electricField.H"
+#include "fixedGradientFvPatchFields.H"
+#include "fvcGrad.H"
+#include "fvmLaplacian.H"
+#include "fvMatrices.H"
+#include "surfaceFields.H"
+
+namespace
+{
+
+//- Share of the charge by which sums over cells may miss neutrality
+const Foam::scalar mostMismatch = 0.05;
+
+//- A field that is neither read nor written, and that other fields of the
+//  case with its name do not meet
+Foam::IOobject own(const char* name, const Foam::fvMesh& mesh)
+{
+    return Foam::IOobject
+    (
+        name,
+        mesh.time().timeName(),
+        mesh,
+        Foam::IOobject::NO_READ,
+        Foam::IOobject::NO_WRITE,
+        false
+    );
+}
+
+} // End anonymous namespace
+
+
+Foam::electricField::electricField(const fvMesh& mesh, const string& run)
+:
+    mesh_(mesh),
+    phiE_
+    (
+        IOobject
+        (
+            "phiE",
+            mesh.time().findInstance(mesh.dbDir(), "phiE", IOobject::MUST_READ),
+            mesh,
+            IOobject::MUST_READ,
+            IOobject::NO_WRITE,
+            false
+        ),
+        mesh
+    ),
+    description_(phiE_),
+    V_
+    (
+        own("V", mesh),
+        mesh,
+        dimensionedScalar("V", phiE_.dimensions(), Zero),
+        meshDescription::farTypes(phiE_),
+        mesh.boundaryMesh().types()
+    ),
+    E_(own("E", mesh), -fvc::grad(V_)),
+    rho_
+    (
+        own("rho", mesh),
+        mesh,
+        dimensionedScalar("rho", dimensionSet(0, -3, 1, 0, 0, 1, 0), Zero)
+    ),
+    controls_(controls(mesh)),
+    nNonOrthogonalCorrectors_
+    (
+        mesh.solutionDict().subOrEmptyDict("electricField").lookupOrDefault<label>
+        (
+            "nNonOrthogonalCorrectors",
+            gMax(mag(mesh.nonOrthCorrectionVectors().primitiveField())()) > 0.1 ? 3 : 0
+        )
+    ),
+    demProcess_(run)
+{
+    demProcess_.sendMesh(description_);
+}
+
+
+Foam::dictionary Foam::electricField::controls(const fvMesh& mesh)
+{
+    if (mesh.solutionDict().subOrEmptyDict("solvers").found("V"))
+    {
+        return mesh.solutionDict().subDict("solvers").subDict("V");
+    }
+    dictionary multigrid;
+    multigrid.add("preconditioner", "GAMG");
+    multigrid.add("smoother", "DIC");
+    multigrid.add("nPreSweeps", 1);
+    multigrid.add("nPostSweeps", 1);
+    multigrid.add("tolerance", 1e-6);
+    multigrid.add("relTol", 0);
+
+    dictionary solver;
+    solver.add("solver", "PCG");
+    solver.add("preconditioner", multigrid);
+    solver.add("maxIter", 1000);
+    return solver;
+}
+
+
+bool Foam::electricField::wait()
+{
+    return demProcess_.wait();
+}
+
+
+void Foam::electricField::answer()
+{
+    const dimensionedScalar epsilon
+    (
+        "epsilon", dimensionSet(-1, -3, 4, 0, 0, 2, 0), demProcess_.request().permittivity
+    );
+
+    demProcess_.density(rho_.primitiveFieldRef());
+    demProcess_.guess(V_.primitiveFieldRef());
+    takeBoundary();
+    if (V_.needReference())
+    {
+        removeMean(epsilon.value());
+    }
+
+    solverPerformance performance;
+    for (label corrector = 0; corrector <= nNonOrthogonalCorrectors_; ++corrector)
+    {
+        fvScalarMatrix VEqn(fvm::laplacian(V_) == -rho_/epsilon);
+
+        VEqn.setReference(Pstream::master() ? 0 : -1, 0);
+
+        controls_.set("tolerance", demProcess_.request().tolerance);
+        performance = VEqn.solve(controls_);
+    }
+
+    E_ = -fvc::grad(V_);
+
+    demProcess_.reply(V_, E_, performance.nIterations(), performance.finalResidual());
+}
+
+
+void Foam::electricField::takeBoundary()
+{
+    const scalarField values(demProcess_.boundary(description_.boundaryFaces()));
+    label start = 0;
+    for (const label patchi : description_.patches())
+    {
+        fvPatchScalarField& pV = V_.boundaryFieldRef()[patchi];
+        const scalarField onPatch(SubField<scalar>(values, pV.size(), start));
+        if (isA<fixedGradientFvPatchScalarField>(pV))
+        {
+            refCast<fixedGradientFvPatchScalarField>(pV).gradient() = onPatch;
+        }
+        else
+        {
+            pV == onPatch;
+        }
+        start += pV.size();
+    }
+}
+
+
+void Foam::electricField::removeMean(const scalar epsilon)
+{
+    // The DEM process has refused a net charge; finite volumes miss it by a little
+    scalar flux = 0;
+    for (const label patchi : description_.patches())
+    {
+        const fvPatchScalarField& pV = V_.boundaryField()[patchi];
+        flux += sum(pV.snGrad()*pV.patch().magSf());
+    }
+    reduce(flux, sumOp<scalar>());
+    const scalar net = gSum(rho_.primitiveField()*mesh_.V()) + epsilon*flux;
+    const scalar all = gSum(mag(rho_.primitiveField())*mesh_.V());
+    if (!demProcess_.request().neutralising_background && mag(net) > mostMismatch*all)
+    {
+        demProcess_.fail
+        (
+            "net charge " + std::to_string(net) + " C of " + std::to_string(all)
+          + " C on a mesh no face of which takes it; set neutralising_background = true"
+        );
+    }
+    rho_.primitiveFieldRef() -= net/gSum(mesh_.V());
+}

@@ -1,0 +1,127 @@
+/*---------------------------------------------------------------------------*\
+    amberfield: the electric field of charged grains
+    SPDX-License-Identifier: GPL-3.0-or-later
+\*---------------------------------------------------------------------------*/
+
+#include "electricFieldFunctionObject.H"
+#include "OSspecific.H"
+#include "Time.H"
+#include "addToRunTimeSelectionTable.H"
+
+namespace Foam
+{
+namespace functionObjects
+{
+    defineTypeNameAndDebug(electricField, 0);
+    addToRunTimeSelectionTable(functionObject, electricField, dictionary);
+}
+}
+
+namespace
+{
+
+//- The run's name, from the dictionary or the environment
+Foam::string runOf(const Foam::dictionary& dict)
+{
+    const Foam::string run
+    (
+        dict.lookupOrDefault<Foam::string>("run", Foam::getEnv("AMBERFIELD_RUN"))
+    );
+    if (run.empty())
+    {
+        FatalIOErrorInFunction(dict)
+            << "no run of amberfield is named: set the entry run, or the environment's"
+            << " AMBERFIELD_RUN, to the name that the run says"
+            << Foam::exit(Foam::FatalIOError);
+    }
+    return run;
+}
+
+} // End anonymous namespace
+
+
+Foam::functionObjects::electricField::electricField
+(
+    const word& name,
+    const Time& runTime,
+    const dictionary& dict
+)
+:
+    fvMeshFunctionObject(name, runTime, dict),
+    field_(mesh_, runOf(dict)),
+    pending_(false),
+    over_(false)
+{}
+
+
+bool Foam::functionObjects::electricField::read(const dictionary& dict)
+{
+    return fvMeshFunctionObject::read(dict);
+}
+
+
+void Foam::functionObjects::electricField::answerUpTo(const scalar time)
+{
+    while (!over_)
+    {
+        over_ = !pending_ && !field_.wait();
+        pending_ = !over_ && field_.time() > time;
+        if (over_ || pending_)
+        {
+            return;
+        }
+        field_.answer();
+    }
+}
+
+
+bool Foam::functionObjects::electricField::execute()
+{
+    const bool wasOver = over_;
+    // Both processes count their steps: round-off must not cost one of them
+    answerUpTo(time_.value() + 1e-6*time_.deltaTValue());
+    if (over_ && !wasOver)
+    {
+        Info<< type() << ' ' << name() << ": the grains' run is over" << endl;
+        time_.stopAt(Time::saWriteNow);
+    }
+    return true;
+}
+
+
+bool Foam::functionObjects::electricField::write()
+{
+    if (!time_.writeTime())
+    {
+        return true;
+    }
+    volVectorField(IOobject(name() + ":E", time_.timeName(), mesh_), field_.E()).write();
+    return true;
+}
+
+
+bool Foam::functionObjects::electricField::end()
+{
+    if (!over_)
+    {
+        Info<< type() << ' ' << name() << ": the solver has ended, the grains go on" << endl;
+        answerUpTo(GREAT);
+    }
+    return true;
+}
+
+
+void Foam::functionObjects::electricField::updateMesh(const mapPolyMesh&)
+{
+    FatalErrorInFunction
+        << "the mesh changes; " << type() << ' ' << name() << " needs a mesh that stays"
+        << exit(FatalError);
+}
+
+
+void Foam::functionObjects::electricField::movePoints(const polyMesh&)
+{
+    FatalErrorInFunction
+        << "the mesh moves; " << type() << ' ' << name() << " needs a mesh that stays"
+        << exit(FatalError);
+}

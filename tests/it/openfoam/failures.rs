@@ -1,0 +1,164 @@
+//! What happens when things go wrong: nothing is lost, nothing stays behind.
+
+use super::{Box, DEADLINE, good};
+use amberfield_tests::Table;
+use rustix::process::{Pid, Signal, kill_process, test_kill_process};
+use std::process::Stdio;
+use std::time::{Duration, Instant};
+
+#[test]
+fn bad_cases_are_refused_by_name() {
+    let scene = Box::grounded();
+    let phi = scene.bench.read("foam/0/phiE");
+    scene.bench.write("foam/0/phiE", phi.replacen("fixedValue", "slip", 1));
+    let answer = scene.field("out.csv", &[]);
+    assert_eq!(answer.code, Some(3), "{}", answer.stderr);
+    assert!(answer.stderr.contains("patch x0 of field phiE has the condition slip"), "{}", answer.stderr);
+
+    let answer = Box::grounded().field("out.csv", &["--set", "domain.boundary.x=\"periodic\""]);
+    assert_eq!(answer.code, Some(2), "{}", answer.stderr);
+    assert!(answer.stderr.contains("[domain] is periodic along x"), "{}", answer.stderr);
+
+    let scene = Box::grounded();
+    std::fs::remove_file(scene.bench.path("foam/system/blockMeshDict")).unwrap();
+    let answer = scene.field("out.csv", &[]);
+    assert_eq!(answer.code, Some(3), "{}", answer.stderr);
+    assert!(
+        answer.stderr.contains("neither constant/polyMesh nor system/blockMeshDict"),
+        "{}",
+        answer.stderr
+    );
+
+    let answer = scene.bench.run(&["doctor"]);
+    good(&answer);
+    assert!(
+        answer.stdout.contains("field solver: ") && answer.stdout.contains("shared memory"),
+        "{}",
+        answer.stdout
+    );
+}
+
+#[test]
+fn a_killed_solver_ends_the_run_which_goes_on_bit_for_bit() {
+    let scene = Box::grounded();
+    let mut run = scene.endless();
+    kill_process(scene.solver(), Signal::KILL).unwrap();
+    let begun = Instant::now();
+    while run.try_wait().unwrap().is_none() {
+        assert!(begun.elapsed() < DEADLINE, "the run must end");
+        std::thread::sleep(Duration::from_millis(5));
+    }
+    let output = run.wait_with_output().unwrap();
+    let said = String::from_utf8_lossy(&output.stderr).into_owned();
+    assert_eq!(output.status.code(), Some(3), "{said}");
+    assert!(said.contains("the field solver is gone") && said.contains("--resume"), "{said}");
+    let last = scene.bench.names("out/checkpoints").pop().expect("the state before the solve is saved");
+    let checkpoint = format!("out/checkpoints/{last}");
+    let step: u64 = last.trim_matches(|c: char| !c.is_ascii_digit()).parse().unwrap();
+
+    let more = (step + 40).to_string();
+    let steps = ["--steps", "40"];
+    good(
+        &scene
+            .bench
+            .run(&[&["run", "endless.toml", "--resume", &checkpoint, "--no-progress"], &steps[..]].concat()),
+    );
+    let whole = ["run", "endless.toml", "--out", "whole", "--no-progress", "--steps", &more];
+    good(&scene.bench.run(&[&whole[..], &["--set", "output.history_every_s=1e-5"]].concat()));
+    let last = |out: &str| {
+        let name = format!("{out}/checkpoints/step_{:012}.amber", step + 40);
+        Table::parse(&scene.bench.read(&format!("{out}/history.csv")))
+            .without_clocks()
+            .rows
+            .pop()
+            .map(|row| (row, name))
+    };
+    assert_eq!(last("out").unwrap().0, last("whole").unwrap().0);
+}
+
+#[test]
+fn a_run_that_waits_starts_a_killed_solver_again_and_nothing_is_lost() {
+    let scene = Box::grounded();
+    let text = scene.bench.read("scene.toml") + "on_solver_loss = 'wait'\n[output]\nhistory_every_s = 1e-5\n";
+    scene.bench.write("scene.toml", text.replace("end_s = 1e-3", "end_s = 6e-3").replace("1e-12", "1e-13"));
+    good(&scene.bench.run(&["run", "scene.toml", "--out", "quiet", "--no-progress"]));
+    let mut run = scene
+        .bench
+        .command(&["run", "scene.toml", "--out", "out", "--no-progress"])
+        .stdout(Stdio::piped())
+        .stderr(Stdio::piped())
+        .spawn()
+        .unwrap();
+    let begun = Instant::now();
+    while std::fs::read_to_string(scene.bench.path("out/history.csv")).map_or(0, |text| text.lines().count())
+        < 4
+    {
+        assert!(begun.elapsed() < DEADLINE && run.try_wait().unwrap().is_none(), "the run must begin");
+        std::thread::sleep(Duration::from_millis(2));
+    }
+    kill_process(scene.solver(), Signal::KILL).unwrap();
+    let output = run.wait_with_output().unwrap();
+    let said = String::from_utf8_lossy(&output.stderr).into_owned();
+    assert_eq!(output.status.code(), Some(0), "{said}");
+    assert!(said.contains("waiting for a new one"), "{said}");
+    let rows = |out: &str| Table::parse(&scene.bench.read(&format!("{out}/history.csv"))).without_clocks();
+    assert_eq!(rows("out"), rows("quiet"));
+}
+
+#[test]
+fn a_killed_dem_process_leaves_neither_solver_nor_shared_memory() {
+    let scene = Box::grounded();
+    let mut run = scene.endless();
+    let solver = scene.solver();
+    let of_run = || {
+        let line = std::fs::read(format!("/proc/{}/cmdline", solver.as_raw_nonzero())).unwrap_or_default();
+        let line = String::from_utf8_lossy(&line).into_owned();
+        line.split('\0').find(|word| word.starts_with("amberfield-")).unwrap_or_default().to_owned()
+    };
+    let name = of_run();
+    assert!(!name.is_empty());
+    kill_process(Pid::from_child(&run), Signal::KILL).unwrap();
+    run.wait().unwrap();
+    let left = || {
+        let entries = std::fs::read_dir("/dev/shm").unwrap().flatten();
+        entries.into_iter().any(|entry| entry.file_name().to_string_lossy().starts_with(&name))
+    };
+    let begun = Instant::now();
+    // Whoever inherits the dead process's child may be slow to bury it.
+    let lives = || {
+        let state = std::fs::read_to_string(format!("/proc/{}/stat", solver.as_raw_nonzero()));
+        state.is_ok_and(|state| !state.contains(") Z "))
+    };
+    while lives() || left() {
+        assert!(begun.elapsed() < DEADLINE, "the solver leaves and cleans");
+        std::thread::sleep(Duration::from_millis(20));
+    }
+    assert!(scene.bench.read("foam/log.electricFieldFoam").contains("DEM process is gone"));
+}
+
+#[test]
+fn a_hung_solver_is_missed_in_time_and_killed() {
+    let scene = Box::grounded();
+    let text = scene.bench.read("scene.toml").replace("timeout_s = 20.0", "timeout_s = 1.0");
+    scene.bench.write("scene.toml", text);
+    let run = scene.endless();
+    let solver = scene.solver();
+    kill_process(solver, Signal::STOP).unwrap();
+    let output = run.wait_with_output().unwrap();
+    let said = String::from_utf8_lossy(&output.stderr).into_owned();
+    assert_eq!(output.status.code(), Some(3), "{said}");
+    assert!(said.contains("no answer from the field solver"), "{said}");
+    assert!(test_kill_process(solver).is_err());
+}
+
+#[test]
+fn an_interrupt_ends_both_in_peace() {
+    let scene = Box::grounded();
+    let run = scene.endless();
+    let solver = scene.solver();
+    kill_process(Pid::from_child(&run), Signal::INT).unwrap();
+    let output = run.wait_with_output().unwrap();
+    assert_eq!(output.status.code(), Some(0), "{}", String::from_utf8_lossy(&output.stderr));
+    assert!(test_kill_process(solver).is_err());
+    assert!(scene.bench.read("foam/log.electricFieldFoam").contains("The run is over."));
+}
