@@ -15,6 +15,16 @@ pub struct FieldStageSetup {
     pub choice: Option<Choice>,
     /// A field solver of another process; `None`: the internal grid.
     pub solver: Option<Connect>,
+    /// Whether the internal grid goes on when the field solver is lost; its boundaries are the domain's.
+    pub fallback: bool,
+}
+
+impl FieldStageSetup {
+    /// On the internal grid, with parameters of the field's choice.
+    #[must_use]
+    pub fn new(settings: FieldSettings, member: Vec<bool>) -> Self {
+        Self { settings, member, choice: None, solver: None, fallback: false }
+    }
 }
 
 /// A scene, validated by `Simulation::new`.

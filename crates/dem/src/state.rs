@@ -40,6 +40,10 @@ pub(crate) struct WallHistory {
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub(crate) struct FieldState {
     pub(crate) choice: Choice,
+    /// The internal grid's parameters, should the field solver be lost.
+    pub(crate) fallback: Option<Choice>,
+    /// Whether a field solver has a part in it, and is not lost yet.
+    pub(crate) has_solver: bool,
     /// Of a field solver in another process, at its cells [V].
     pub(crate) far_potential: Vec<f64>,
     pub(crate) forecast: crate::field_stage::Forecast,
@@ -84,6 +88,12 @@ impl State {
     #[must_use]
     pub fn step_index(&self) -> u64 {
         self.step_index
+    }
+
+    /// Whether a field solver that the scene has was lost, and the internal grid goes on.
+    #[must_use]
+    pub fn has_lost_solver(&self) -> bool {
+        self.field.as_ref().is_some_and(|field| !field.has_solver)
     }
 
     /// Parameters of the field in force; `None` without a field stage.

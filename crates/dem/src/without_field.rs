@@ -13,6 +13,12 @@ pub enum Choice {}
 #[error("this build has no electric field; build amberfield-dem with its feature `field`")]
 pub struct FieldError;
 
+impl FieldError {
+    pub(crate) fn is_of_solver(&self) -> bool {
+        false
+    }
+}
+
 /// Fields over somebody else's mesh.
 pub(crate) mod far {
     use super::FieldError;

@@ -134,7 +134,7 @@ fn everything() -> Setup {
         coupling_interval: CouplingInterval::Auto,
         ..FieldSettings::default()
     };
-    scene.field = Some(FieldStageSetup { settings, member: vec![true; count], choice: None, solver: None });
+    scene.field = Some(FieldStageSetup::new(settings, vec![true; count]));
     scene
 }
 
@@ -178,7 +178,7 @@ fn last_grain_may_leave() {
         coupling_interval: CouplingInterval::Steps(3),
         ..FieldSettings::default()
     };
-    scene.field = Some(FieldStageSetup { settings, member: vec![true], choice: None, solver: None });
+    scene.field = Some(FieldStageSetup::new(settings, vec![true]));
     let mut simulation = Simulation::new(scene).expect("a good scene");
     run(&mut simulation, 300);
     assert!(simulation.is_empty());
@@ -207,7 +207,7 @@ fn guards_are_watched_when_the_field_is_evaluated() {
             coupling_interval: CouplingInterval::Steps(400),
             ..FieldSettings::default()
         };
-        scene.field = Some(FieldStageSetup { settings, member: vec![true; 8], choice: None, solver: None });
+        scene.field = Some(FieldStageSetup::new(settings, vec![true; 8]));
         scene
     };
     let mut simulation = Simulation::new(scene(false)).expect("a good scene");

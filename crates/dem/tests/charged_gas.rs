@@ -23,7 +23,7 @@ fn gas() -> Setup {
         tuning: Tuning::Model,
         ..FieldSettings::default()
     };
-    scene.field = Some(FieldStageSetup { settings, member: vec![true; count], choice: None, solver: None });
+    scene.field = Some(FieldStageSetup::new(settings, vec![true; count]));
     scene
 }
 

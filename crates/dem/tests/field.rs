@@ -18,7 +18,7 @@ fn charged(distance: f64, interval: CouplingInterval) -> Setup {
     scene.particles.charge = vec![CHARGE, -CHARGE];
     let settings =
         FieldSettings { method: Method::Direct, coupling_interval: interval, ..FieldSettings::default() };
-    scene.field = Some(FieldStageSetup { settings, member: vec![true; 2], choice: None, solver: None });
+    scene.field = Some(FieldStageSetup::new(settings, vec![true; 2]));
     scene
 }
 
@@ -109,8 +109,7 @@ fn charged_run_resumes_with_the_same_bits() {
         scene.particles.charge =
             (0..count).map(|k| if k % 2 == 0 { 0.2 * CHARGE } else { -0.2 * CHARGE }).collect();
         let settings = FieldSettings { method: Method::Direct, ..FieldSettings::default() };
-        scene.field =
-            Some(FieldStageSetup { settings, member: vec![true; count], choice: None, solver: None });
+        scene.field = Some(FieldStageSetup::new(settings, vec![true; count]));
         scene
     };
     let mut whole = Simulation::new(scene()).unwrap();

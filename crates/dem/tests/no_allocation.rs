@@ -89,8 +89,7 @@ mod charged {
         let count = scene.particles.len();
         let settings = FieldSettings { tuning: Tuning::Model, ..FieldSettings::default() };
         scene.particles.charge = (0..count).map(|i| if i % 2 == 0 { charge } else { -charge }).collect();
-        scene.field =
-            Some(FieldStageSetup { settings, member: vec![true; count], choice: None, solver: None });
+        scene.field = Some(FieldStageSetup::new(settings, vec![true; count]));
         scene
     }
 

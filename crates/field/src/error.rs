@@ -35,3 +35,11 @@ pub enum FieldError {
         advice: String,
     },
 }
+
+impl FieldError {
+    /// Whether it is a field solver of another process that failed.
+    #[must_use]
+    pub fn is_of_solver(&self) -> bool {
+        matches!(self, Self::Solver(_))
+    }
+}

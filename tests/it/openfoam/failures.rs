@@ -1,6 +1,6 @@
 //! What happens when things go wrong: nothing is lost, nothing stays behind.
 
-use super::{Box, DEADLINE, good};
+use super::{AGREEMENT, Box, DEADLINE, difference, good};
 use amberfield_tests::Table;
 use rustix::process::{Pid, Signal, kill_process, test_kill_process};
 use std::process::Stdio;
@@ -76,10 +76,12 @@ fn a_killed_solver_ends_the_run_which_goes_on_bit_for_bit() {
     assert_eq!(last("out").unwrap().0, last("whole").unwrap().0);
 }
 
-#[test]
-fn a_run_that_waits_starts_a_killed_solver_again_and_nothing_is_lost() {
-    let scene = Box::grounded();
-    let text = scene.bench.read("scene.toml") + "on_solver_loss = 'wait'\n[output]\nhistory_every_s = 1e-5\n";
+/// A run of 6 ms whose solver is killed as soon as it has begun; what it said.
+fn lose_the_solver(scene: &Box, on_loss: &str) -> String {
+    let text = scene.bench.read("scene.toml")
+        + &format!(
+            "on_solver_loss = '{on_loss}'\n[output]\nhistory_every_s = 1e-5\ncheckpoint_every_s = 5e-3\n"
+        );
     scene.bench.write("scene.toml", text.replace("end_s = 1e-3", "end_s = 6e-3").replace("1e-12", "1e-13"));
     good(&scene.bench.run(&["run", "scene.toml", "--out", "quiet", "--no-progress"]));
     let mut run = scene
@@ -89,20 +91,70 @@ fn a_run_that_waits_starts_a_killed_solver_again_and_nothing_is_lost() {
         .stderr(Stdio::piped())
         .spawn()
         .unwrap();
-    let begun = Instant::now();
-    while std::fs::read_to_string(scene.bench.path("out/history.csv")).map_or(0, |text| text.lines().count())
-        < 4
-    {
-        assert!(begun.elapsed() < DEADLINE && run.try_wait().unwrap().is_none(), "the run must begin");
-        std::thread::sleep(Duration::from_millis(2));
-    }
+    scene.wait_until_it_steps(&mut run);
     kill_process(scene.solver(), Signal::KILL).unwrap();
     let output = run.wait_with_output().unwrap();
     let said = String::from_utf8_lossy(&output.stderr).into_owned();
     assert_eq!(output.status.code(), Some(0), "{said}");
+    said
+}
+
+fn rows(scene: &Box, out: &str) -> Table {
+    Table::parse(&scene.bench.read(&format!("{out}/history.csv"))).without_clocks()
+}
+
+#[test]
+fn a_run_that_waits_starts_a_killed_solver_again_and_nothing_is_lost() {
+    let scene = Box::grounded();
+    let said = lose_the_solver(&scene, "wait");
     assert!(said.contains("waiting for a new one"), "{said}");
-    let rows = |out: &str| Table::parse(&scene.bench.read(&format!("{out}/history.csv"))).without_clocks();
-    assert_eq!(rows("out"), rows("quiet"));
+    assert_eq!(rows(&scene, "out"), rows(&scene, "quiet"));
+}
+
+#[test]
+fn a_run_that_falls_back_goes_on_with_the_internal_grid_and_resumes_without_a_solver() {
+    let scene = Box::grounded();
+    let said = lose_the_solver(&scene, "fallback");
+    assert!(said.contains("internal grid and field solver differ by"), "{said}");
+    assert!(said.contains("the internal grid takes the field solver's place"), "{said}");
+    let (lost, quiet) = (rows(&scene, "out"), rows(&scene, "quiet"));
+    let energy = |table: &Table| table.numbers("electric_J");
+    let error = difference(&energy(&lost), &energy(&quiet));
+    assert!(error > 0.0 && error < AGREEMENT, "{error:e}");
+
+    let checkpoint = format!("out/checkpoints/{}", scene.bench.names("out/checkpoints")[0]);
+    let resume = ["run", "scene.toml", "--resume", &checkpoint, "--no-progress"];
+    let output = scene.bench.command(&resume).env("AMBERFIELD_SOLVER", "none").output().unwrap();
+    let said = String::from_utf8_lossy(&output.stderr).into_owned();
+    assert_eq!(output.status.code(), Some(0), "{said}");
+    assert!(said.contains("the field solver was lost before this checkpoint"), "{said}");
+    assert_eq!(rows(&scene, "out"), lost);
+}
+
+#[test]
+fn a_fallback_with_other_boundaries_is_said() {
+    let scene = Box::grounded();
+    let text = scene.bench.read("scene.toml").replace("z = 'grounded'", "z = 'insulating'");
+    scene.bench.write("scene.toml", text + "on_solver_loss = 'fallback'\n");
+    let answer = scene.bench.run(&["run", "scene.toml", "--out", "out", "--no-progress", "--steps", "2"]);
+    good(&answer);
+    assert!(
+        answer.stderr.contains("its boundaries, [domain.boundary], are not those of the case"),
+        "{}",
+        answer.stderr
+    );
+
+    let text = scene.bench.read("scene.toml");
+    let without = text[text.find("[[materials]]").unwrap()..].to_owned();
+    scene.bench.write("grains.csv", "id,x_m,y_m,z_m,radius_m,charge_C\n1,5e-3,5e-3,5e-3,2.5e-4,1e-12\n");
+    let generate = without.find("generate").unwrap();
+    let line = without[generate..].find('\n').unwrap() + generate;
+    scene
+        .bench
+        .write("scene.toml", format!("{}file = 'grains.csv'{}", &without[..generate], &without[line..]));
+    let answer = scene.bench.run(&["run", "scene.toml", "--out", "other", "--no-progress"]);
+    assert_eq!(answer.code, Some(2), "{}", answer.stderr);
+    assert!(answer.stderr.contains("add [domain] and [domain.boundary]"), "{}", answer.stderr);
 }
 
 #[test]

@@ -1,9 +1,6 @@
 //! What comes back: against the internal grid, and against more exact fields.
 
-use super::{Box, difference, good};
-
-/// The two tolerances of 1e-2, whose squares add.
-const AGREEMENT: f64 = 1.4e-2;
+use super::{AGREEMENT, Box, difference, good};
 
 fn agrees_with_the_internal_grid(scene: &Box) {
     good(&scene.field("one.csv", &[]));

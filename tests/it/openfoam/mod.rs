@@ -11,6 +11,8 @@ use std::time::{Duration, Instant};
 
 /// Longest wait for something that takes a fraction of a second.
 const DEADLINE: Duration = Duration::from_secs(60);
+/// What two fields may differ by whose tolerances are 1e-2: their squares add.
+const AGREEMENT: f64 = 1.4e-2;
 
 const HEAD: &str = "FoamFile { version 2.0; format ascii; class CLASS; object OBJECT; }\n";
 
@@ -107,15 +109,20 @@ impl Box {
             ["run", "endless.toml", "--out", "out", "--no-progress", "--set", "output.history_every_s=1e-5"];
         let mut child =
             self.bench.command(&out).stdout(Stdio::piped()).stderr(Stdio::piped()).spawn().unwrap();
+        self.wait_until_it_steps(&mut child);
+        child
+    }
+
+    /// Waits until the run into `out` has begun to step.
+    fn wait_until_it_steps(&self, run: &mut Child) {
         let begun = Instant::now();
         let rows = || {
             std::fs::read_to_string(self.bench.path("out/history.csv")).map_or(0, |text| text.lines().count())
         };
         while rows() < 4 {
-            assert!(begun.elapsed() < DEADLINE && child.try_wait().unwrap().is_none(), "the run must begin");
-            std::thread::sleep(Duration::from_millis(5));
+            assert!(begun.elapsed() < DEADLINE && run.try_wait().unwrap().is_none(), "the run must begin");
+            std::thread::sleep(Duration::from_millis(2));
         }
-        child
     }
 
     /// The field solver of this folder's case.

@@ -33,7 +33,13 @@ pub(crate) fn run(options: &RunOptions, common: &Common, log: &Log) -> Result<()
         .as_ref()
         .map(|checkpoint| read_checkpoint::<Saved>(checkpoint, scene.hash()))
         .transpose()?;
-    let solver = connect_solver(&mut scene)?;
+    let solver = match &saved {
+        Some(saved) if scene.solver.is_some() && saved.state.has_lost_solver() => {
+            tracing::warn!("the field solver was lost before this checkpoint; the internal grid goes on");
+            None
+        }
+        _ => connect_solver(&mut scene)?,
+    };
     let setup = setup_of(&scene, None, solver)?;
     let (simulation, earlier) = match saved {
         Some(Saved { state, history, wall_s, stage_s }) => {

@@ -5,7 +5,7 @@ use amberfield_core::{Domain, FieldSettings, Vector3};
 use amberfield_dem::{FieldStageSetup, Setup};
 use amberfield_field::far::Connect;
 use amberfield_field::{Choice, ElectricField};
-use amberfield_scene::Scene;
+use amberfield_scene::{Scene, SolverLoss};
 use serde_json::{Map, Value, json};
 
 /// The box of a scene.
@@ -49,6 +49,7 @@ pub(crate) fn setup_of(
         member: members(scene),
         choice,
         solver,
+        fallback: falls_back(scene),
     });
     Ok(Setup {
         domain: domain_of(scene)?.clone(),
@@ -58,6 +59,11 @@ pub(crate) fn setup_of(
         time,
         field,
     })
+}
+
+/// Whether the internal grid goes on when the field solver is lost.
+fn falls_back(scene: &Scene) -> bool {
+    scene.solver.as_ref().is_some_and(|solver| solver.on_solver_loss == SolverLoss::Fallback)
 }
 
 /// The field of a scene's charges: on the internal grid, or over a field solver's mesh.

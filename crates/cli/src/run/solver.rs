@@ -14,7 +14,12 @@ const FAR_TOLERANCE: f64 = 1e-4;
 /// Reaches the scene's field solver, if it has one; the scene's box is the mesh's where it has none of its own.
 pub(crate) fn connect_solver(scene: &mut Scene) -> Result<Option<Connect>, Failure> {
     let (Some(solver), Some(field)) = (&scene.solver, &scene.electric_field) else { return Ok(None) };
-    refuse(field.field.method, solver.on_solver_loss)?;
+    refuse(field.field.method)?;
+    if solver.on_solver_loss == SolverLoss::Fallback && scene.domain.is_none() {
+        return Err(Failure::bad_input(
+            "solver.on_solver_loss = \"fallback\" needs the box and the boundaries with which the internal grid goes on; add [domain] and [domain.boundary]",
+        ));
+    }
     // What it prints stays in its case's folder, as is usual.
     let program = solver.application.as_deref().unwrap_or("electricFieldFoam");
     let settings = SolverSettings {
@@ -55,16 +60,11 @@ fn connect(settings: &SolverSettings) -> Result<RemoteSolver, CouplingError> {
 }
 
 /// Refuses what is not built over a solver's mesh.
-fn refuse(method: Method, loss: SolverLoss) -> Result<(), Failure> {
+fn refuse(method: Method) -> Result<(), Failure> {
     if !matches!(method, Method::P3m | Method::Kolehmainen) {
         return Err(Failure::bad_input(format!(
             "this version has no method {method} over a field solver's mesh; set electric_field.method = \"p3m\" or \"kolehmainen\", or remove [solver]"
         )));
-    }
-    if loss == SolverLoss::Fallback {
-        return Err(Failure::bad_input(
-            "this version has no solver.on_solver_loss = \"fallback\"; set \"stop\" or \"wait\"",
-        ));
     }
     Ok(())
 }

@@ -13,6 +13,7 @@
 mod forecast;
 mod interval;
 mod members;
+mod source;
 
 pub(crate) use forecast::{EnergyForecast, Forecast};
 pub(crate) use interval::IntervalControl;
@@ -20,7 +21,7 @@ pub use interval::Intervals;
 
 use crate::chunks::{CHUNK, chunk_count, for_each_chunk, is_parallel};
 use crate::error::DemError;
-use crate::field_crate::{ElectricField, FieldValues, Wanted};
+use crate::field_crate::{FieldValues, Wanted};
 use crate::grains::Grains;
 use crate::setup::FieldStageSetup;
 use crate::state::FieldState;
@@ -29,6 +30,7 @@ use amberfield_core::{CouplingInterval, Domain, FieldSettings, ForceLimit, Parti
 use amberfield_laws::{force_limit, time_step_limits};
 use members::Members;
 use serde::{Deserialize, Serialize};
+use source::Source;
 
 /// Largest travel of any grain between evaluations, over the smallest radius.
 const MOST_TRAVEL: f64 = 0.5;
@@ -57,7 +59,7 @@ type ChunkLimited = (u64, f64);
 /// The field and the forces that it makes.
 #[derive(Debug)]
 pub(crate) struct FieldStage {
-    pub(crate) field: ElectricField,
+    pub(crate) source: Source,
     settings: FieldSettings,
     /// By the set-up's order.
     pub(crate) member: Vec<bool>,
@@ -88,27 +90,14 @@ impl FieldStage {
         particles: &Particles,
         state: Option<&FieldState>,
     ) -> Result<Self, DemError> {
-        let FieldStageSetup { settings, member, choice, solver } = setup;
+        let (settings, member) = (setup.settings.clone(), setup.member.clone());
         let members = || (0..particles.len()).filter(|&i| member[i]);
         let smallest_radius = members().map(|i| particles.radius[i]).fold(f64::INFINITY, f64::min);
-        let known = state.map(|s| &s.choice).or(choice.as_ref());
-        let position = || members().map(|i| domain.wrap(particles.position[i])).collect::<Vec<_>>();
-        let charge = || members().map(|i| particles.charge[i]).collect::<Vec<_>>();
-        let mut field = match (solver, known) {
-            (None, Some(choice)) => ElectricField::with_choice(domain, &settings, choice)?,
-            (None, None) => ElectricField::new(domain, &settings, &position(), &charge())?,
-            (Some(solver), Some(choice)) => {
-                ElectricField::over_mesh_with_choice(solver.connect()?, &settings, choice)?
-            }
-            (Some(solver), None) => {
-                ElectricField::over_mesh(solver.connect()?, &settings, &position(), &charge())?
-            }
-        };
-        if let Some(state) = state {
-            field.start_from(&state.far_potential);
-        }
+        let position: Vec<_> = members().map(|i| domain.wrap(particles.position[i])).collect();
+        let charge: Vec<_> = members().map(|i| particles.charge[i]).collect();
+        let source = Source::new(domain, setup, (&position, &charge), state)?;
         let mut stage = Self {
-            field,
+            source,
             settings,
             member,
             smallest_radius,
@@ -138,8 +127,10 @@ impl FieldStage {
 
     pub(crate) fn state(&self) -> FieldState {
         FieldState {
-            choice: self.field.choice().clone(),
-            far_potential: self.field.far_potential().to_vec(),
+            choice: self.source.field.choice().clone(),
+            fallback: self.source.fallback(),
+            has_solver: self.source.field.has_solver(),
+            far_potential: self.source.field.far_potential().to_vec(),
             forecast: self.forecast.clone(),
             energy: self.energy,
             control: self.control,
@@ -169,7 +160,7 @@ impl FieldStage {
     /// Whether the next step may ask another process for the field, which may be lost.
     pub(crate) fn may_be_lost(&self, step: f64, speed: f64) -> bool {
         let far = self.travel + FASTER * step * speed > MOST_TRAVEL * self.smallest_radius;
-        self.field.has_solver() && (far || self.control.may_be_due())
+        self.source.may_be_lost() && (far || self.control.may_be_due())
     }
 
     /// Books a step of length `step` [s] at largest speed `speed` [m/s]; whether E is due.
@@ -189,8 +180,7 @@ impl FieldStage {
         step: f64,
     ) -> Result<(), DemError> {
         self.members.collect(&self.member, domain, grains, particles);
-        let Members { position, charge, .. } = &self.members;
-        self.field.evaluate(position, charge, WANTED, &mut self.values)?;
+        self.source.evaluate(domain, &self.settings, &self.members, &mut self.values)?;
         let scale = self.scale(domain);
         let age = self.control.age;
         self.energy.renew(self.energy_of(&self.members, domain), age);
@@ -300,11 +290,10 @@ impl FieldStage {
         particles: &Particles,
     ) -> Result<f64, DemError> {
         self.onlookers.collect(&self.member, domain, grains, particles);
-        let Members { position, charge, .. } = &self.onlookers;
-        let before = self.field.far_potential().to_vec();
-        self.field.evaluate(position, charge, WANTED, &mut self.values)?;
+        let before = self.source.field.far_potential().to_vec();
+        self.source.evaluate(domain, &self.settings, &self.onlookers, &mut self.values)?;
         // A field solver goes on from where the motion left it.
-        self.field.start_from(&before);
+        self.source.field.start_from(&before);
         Ok(self.energy_of(&self.onlookers, domain))
     }
 
@@ -360,7 +349,7 @@ mod tests {
             })
             .collect();
         let settings = FieldSettings { method: Method::Direct, tolerance: 1e-2, ..FieldSettings::default() };
-        let setup = FieldStageSetup { settings, member: vec![true; 4], choice: None, solver: None };
+        let setup = FieldStageSetup::new(settings, vec![true; 4]);
         let mut stage = FieldStage::new(&domain, setup, &particles, None).expect("a good scene");
         let grains = Grains::new(&particles, vec![0; 4], false);
         stage.evaluate(&domain, &grains, &particles, STEP).expect("a good scene");

@@ -143,6 +143,6 @@ impl Simulation {
     /// The field; `None` without a field stage.
     #[must_use]
     pub fn field(&self) -> Option<&ElectricField> {
-        self.field.as_ref().map(|stage| &stage.field)
+        self.field.as_ref().map(|stage| &stage.source.field)
     }
 }

@@ -127,7 +127,7 @@ impl Simulation {
             wall_count,
             neighbours.level_count(),
             asked,
-            field.as_ref().map(|f| f.field.plan()),
+            field.as_ref().map(|f| f.source.field.plan()),
         );
         let grains = Grains::new(&particles, level, features.rotation());
         let mut run = Self {

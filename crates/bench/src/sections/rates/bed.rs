@@ -43,10 +43,7 @@ impl Bed {
     pub(super) fn charged(&self, tolerance: f64, interval: CouplingInterval) -> Setup {
         let settings = FieldSettings { tolerance, coupling_interval: interval, ..self.settings.clone() };
         let member = vec![true; self.plain.particles.len()];
-        Setup {
-            field: Some(FieldStageSetup { settings, member, choice: None, solver: None }),
-            ..self.plain.clone()
-        }
+        Setup { field: Some(FieldStageSetup::new(settings, member)), ..self.plain.clone() }
     }
 
     /// The same bed from where a run has come to, contacts forgotten, at a fixed step, its field chosen by the cost model.

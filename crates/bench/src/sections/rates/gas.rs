@@ -26,8 +26,7 @@ pub(super) fn measure(quick: bool, rows: &mut Rows) -> Result<()> {
             ..FieldSettings::default()
         };
         scene.particles.charge = (0..count).map(|i| if i % 2 == 0 { charge } else { -charge }).collect();
-        scene.field =
-            Some(FieldStageSetup { settings, member: vec![true; count], choice: None, solver: None });
+        scene.field = Some(FieldStageSetup::new(settings, vec![true; count]));
         scene
     };
     look(rows, "without charge", gas(0.0, 1e-2, CouplingInterval::Auto), steps)?;
