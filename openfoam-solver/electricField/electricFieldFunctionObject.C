@@ -17,29 +17,6 @@ namespace functionObjects
 }
 }
 
-namespace
-{
-
-//- The run's name, from the dictionary or the environment
-Foam::string runOf(const Foam::dictionary& dict)
-{
-    const Foam::string run
-    (
-        dict.lookupOrDefault<Foam::string>("run", Foam::getEnv("AMBERFIELD_RUN"))
-    );
-    if (run.empty())
-    {
-        FatalIOErrorInFunction(dict)
-            << "no run of amberfield is named: set the entry run, or the environment's"
-            << " AMBERFIELD_RUN, to the name that the run says"
-            << Foam::exit(Foam::FatalIOError);
-    }
-    return run;
-}
-
-} // End anonymous namespace
-
-
 Foam::functionObjects::electricField::electricField
 (
     const word& name,
@@ -48,7 +25,7 @@ Foam::functionObjects::electricField::electricField
 )
 :
     fvMeshFunctionObject(name, runTime, dict),
-    field_(mesh_, runOf(dict)),
+    field_(mesh_, dict.lookupOrDefault<string>("run", getEnv("AMBERFIELD_RUN"))),
     pending_(false),
     over_(false)
 {}

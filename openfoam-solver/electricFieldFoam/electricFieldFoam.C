@@ -11,7 +11,7 @@ Description
     its field phiE.
 
 Usage
-    electricFieldFoam -case CASE -run RUN
+    electricFieldFoam -case CASE [-run RUN]
 
 \*---------------------------------------------------------------------------*/
 
@@ -21,7 +21,7 @@ Usage
 int main(int argc, char *argv[])
 {
     argList::addNote("The smooth electric field of charged grains, for amberfield.");
-    argList::addOption("run", "name", "Run of the DEM process, as it says it");
+    argList::addOption("run", "name", "Run of the DEM process; default: the one that waits");
     argList::noFunctionObjects();
     argList::noBanner();
 
@@ -29,7 +29,10 @@ int main(int argc, char *argv[])
     #include "createTime.H"
     #include "createMesh.H"
 
-    electricField field(mesh, args.get<string>("run"));
+    string run;
+    args.readIfPresent("run", run);
+
+    electricField field(mesh, run);
 
     while (field.wait())
     {

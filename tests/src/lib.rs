@@ -1,5 +1,7 @@
 //! Running the `amberfield` binary in a folder of its own.
 
 mod bench;
+mod foam_box;
 
 pub use bench::{Answer, Bench, Table};
+pub use foam_box::{DEADLINE, FoamBox};

@@ -76,11 +76,13 @@ typedef struct AmberfieldRequest {
 extern "C" {
 #endif // __cplusplus
 
-// Opens a run by its name, for a rank of so many. Never NULL; amberfield_field_error is empty when it worked.
+// Opens a run by its name (empty: the one run of this user that waits for a solver), for a rank of so many. Never NULL; amberfield_field_error is empty when it worked.
 //
 // # Safety
 // `run` is a C string.
-struct AmberfieldField *amberfield_field_open(const char *run, uint32_t rank, uint32_t ranks);
+struct AmberfieldField *amberfield_field_open(const char *run,
+                                              uint32_t rank,
+                                              uint32_t ranks);
 
 // Why the last call failed; empty if it did not. Valid until the next call.
 //

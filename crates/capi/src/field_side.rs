@@ -80,7 +80,7 @@ pub struct AmberfieldRequest {
     pub time: f64,
 }
 
-/// Opens a run by its name, for a rank of so many. Never NULL; amberfield_field_error is empty when it worked.
+/// Opens a run by its name (empty: the one run of this user that waits for a solver), for a rank of so many. Never NULL; amberfield_field_error is empty when it worked.
 ///
 /// # Safety
 /// `run` is a C string.

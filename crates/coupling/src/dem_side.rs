@@ -85,6 +85,7 @@ impl Announced {
             Some(Process::start(&settings, root.name())?)
         } else {
             let (case, run) = (settings.case.display(), root.name());
+            root.invite(true);
             match &settings.application {
                 None => tracing::info!("waiting for `electricFieldFoam -case {case} -run {run}`"),
                 Some(program) => tracing::info!("waiting for `{RUN}={run} {program} -case {case}`"),
@@ -99,6 +100,7 @@ impl Announced {
             let rank = message.header().rank as usize;
             messages[rank] = Some(message);
         }
+        root.invite(false);
         let parts: Result<Vec<_>, _> =
             messages.iter().flatten().map(|message| MeshPart::read(&message.sections())).collect();
         let parts = parts.map_err(of_solver)?;

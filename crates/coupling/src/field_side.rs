@@ -62,13 +62,14 @@ pub struct FieldSide {
 }
 
 impl FieldSide {
-    /// Opens a run by its name.
+    /// Opens a run by its name; without one, the run that waits for a solver.
     ///
     /// # Errors
     /// No such run, no shared memory.
     pub fn open(run: &str, rank: u32, ranks: u32) -> Result<Self, CouplingError> {
-        let root = RunRoot::open(run)?;
-        let link = Link::new(&root, SideOf::Field { rank }, ranks, Instant::now() + OPENING)?;
+        let deadline = Instant::now() + OPENING;
+        let root = if run.is_empty() { RunRoot::open_waiting(deadline)? } else { RunRoot::open(run)? };
+        let link = Link::new(&root, SideOf::Field { rank }, ranks, deadline)?;
         Ok(Self {
             link,
             rank,

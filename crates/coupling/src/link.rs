@@ -4,7 +4,7 @@
 //! in place; events wake the receiver, who looks first and then waits in short slices, so that a peer that dies is noticed.
 
 use crate::CouplingError;
-use crate::run_root::RunRoot;
+use crate::run_root::{RunRoot, check_room, no_room};
 use amberfield_wire::{Block64, Header, Layout, MessageKind, Section, Sections, WireError};
 use iceoryx2::node::NodeView as _;
 use iceoryx2::port::listener::Listener;
@@ -26,6 +26,8 @@ const SLICE: Duration = Duration::from_millis(20);
 const POLL: Duration = Duration::from_millis(5);
 /// Room for more than the first message needs, so that a few more grains do not need new memory.
 const HEADROOM: f64 = 1.25;
+/// What iceoryx2 keeps beside the messages, and more [bytes].
+const BOOKKEEPING: usize = 1 << 20;
 /// Name of the DEM process's node.
 const DEM: &str = "dem";
 
@@ -94,6 +96,7 @@ impl Link {
         deadline: Instant,
     ) -> Result<Self, CouplingError> {
         set_log_level(LogLevel::Fatal);
+        check_room(BOOKKEEPING)?;
         let config = config_of(root)?;
         let node = NodeBuilder::new()
             .config(&config)
@@ -198,6 +201,7 @@ impl Link {
     }
 
     fn new_publisher(&self, blocks: usize) -> Result<Outbox, CouplingError> {
+        check_room(BOOKKEEPING + blocks * size_of::<Block64>())?;
         said(
             self.channel
                 .publisher_builder()
@@ -288,11 +292,7 @@ fn populate(payload: &mut [MaybeUninit<Block64>]) -> Result<(), CouplingError> {
     let populated = unsafe {
         rustix::mm::madvise(start.sub(before).cast(), before + bytes, rustix::mm::Advice::LinuxPopulateWrite)
     };
-    populated.map_err(|error| {
-        CouplingError::SharedMemory(format!(
-            "cannot have {bytes} bytes of it ({error}); make /dev/shm larger (containers: --shm-size)"
-        ))
-    })
+    populated.map_err(|error| no_room(bytes, &error))
 }
 
 /// Tries again until the deadline: the other side may not be there yet.

@@ -3,9 +3,14 @@
 use crate::CouplingError;
 use rustix::fs::Mode;
 use std::path::{Path, PathBuf};
+use std::time::{Duration, Instant};
 
 /// Where shared memory lives.
 const SHARED: &str = "/dev/shm";
+/// File of a run that waits for a solver which somebody else starts.
+const INVITATION: &str = "waiting";
+/// How often one looks for a run that waits.
+const POLL: Duration = Duration::from_millis(20);
 
 /// The place in shared memory of one run: `/dev/shm/amberfield-<uid>-<run>`, open to its user alone.
 ///
@@ -55,6 +60,41 @@ impl RunRoot {
             Ok(_) => Ok(root),
             Err(error) => Err(CouplingError::SharedMemory(format!("cannot open run {name}: {error}"))),
         }
+    }
+
+    /// The one run of this user that waits for a field solver; until the deadline there may be none yet.
+    ///
+    /// # Errors
+    /// None, or several.
+    pub fn open_waiting(deadline: Instant) -> Result<Self, CouplingError> {
+        loop {
+            let mut waiting = own_runs();
+            waiting.retain(|name| {
+                Path::new(SHARED).join(name).join(INVITATION).exists() && crate::link::dem_is_alive_in(name)
+            });
+            match waiting.as_slice() {
+                [name] => return Self::open(name),
+                [] if Instant::now() < deadline => std::thread::sleep(POLL),
+                [] => {
+                    return Err(CouplingError::SharedMemory(
+                        "no run of this user waits for a field solver; start one whose scene has solver.start = false, or name it with -run".into(),
+                    ));
+                }
+                several => {
+                    return Err(CouplingError::SharedMemory(format!(
+                        "several runs wait for a field solver ({}); name one with -run",
+                        several.join(", ")
+                    )));
+                }
+            }
+        }
+    }
+
+    /// Says that the run waits for a solver which somebody else starts, or no longer does.
+    pub(crate) fn invite(&self, waits: bool) {
+        let path = self.path().join(INVITATION);
+        // Without it a solver has to be told the name, which the log says.
+        let _ = if waits { std::fs::write(path, "") } else { std::fs::remove_file(path) };
     }
 
     /// Its name, for the field process.
@@ -107,21 +147,40 @@ fn remove(name: &str) {
     let _ = std::fs::remove_dir_all(Path::new(SHARED).join(name));
 }
 
+/// Refuses to go on where shared memory has no room for so many bytes: to write there would be a signal, not an error.
+pub(crate) fn check_room(bytes: usize) -> Result<(), CouplingError> {
+    match rustix::fs::statvfs(SHARED) {
+        Ok(room) if room.f_blocks > 0 && room.f_bavail * room.f_frsize < bytes as u64 => {
+            Err(no_room(bytes, &"full"))
+        }
+        Ok(_) => Ok(()),
+        Err(error) => Err(no_room(bytes, &error)),
+    }
+}
+
+pub(crate) fn no_room(bytes: usize, why: &dyn std::fmt::Display) -> CouplingError {
+    CouplingError::SharedMemory(format!(
+        "cannot have {bytes} bytes of it ({why}); make {SHARED} larger (containers: --shm-size)"
+    ))
+}
+
 /// Names of this user's runs whose DEM process is gone; with `clean` they are removed.
 #[must_use]
 pub fn stale_runs(clean: bool) -> Vec<String> {
-    let mine = format!("amberfield-{}-", rustix::process::getuid().as_raw());
-    let mut stale = Vec::new();
-    for entry in std::fs::read_dir(SHARED).into_iter().flatten().flatten() {
-        let name = entry.file_name().to_string_lossy().into_owned();
-        if !name.starts_with(&mine) || name.contains('.') || crate::link::dem_is_alive_in(&name) {
-            continue;
-        }
-        if clean {
-            remove(&name);
-        }
-        stale.push(name);
+    let mut stale = own_runs();
+    stale.retain(|name| !crate::link::dem_is_alive_in(name));
+    if clean {
+        stale.iter().for_each(|name| remove(name));
     }
-    stale.sort();
     stale
+}
+
+/// Names of this user's runs, sorted.
+fn own_runs() -> Vec<String> {
+    let mine = format!("amberfield-{}-", rustix::process::getuid().as_raw());
+    let entries = std::fs::read_dir(SHARED).into_iter().flatten().flatten();
+    let names = entries.map(|entry| entry.file_name().to_string_lossy().into_owned());
+    let mut runs: Vec<String> = names.filter(|name| name.starts_with(&mine) && !name.contains('.')).collect();
+    runs.sort();
+    runs
 }

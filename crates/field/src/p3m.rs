@@ -190,6 +190,9 @@ impl FieldMethod for P3m {
         }
         self.stopwatch.restart();
         let targets = self.load(positions, charges);
+        if let Some(far) = &mut self.far {
+            far.locate(&self.positions[..positions.len()])?;
+        }
         self.near.sort(&self.positions, &self.charges, targets);
         self.stopwatch.lap("sort");
         let potential = wanted.potential || self.far.is_some();

@@ -3,7 +3,9 @@
 
 mod bench;
 mod check;
+mod debian;
 mod deny;
+mod images;
 mod leaving_out;
 mod openfoam;
 mod shell;
@@ -18,7 +20,7 @@ use std::process::ExitCode;
 const USAGE: &str = "\
 cargo xtask check [--without tests]   what CI asks: fmt, clippy, tidy, docs, deny, tests
 cargo xtask test                      every test: documentation examples, units, commands, cases at smoke size;
-                                      builds the field solver first (see openfoam); uses cargo-nextest where it is installed
+                                      builds the field solver and images first (see openfoam, images); uses cargo-nextest where it is installed
 cargo xtask tidy                      the repository's own rules
 cargo xtask deny                      licences and sources of everything that is linked; installs cargo-deny where
                                       it is missing
@@ -27,6 +29,8 @@ cargo xtask bench [--quick] [--peers] [--resume] [--page] [SECTION…]
                                       into target/peers; writes docs/reports/speed.md
 cargo xtask openfoam                  builds openfoam-solver/; installs OpenFOAM's package and fetches its headers where they
                                       are missing
+cargo xtask images                    builds the container images of docker/; installs and starts an engine where there is none,
+                                      and makes their base with debootstrap where no registry can be reached
 cargo xtask header                    writes the C library's header
 cargo xtask leaving-out               what a plain scene pays for the field: instructions with and without the field
                                       crate under callgrind; installs valgrind where it is missing";
@@ -56,6 +60,7 @@ fn run() -> Result<()> {
         ["deny"] => deny::run(root),
         ["leaving-out"] => leaving_out::run(root),
         ["openfoam"] => openfoam::run(root),
+        ["images"] => images::run(root),
         ["header"] => execute(
             cargo(root, &["test", "-p", "amberfield-capi", "--test", "header"])
                 .env("AMBERFIELD_WRITE_HEADER", "1"),

@@ -3,6 +3,7 @@
 //! Debian's OpenFOAM package has programs and libraries, but no headers and no wmake: the headers come from the matching source
 //! package, by the system's own package sources turned into source ones, into a folder below `target/`.
 
+use crate::debian;
 use crate::shell::{cargo, run as execute};
 use anyhow::{Context, Result, bail};
 use std::path::{Path, PathBuf};
@@ -17,7 +18,7 @@ const PROJECT: (&str, &str) = ("WM_PROJECT_DIR", "/usr/share/openfoam");
 
 /// Installs what is missing, fetches the headers, builds the C library, the solver and its self-test, and runs that.
 pub(crate) fn run(root: &Path) -> Result<()> {
-    provide_packages()?;
+    debian::provide(&PACKAGES)?;
     let headers = provide_headers(root)?;
     execute(&mut cargo(root, &["build", "--release", "-p", "amberfield-capi"]))?;
     let (source, build) = (root.join("openfoam-solver"), root.join("openfoam-solver/build"));
@@ -36,34 +37,9 @@ pub(crate) fn run(root: &Path) -> Result<()> {
     execute(&mut test).context("the build computes wrong numbers; is -D__restrict__= among the flags?")
 }
 
-fn provide_packages() -> Result<()> {
-    let missing: Vec<&str> = PACKAGES.into_iter().filter(|package| installed(package).is_none()).collect();
-    if missing.is_empty() {
-        return Ok(());
-    }
-    println!("installing {} with apt-get", missing.join(", "));
-    execute(Command::new("apt-get").args(["update", "-q"]))
-        .and_then(|()| {
-            let mut install = Command::new("apt-get");
-            install.args(["install", "-y", "-q", "--no-install-recommends"]).args(&missing);
-            execute(install.env("DEBIAN_FRONTEND", "noninteractive"))
-        })
-        .with_context(|| format!("cannot install {}; install it, then try again", missing.join(", ")))
-}
-
-/// Source version of an installed package.
-fn installed(package: &str) -> Option<String> {
-    let query = Command::new("dpkg-query")
-        .args(["-W", "-f", "${db:Status-Status} ${source:Version}", package])
-        .output()
-        .ok()?;
-    let text = String::from_utf8(query.stdout).ok()?;
-    text.strip_prefix("installed ").map(str::to_owned)
-}
-
 /// The `src` folder of the headers.
 fn provide_headers(root: &Path) -> Result<PathBuf> {
-    let version = installed("openfoam").context("OpenFOAM is not installed as a package")?;
+    let version = debian::version("openfoam").context("OpenFOAM is not installed as a package")?;
     let folder = root.join("target/openfoam").join(&version);
     let source = folder.join("src");
     let complete = folder.join("complete");

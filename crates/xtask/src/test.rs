@@ -1,15 +1,16 @@
 //! Every test of the repository; installs what they need and says so.
 
-use crate::openfoam;
 use crate::shell::{cargo, run as execute, works};
+use crate::{images, openfoam};
 use anyhow::Result;
 use std::path::Path;
 
-/// The field solver, documentation examples, then unit tests, command tests and cases at smoke size.
+/// The field solver, its container images, documentation examples, then unit tests, command tests and cases at smoke size.
 ///
 /// The documentation examples come first so that the last line counts the tests proper.
 pub(crate) fn run(root: &Path) -> Result<()> {
     openfoam::run(root)?;
+    images::build(root)?;
     execute(&mut cargo(root, &["test", "--workspace", "--doc"]))?;
     if works(&mut cargo(root, &["nextest", "--version"])) {
         execute(&mut cargo(root, &["nextest", "run", "--workspace", "--no-fail-fast"]))

@@ -1,25 +1,25 @@
 //! What happens when things go wrong: nothing is lost, nothing stays behind.
 
-use super::{AGREEMENT, Box, DEADLINE, difference, good};
-use amberfield_tests::Table;
+use super::{AGREEMENT, difference, good};
+use amberfield_tests::{DEADLINE, FoamBox, Table};
 use rustix::process::{Pid, Signal, kill_process, test_kill_process};
 use std::process::Stdio;
 use std::time::{Duration, Instant};
 
 #[test]
 fn bad_cases_are_refused_by_name() {
-    let scene = Box::grounded();
+    let scene = FoamBox::grounded();
     let phi = scene.bench.read("foam/0/phiE");
     scene.bench.write("foam/0/phiE", phi.replacen("fixedValue", "slip", 1));
     let answer = scene.field("out.csv", &[]);
     assert_eq!(answer.code, Some(3), "{}", answer.stderr);
     assert!(answer.stderr.contains("patch x0 of field phiE has the condition slip"), "{}", answer.stderr);
 
-    let answer = Box::grounded().field("out.csv", &["--set", "domain.boundary.x=\"periodic\""]);
+    let answer = FoamBox::grounded().field("out.csv", &["--set", "domain.boundary.x=\"periodic\""]);
     assert_eq!(answer.code, Some(2), "{}", answer.stderr);
     assert!(answer.stderr.contains("[domain] is periodic along x"), "{}", answer.stderr);
 
-    let scene = Box::grounded();
+    let scene = FoamBox::grounded();
     std::fs::remove_file(scene.bench.path("foam/system/blockMeshDict")).unwrap();
     let answer = scene.field("out.csv", &[]);
     assert_eq!(answer.code, Some(3), "{}", answer.stderr);
@@ -40,7 +40,7 @@ fn bad_cases_are_refused_by_name() {
 
 #[test]
 fn a_killed_solver_ends_the_run_which_goes_on_bit_for_bit() {
-    let scene = Box::grounded();
+    let scene = FoamBox::grounded();
     let mut run = scene.endless();
     kill_process(scene.solver(), Signal::KILL).unwrap();
     let begun = Instant::now();
@@ -77,7 +77,7 @@ fn a_killed_solver_ends_the_run_which_goes_on_bit_for_bit() {
 }
 
 /// A run of 6 ms whose solver is killed as soon as it has begun; what it said.
-fn lose_the_solver(scene: &Box, on_loss: &str) -> String {
+fn lose_the_solver(scene: &FoamBox, on_loss: &str) -> String {
     let text = scene.bench.read("scene.toml")
         + &format!(
             "on_solver_loss = '{on_loss}'\n[output]\nhistory_every_s = 1e-5\ncheckpoint_every_s = 5e-3\n"
@@ -99,13 +99,13 @@ fn lose_the_solver(scene: &Box, on_loss: &str) -> String {
     said
 }
 
-fn rows(scene: &Box, out: &str) -> Table {
+fn rows(scene: &FoamBox, out: &str) -> Table {
     Table::parse(&scene.bench.read(&format!("{out}/history.csv"))).without_clocks()
 }
 
 #[test]
 fn a_run_that_waits_starts_a_killed_solver_again_and_nothing_is_lost() {
-    let scene = Box::grounded();
+    let scene = FoamBox::grounded();
     let said = lose_the_solver(&scene, "wait");
     assert!(said.contains("waiting for a new one"), "{said}");
     assert_eq!(rows(&scene, "out"), rows(&scene, "quiet"));
@@ -113,7 +113,7 @@ fn a_run_that_waits_starts_a_killed_solver_again_and_nothing_is_lost() {
 
 #[test]
 fn a_run_that_falls_back_goes_on_with_the_internal_grid_and_resumes_without_a_solver() {
-    let scene = Box::grounded();
+    let scene = FoamBox::grounded();
     let said = lose_the_solver(&scene, "fallback");
     assert!(said.contains("internal grid and field solver differ by"), "{said}");
     assert!(said.contains("the internal grid takes the field solver's place"), "{said}");
@@ -133,7 +133,7 @@ fn a_run_that_falls_back_goes_on_with_the_internal_grid_and_resumes_without_a_so
 
 #[test]
 fn a_fallback_with_other_boundaries_is_said() {
-    let scene = Box::grounded();
+    let scene = FoamBox::grounded();
     let text = scene.bench.read("scene.toml").replace("z = 'grounded'", "z = 'insulating'");
     scene.bench.write("scene.toml", text + "on_solver_loss = 'fallback'\n");
     let answer = scene.bench.run(&["run", "scene.toml", "--out", "out", "--no-progress", "--steps", "2"]);
@@ -159,7 +159,7 @@ fn a_fallback_with_other_boundaries_is_said() {
 
 #[test]
 fn a_killed_dem_process_leaves_neither_solver_nor_shared_memory() {
-    let scene = Box::grounded();
+    let scene = FoamBox::grounded();
     let mut run = scene.endless();
     let solver = scene.solver();
     let of_run = || {
@@ -190,7 +190,7 @@ fn a_killed_dem_process_leaves_neither_solver_nor_shared_memory() {
 
 #[test]
 fn a_hung_solver_is_missed_in_time_and_killed() {
-    let scene = Box::grounded();
+    let scene = FoamBox::grounded();
     let text = scene.bench.read("scene.toml").replace("timeout_s = 20.0", "timeout_s = 1.0");
     scene.bench.write("scene.toml", text);
     let run = scene.endless();
@@ -205,7 +205,7 @@ fn a_hung_solver_is_missed_in_time_and_killed() {
 
 #[test]
 fn an_interrupt_ends_both_in_peace() {
-    let scene = Box::grounded();
+    let scene = FoamBox::grounded();
     let run = scene.endless();
     let solver = scene.solver();
     kill_process(Pid::from_child(&run), Signal::INT).unwrap();
@@ -213,4 +213,82 @@ fn an_interrupt_ends_both_in_peace() {
     assert_eq!(output.status.code(), Some(0), "{}", String::from_utf8_lossy(&output.stderr));
     assert!(test_kill_process(solver).is_err());
     assert!(scene.bench.read("foam/log.electricFieldFoam").contains("The run is over."));
+}
+
+/// A program that stands for the solver.
+fn stand_in(scene: &FoamBox, script: &str) -> std::process::Command {
+    scene.bench.write("solver.sh", format!("#!/bin/sh\n{script}\n"));
+    let program = scene.bench.path("solver.sh");
+    std::fs::set_permissions(&program, std::os::unix::fs::PermissionsExt::from_mode(0o755)).unwrap();
+    let mut run = scene.bench.command(&["run", "scene.toml", "--out", "out", "--no-progress"]);
+    run.env("AMBERFIELD_SOLVER", program);
+    run
+}
+
+#[test]
+fn a_solver_that_dies_or_hangs_before_it_says_a_word_is_missed() {
+    let scene = FoamBox::grounded();
+    let text = scene.bench.read("scene.toml").replace("timeout_s = 20.0", "timeout_s = 1.0");
+    scene.bench.write("scene.toml", text);
+    for (script, expected) in [
+        ("exit 7", "the field solver is gone (exit status: 7) at solve 0"),
+        ("kill -9 $$", "the field solver is gone (signal: 9 (SIGKILL)) at solve 0"),
+        ("exec sleep 60", "no answer from the field solver to solve 0 within 1"),
+    ] {
+        let output = stand_in(&scene, script).output().unwrap();
+        let said = String::from_utf8_lossy(&output.stderr).into_owned();
+        assert_eq!(output.status.code(), Some(3), "{said}");
+        assert!(said.contains(expected), "{said}");
+        assert!(!scene.bench.path("out").exists(), "nothing has begun");
+    }
+}
+
+#[test]
+fn two_runs_at_once_do_not_meet() {
+    let scenes = [FoamBox::grounded(), FoamBox::grounded()];
+    let start = |scene: &FoamBox| {
+        let run = ["run", "scene.toml", "--out", "out", "--no-progress", "--set", "solver.ranks=2"];
+        scene.bench.command(&run).stdout(Stdio::null()).stderr(Stdio::null()).spawn().unwrap()
+    };
+    let runs = scenes.each_ref().map(start);
+    for mut run in runs {
+        assert!(run.wait().unwrap().success());
+    }
+    assert_eq!(rows(&scenes[0], "out"), rows(&scenes[1], "out"));
+}
+
+#[test]
+fn a_grain_outside_the_mesh_is_named() {
+    for method in ["p3m", "kolehmainen"] {
+        let scene = FoamBox::grounded();
+        let text = scene
+            .bench
+            .read("scene.toml")
+            .replace("max_m = [0.012, 0.012, 0.01]", "max_m = [0.012, 0.012, 0.02]");
+        let generate = text.find("generate").unwrap();
+        let line = text[generate..].find('\n').unwrap() + generate;
+        scene.bench.write("scene.toml", format!("{}file = 'grains.csv'{}", &text[..generate], &text[line..]));
+        let grains = |z: &str| {
+            format!(
+                "id,x_m,y_m,z_m,radius_m,charge_C\n1,5e-3,5e-3,5e-3,2.5e-4,1e-12\n2,5e-3,5e-3,{z},2.5e-4,-1e-12\n"
+            )
+        };
+        let options = ["--method", method, "--set", "electric_field.field_cutoff_radius=2e-3"];
+        if method == "p3m" {
+            // A hair outside belongs to the wall, on one rank and on two.
+            scene.bench.write("grains.csv", grains("10.001e-3"));
+            good(&scene.field("hair.csv", &options));
+            good(&scene.field("two.csv", &[&options[..], &["--set", "solver.ranks=2"]].concat()));
+            let error = difference(&scene.e("two.csv"), &scene.e("hair.csv"));
+            assert!(error < 1e-4, "{error:e}");
+        }
+        scene.bench.write("grains.csv", grains("12e-3"));
+        let answer = scene.field("far.csv", &options);
+        assert_eq!(answer.code, Some(2), "{}", answer.stderr);
+        assert!(
+            answer.stderr.contains("grain at index 1") && answer.stderr.contains("outside the"),
+            "{}",
+            answer.stderr
+        );
+    }
 }

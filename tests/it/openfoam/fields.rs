@@ -1,8 +1,9 @@
 //! What comes back: against the internal grid, and against more exact fields.
 
-use super::{AGREEMENT, Box, difference, good};
+use super::{AGREEMENT, difference, good};
+use amberfield_tests::FoamBox;
 
-fn agrees_with_the_internal_grid(scene: &Box) {
+fn agrees_with_the_internal_grid(scene: &FoamBox) {
     good(&scene.field("one.csv", &[]));
     good(&scene.field("two.csv", &["--set", "solver.ranks=2"]));
     scene.alone();
@@ -14,7 +15,7 @@ fn agrees_with_the_internal_grid(scene: &Box) {
 
 #[test]
 fn grounded_box_agrees_with_the_internal_grid() {
-    agrees_with_the_internal_grid(&Box::grounded());
+    agrees_with_the_internal_grid(&FoamBox::grounded());
 }
 
 #[test]
@@ -29,15 +30,15 @@ fn mixed_box_agrees_with_the_internal_grid() {
         (wall, "type fixedValue; value uniform 300;"),
     ];
     let faces = "x = 'periodic'\ny_min = 'insulating'\ny_max = { normal_field_V_m = 2000.0 }\nz_min = 'grounded'\nz_max = { potential_V = 300.0 }";
-    agrees_with_the_internal_grid(&Box::new(&sides, faces, "bipolar = 1e-12"));
+    agrees_with_the_internal_grid(&FoamBox::new(&sides, faces, "bipolar = 1e-12"));
 }
 
 #[test]
 fn periodic_box_agrees_and_refuses_a_net_charge() {
     let sides = [("cyclic", "type cyclic;"); 6];
     let faces = "x = 'periodic'\ny = 'periodic'\nz = 'periodic'";
-    agrees_with_the_internal_grid(&Box::new(&sides, faces, "bipolar = 1e-12"));
-    let answer = Box::new(&sides, faces, "constant = 1e-12").field("out.csv", &[]);
+    agrees_with_the_internal_grid(&FoamBox::new(&sides, faces, "bipolar = 1e-12"));
+    let answer = FoamBox::new(&sides, faces, "constant = 1e-12").field("out.csv", &[]);
     assert_eq!(answer.code, Some(2), "{}", answer.stderr);
     assert!(answer.stderr.contains("net charge"), "{}", answer.stderr);
 }
@@ -45,7 +46,7 @@ fn periodic_box_agrees_and_refuses_a_net_charge() {
 /// The published hybrid: the same cells, the same operator, the same gradient.
 #[test]
 fn kolehmainen_over_openfoam_is_that_of_the_internal_grid() {
-    let scene = Box::grounded();
+    let scene = FoamBox::grounded();
     let radius = ["--method", "kolehmainen", "--set", "electric_field.field_cutoff_radius=2e-3"];
     good(
         &scene
@@ -70,7 +71,7 @@ fn coarse_mesh_errs_by_less_than_8_in_1000() {
     let wall = ("wall", "type fixedValue; value uniform 0;");
     let faces = "x = 'grounded'\ny = 'grounded'\nz = 'grounded'";
     for charge in ["bipolar = 1e-12", "constant = 1e-12"] {
-        let scene = Box::new(&[wall; 6], faces, charge);
+        let scene = FoamBox::new(&[wall; 6], faces, charge);
         good(&scene.field("coupled.csv", &[&many[..], &["--tolerance", "5e-3"]].concat()));
         scene.alone();
         good(&scene.field("exact.csv", &[&many[..], &["--tolerance", "1e-5"]].concat()));

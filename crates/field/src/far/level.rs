@@ -142,7 +142,6 @@ impl FarLevel {
         self.solver.solve(&request)?;
         let mesh = self.solver.mesh();
         self.fits.fit(mesh, &self.solver.values.potential, &self.boundary);
-        self.locate(positions);
         Ok(())
     }
 
@@ -164,14 +163,15 @@ impl FarLevel {
         });
     }
 
-    /// Each grain's cell, by a walk from its last one.
-    fn locate(&mut self, positions: &[Vector3<f64>]) {
+    /// Each grain's cell, by a walk from its last one; refuses grains outside the mesh.
+    pub(crate) fn locate(&mut self, positions: &[Vector3<f64>]) -> Result<(), FieldError> {
         let mesh = self.solver.mesh();
         self.cells.resize(positions.len(), u32::MAX);
         self.cells.par_iter_mut().zip(positions).for_each(|(cell, position)| {
             let last = (*cell != u32::MAX).then_some(*cell);
             *cell = mesh.locate(position, last).0;
         });
+        mesh.check_inside(positions, &self.cells)
     }
 
     pub(crate) fn memory_bytes(&self) -> usize {

@@ -2,6 +2,7 @@
 //!
 //! Another process with OpenFOAM does, or a solver in this one: whoever implements [`FarField`].
 
+mod box_mesh;
 mod density;
 mod images;
 mod level;

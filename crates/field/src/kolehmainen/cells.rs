@@ -83,13 +83,15 @@ impl Cells for Mesh {
 pub(super) struct SolverCells {
     solver: FarSolver,
     neutralising_background: bool,
+    /// Where the charges are for the solver.
+    places: Vec<Vector3<f64>>,
     boundary: Vec<f64>,
 }
 
 impl SolverCells {
     pub(super) fn new(solver: Box<dyn FarField>, neutralising_background: bool) -> Self {
         let boundary = solver.mesh().boundary().iter().map(|face| face.condition.value()).collect();
-        Self { solver: FarSolver::new(solver), neutralising_background, boundary }
+        Self { solver: FarSolver::new(solver), neutralising_background, places: Vec::new(), boundary }
     }
 }
 
@@ -101,10 +103,21 @@ impl Cells for SolverCells {
         permittivity: f64,
         cells: &mut Vec<u32>,
     ) -> Result<(), FieldError> {
-        check_net_charge(self.solver.mesh(), permittivity, self.neutralising_background, charges)?;
+        let mesh = self.solver.mesh();
+        check_net_charge(mesh, permittivity, self.neutralising_background, charges)?;
+        cells.clear();
+        cells.resize(positions.len(), u32::MAX);
+        // A stray belongs to the nearest wall's cell, whichever process has that: it is sent as if it were at its centre.
+        self.places.clear();
+        self.places.extend(positions.iter().zip(cells.iter_mut()).map(|(position, cell)| {
+            let (found, inside) = mesh.locate(position, None);
+            *cell = found;
+            if inside { *position } else { mesh.centres()[found as usize] }
+        }));
+        mesh.check_inside(positions, cells)?;
         let request = FarRequest {
             source: FarSource::NearestCell,
-            positions,
+            positions: &self.places,
             charges,
             image_positions: &[],
             image_charges: &[],
@@ -115,15 +128,10 @@ impl Cells for SolverCells {
             time_s: 0.0,
         };
         self.solver.solve(&request)?;
-        let values = &self.solver.values;
-        cells.clone_from(&values.cells);
-        match cells.iter().position(|&cell| cell as usize >= values.potential.len()) {
-            Some(index) => Err(FieldError::Settings(format!(
-                "grain at index {index} lies outside the mesh at {:?} m; enlarge the mesh or move the grain",
-                positions[index].as_slice()
-            ))),
-            None => Ok(()),
-        }
+        // The same cells, unless a charge lies on a face, where the solver's word counts.
+        let theirs = self.solver.values.cells.iter().zip(cells);
+        theirs.filter(|(theirs, _)| **theirs != u32::MAX).for_each(|(theirs, ours)| *ours = *theirs);
+        Ok(())
     }
 
     fn solver(&self) -> Option<&FarSolver> {

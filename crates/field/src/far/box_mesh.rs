@@ -1,0 +1,66 @@
+//! A mesh of equal cells in a box.
+
+use super::{BoundaryFace, CellFace, Condition, FarMeshParts, Neighbour};
+use crate::FieldError;
+use amberfield_core::{Axis, Boundary, Domain};
+use nalgebra::Vector3;
+
+impl FarMeshParts {
+    /// A box of `counts` equal cells with the domain's faces; a mesh for tests and comparisons.
+    ///
+    /// # Errors
+    /// Open faces: a mesh ends somewhere.
+    pub fn of_box(domain: &Domain, counts: [usize; 3]) -> Result<Self, FieldError> {
+        let size = Vector3::from_fn(|axis, _| domain.extent()[axis] / counts[axis] as f64);
+        let mut faces = Vec::new();
+        let (mut boundary, mut first_face, mut centres) = (Vec::new(), vec![0], Vec::new());
+        let index = |at: [usize; 3]| ((at[2] * counts[1] + at[1]) * counts[0] + at[0]) as u32;
+        for cell in 0..counts.iter().product::<usize>() {
+            let at = [cell % counts[0], cell / counts[0] % counts[1], cell / counts[0] / counts[1]];
+            let centre = domain.min() + Vector3::from_fn(|axis, _| (at[axis] as f64 + 0.5) * size[axis]);
+            centres.push(centre);
+            for axis in Axis::ALL {
+                let a = axis.index();
+                for (side, sign) in [(0, -1.0), (1, 1.0)] {
+                    let mut normal = Vector3::zeros();
+                    normal[a] = sign;
+                    let mut face_centre = centre;
+                    face_centre[a] += 0.5 * sign * size[a];
+                    let last = if side == 0 { at[a] == 0 } else { at[a] + 1 == counts[a] };
+                    let mut next = at;
+                    next[a] = (at[a] + if side == 0 { counts[a] - 1 } else { 1 }) % counts[a];
+                    let condition = match domain.faces()[a][side] {
+                        Boundary::Grounded => Condition::Potential(0.0),
+                        Boundary::Potential(volts) => Condition::Potential(volts),
+                        Boundary::Insulating { normal_field_v_m } => Condition::Slope(-normal_field_v_m),
+                        Boundary::Periodic => Condition::Slope(0.0),
+                        _ => {
+                            return Err(FieldError::Settings(
+                                "a mesh has no open faces; close the domain".into(),
+                            ));
+                        }
+                    };
+                    let neighbour = if !last {
+                        Neighbour::Cell { cell: index(next), shift: Vector3::zeros() }
+                    } else if domain.is_periodic(axis) {
+                        let shift = normal * domain.extent()[a];
+                        Neighbour::Cell { cell: index(next), shift }
+                    } else {
+                        let area = size.product() / size[a];
+                        let cell = cell as u32;
+                        boundary.push(BoundaryFace { centre: face_centre, normal, area, cell, condition });
+                        Neighbour::Boundary(boundary.len() as u32 - 1)
+                    };
+                    faces.push(CellFace { normal, offset: normal.dot(&face_centre), neighbour });
+                }
+            }
+            first_face.push(faces.len() as u32);
+        }
+        let ends = domain.faces().map(|pair| {
+            pair.map(|face| if face == Boundary::Periodic { Boundary::Periodic } else { Boundary::Open })
+        });
+        let domain = Domain::new(domain.min(), domain.max(), ends).expect("as good as the domain given");
+        let volumes = vec![size.product(); centres.len()];
+        Ok(Self { domain, centres, volumes, first_face, faces, boundary })
+    }
+}
