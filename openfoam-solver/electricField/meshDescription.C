@@ -47,6 +47,22 @@ Foam::scalarField prescribed(const Foam::fvPatchScalarField& V)
     return Foam::scalarField(V.size(), Foam::scalar(0));
 }
 
+//- Mean square of the corners' distances from a face's centre
+Foam::symmTensor spread
+(
+    const Foam::face& corners,
+    const Foam::pointField& points,
+    const Foam::vector& centre
+)
+{
+    Foam::symmTensor sum(Foam::Zero);
+    for (const Foam::label corner : corners)
+    {
+        sum += Foam::sqr(points[corner] - centre);
+    }
+    return sum/Foam::scalar(corners.size());
+}
+
 } // End anonymous namespace
 
 
@@ -128,10 +144,12 @@ Foam::meshDescription::meshDescription(const volScalarField& V)
             boundaryIndex[patch.start() + i - nInternal] = label(boundary_.size());
             const vector& c = patch.Cf()[i];
             const vector& n = nf[i];
+            const symmTensor m(spread(mesh.faces()[patch.start() + i], mesh.points(), c));
             boundary_.push_back
             ({{
                 c.x(), c.y(), c.z(), n.x(), n.y(), n.z(), patch.magSf()[i],
-                double(patch.faceCells()[i]), isConductor(pV) ? 1.0 : 0.0, values[i]
+                double(patch.faceCells()[i]), isConductor(pV) ? 1.0 : 0.0, values[i],
+                m.xx(), m.xy(), m.xz(), m.yy(), m.yz(), m.zz()
             }});
         }
     }

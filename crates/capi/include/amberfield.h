@@ -53,8 +53,9 @@ typedef struct AmberfieldMesh {
   const int64_t *face_neighbours;
   // What is added to the neighbour's coordinates (0 unless the face is cyclic).
   const double *face_shifts;
-  // By boundary face ten numbers: centre, outward unit normal, area, cell of this rank, 1 where the potential is prescribed
-  // and 0 where its outward slope is, the value [V or V/m].
+  // By boundary face sixteen numbers: centre, outward unit normal, area, cell of this rank, 1 where the potential is
+  // prescribed and 0 where its outward slope is, the value [V or V/m], mean over its corners of the squared distance from the
+  // centre as a tensor (xx xy xz yy yz zz).
   const double *boundary_faces;
 } AmberfieldMesh;
 

@@ -59,8 +59,9 @@ pub struct AmberfieldMesh {
     pub face_neighbours: *const i64,
     /// What is added to the neighbour's coordinates (0 unless the face is cyclic).
     pub face_shifts: *const f64,
-    /// By boundary face ten numbers: centre, outward unit normal, area, cell of this rank, 1 where the potential is prescribed
-    /// and 0 where its outward slope is, the value [V or V/m].
+    /// By boundary face sixteen numbers: centre, outward unit normal, area, cell of this rank, 1 where the potential is
+    /// prescribed and 0 where its outward slope is, the value [V or V/m], mean over its corners of the squared distance from the
+    /// centre as a tensor (xx xy xz yy yz zz).
     pub boundary_faces: *const f64,
 }
 

@@ -16,7 +16,7 @@ mod wall;
 pub use domain::{Axis, Boundary, Domain, DomainError, Side};
 pub use field_settings::{CouplingInterval, FieldSettings, ForceLimit, Method, Tuning};
 pub use material::{Material, MaterialId};
-pub use nalgebra::Vector3;
+pub use nalgebra::{Matrix3, Vector3};
 pub use particles::{Grain, GroupId, Particles};
 pub use plan::{Plan, PlanEntry};
 pub use time_settings::{OnExit, Skin, Step, TimeSettings};

@@ -1,14 +1,14 @@
 //! A mesh as it travels: one part per rank, put together on the DEM side.
 
 use crate::CouplingError;
-use amberfield_core::{Boundary, Domain, Vector3};
+use amberfield_core::{Boundary, Domain, Matrix3, Vector3};
 use amberfield_field::FieldError;
 use amberfield_field::far::{BoundaryFace, CellFace, Condition, FarMesh, FarMeshParts, Neighbour};
 use amberfield_wire::{Block64, Header, Layout, MessageKind, Section, Sections, WireError};
 use std::mem::MaybeUninit;
 
 /// Numbers of a boundary face, see [`Section::BoundaryFaces`].
-const BOUNDARY_NUMBERS: usize = 10;
+pub(crate) const BOUNDARY_NUMBERS: usize = 16;
 /// Numbers of a mesh, see [`Section::MeshNumbers`].
 const MESH_NUMBERS: usize = 11;
 
@@ -38,7 +38,7 @@ pub struct MeshPart<'a> {
     /// What is added to the neighbours' coordinates [m].
     pub face_shifts: &'a [[f64; 3]],
     /// By boundary face: centre, normal, area, cell of this rank, 1 for a prescribed potential (0: slope), its value.
-    pub boundary_faces: &'a [[f64; 10]],
+    pub boundary_faces: &'a [[f64; BOUNDARY_NUMBERS]],
 }
 
 impl MeshPart<'_> {
@@ -134,11 +134,13 @@ pub(crate) fn assemble(parts: &[MeshPart<'_>]) -> Result<FarMesh, CouplingError>
             let normal = Vector3::from(part.face_normals[face]);
             whole.faces.push(CellFace { normal, offset: part.face_offsets[face], neighbour });
         }
-        for &[cx, cy, cz, nx, ny, nz, area, cell, kind, value] in part.boundary_faces {
+        for &[cx, cy, cz, nx, ny, nz, area, cell, kind, value, xx, xy, xz, yy, yz, zz] in part.boundary_faces
+        {
             whole.boundary.push(BoundaryFace {
                 centre: Vector3::new(cx, cy, cz),
                 normal: Vector3::new(nx, ny, nz),
                 area,
+                spread: Matrix3::new(xx, xy, xz, xy, yy, yz, xz, yz, zz),
                 cell: index(first as i64 + cell as i64)?,
                 condition: if kind == 0.0 { Condition::Slope(value) } else { Condition::Potential(value) },
             });
@@ -170,7 +172,9 @@ pub(crate) fn own_cells(part: &MeshPart<'_>) -> Result<FarMesh, CouplingError> {
             } else {
                 let ([cx, cy, cz], [nx, ny, nz]) = (part.centres[cell], *normal);
                 *neighbour = -1 - boundary.len() as i64;
-                boundary.push([cx, cy, cz, nx, ny, nz, 1.0, cell as f64, 0.0, 0.0]);
+                let mut face = [0.0; BOUNDARY_NUMBERS];
+                face[..8].copy_from_slice(&[cx, cy, cz, nx, ny, nz, 1.0, cell as f64]);
+                boundary.push(face);
             }
         }
     }

@@ -33,7 +33,7 @@ struct Arrays {
     offsets: Vec<f64>,
     neighbours: Vec<i64>,
     shifts: Vec<[f64; 3]>,
-    boundary: Vec<[f64; 10]>,
+    boundary: Vec<[f64; 16]>,
 }
 
 impl Arrays {
@@ -53,7 +53,26 @@ impl Arrays {
                 Condition::Slope(slope) => (0.0, slope),
             };
             let (c, n) = (face.centre, face.normal);
-            [c.x, c.y, c.z, n.x, n.y, n.z, face.area, f64::from(face.cell), kind, value]
+            let m = face.spread;
+            let [xx, xy, xz, yy, yz, zz] = [m.m11, m.m12, m.m13, m.m22, m.m23, m.m33];
+            [
+                c.x,
+                c.y,
+                c.z,
+                n.x,
+                n.y,
+                n.z,
+                face.area,
+                f64::from(face.cell),
+                kind,
+                value,
+                xx,
+                xy,
+                xz,
+                yy,
+                yz,
+                zz,
+            ]
         });
         Self {
             centres: mesh.centres().iter().map(|&centre| centre.into()).collect(),

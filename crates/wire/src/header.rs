@@ -88,8 +88,9 @@ pub enum Section {
     FaceNeighbours = 17,
     /// What is added to a neighbour's coordinates [m].
     FaceShifts = 18,
-    /// By boundary face, 10 numbers: centre [m], outward unit normal, area [m²], cell of this rank, 1 for a prescribed potential
-    /// and 0 for a prescribed slope, its value [V or V/m].
+    /// By boundary face, 16 numbers: centre [m], outward unit normal, area [m²], cell of this rank, 1 for a prescribed potential
+    /// and 0 for a prescribed slope, its value [V or V/m], mean over its corners x of (x − centre)(x − centre)ᵀ [m²] (xx, xy, xz,
+    /// yy, yz, zz).
     BoundaryFaces = 19,
     /// Potential at the cells' centres of all ranks to start the linear solver from [V]; absent: from where it is.
     Guess = 21,

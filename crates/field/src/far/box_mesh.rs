@@ -3,7 +3,7 @@
 use super::{BoundaryFace, CellFace, Condition, FarMeshParts, Neighbour};
 use crate::FieldError;
 use amberfield_core::{Axis, Boundary, Domain};
-use nalgebra::Vector3;
+use nalgebra::{Matrix3, Vector3};
 
 impl FarMeshParts {
     /// A box of `counts` equal cells with the domain's faces; a mesh for tests and comparisons.
@@ -48,7 +48,16 @@ impl FarMeshParts {
                     } else {
                         let area = size.product() / size[a];
                         let cell = cell as u32;
-                        boundary.push(BoundaryFace { centre: face_centre, normal, area, cell, condition });
+                        let mut half = 0.5 * size;
+                        half[a] = 0.0;
+                        boundary.push(BoundaryFace {
+                            centre: face_centre,
+                            normal,
+                            area,
+                            spread: Matrix3::from_diagonal(&half.component_mul(&half)),
+                            cell,
+                            condition,
+                        });
                         Neighbour::Boundary(boundary.len() as u32 - 1)
                     };
                     faces.push(CellFace { normal, offset: normal.dot(&face_centre), neighbour });

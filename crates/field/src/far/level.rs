@@ -7,9 +7,9 @@
 //!
 //! so that the sum keeps the case's own. Clouds are cut at the walls, not normalised anew.
 
-use super::images::WallImages;
 use super::local_fit::LocalFits;
 use super::mesh::{Condition, FarMesh};
+use super::walls::Walls;
 use super::{FarField, FarRequest, FarSolver, FarSource, check_net_charge};
 use crate::FieldError;
 use amberfield_core::{Axis, Boundary, Domain};
@@ -27,7 +27,7 @@ const DEPTH_OF_CELL: f64 = 4.0;
 #[derive(Debug)]
 pub(crate) struct FarLevel {
     solver: FarSolver,
-    images: WallImages,
+    walls: Walls,
     depth: f64,
     fits: LocalFits,
     cloud: Cloud,
@@ -46,7 +46,7 @@ impl FarLevel {
         let size = mesh.largest_cell();
         let depth = DEPTH_OF_CELL * size;
         Self {
-            images: WallImages::new(mesh, depth),
+            walls: Walls::new(mesh, depth),
             depth,
             fits: LocalFits::new(mesh),
             cloud: Cloud { radius: RADIUS_OF_CELL * size, shape: SHAPE },
@@ -99,13 +99,12 @@ impl FarLevel {
         self.image_positions.clear();
         self.image_charges.clear();
         for (position, charge) in positions.iter().zip(&*charges).filter(|(_, charge)| **charge != 0.0) {
-            self.images.for_each(position, |image, factor| {
+            self.walls.for_each(position, |image, factor| {
                 self.image_positions.push(image);
                 self.image_charges.push(factor * charge);
             });
         }
-        let boundary = self.solver.mesh().boundary();
-        positions.extend(boundary.iter().map(|face| face.centre));
+        positions.extend(self.walls.places());
         charges.resize(positions.len(), 0.0);
         let targets = positions.len();
         positions.extend(&self.image_positions);

@@ -2,7 +2,7 @@
 
 use crate::FieldError;
 use amberfield_core::Domain;
-use nalgebra::Vector3;
+use nalgebra::{Matrix3, Vector3};
 use rayon::prelude::*;
 use std::fmt::Display;
 
@@ -69,6 +69,8 @@ pub struct BoundaryFace {
     pub normal: Vector3<f64>,
     /// Area [m²].
     pub area: f64,
+    /// Mean over its corners x of (x − centre)(x − centre)ᵀ [m²].
+    pub spread: Matrix3<f64>,
     /// Its cell.
     pub cell: u32,
     /// What is prescribed for the whole potential.

@@ -4,11 +4,11 @@
 
 mod box_mesh;
 mod density;
-mod images;
 mod level;
 mod local_fit;
 mod mesh;
 mod solver;
+mod walls;
 
 pub use density::SmoothDensity;
 pub(crate) use level::FarLevel;
