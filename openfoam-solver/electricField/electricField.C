@@ -16,6 +16,9 @@ namespace
 //- Share of the charge by which sums over cells may miss neutrality
 const Foam::scalar mostMismatch = 0.05;
 
+//- What V starts from over the solution, from which on it is solved for again
+const Foam::scalar mostFall = 2;
+
 //- A field that is neither read nor written, and that other fields of the
 //  case with its name do not meet
 Foam::IOobject own(const char* name, const Foam::fvMesh& mesh)
@@ -124,6 +127,23 @@ void Foam::electricField::answer()
         removeMean(epsilon.value());
     }
 
+    // OpenFOAM's residual is relative to what V starts from: from a much larger one it
+    // ends too early
+    const scalar before = gMax(mag(V_.primitiveField())());
+    solverPerformance performance(solve(epsilon));
+    if (before > mostFall*gMax(mag(V_.primitiveField())()))
+    {
+        performance = solve(epsilon);
+    }
+
+    E_ = -fvc::grad(V_);
+
+    demProcess_.reply(V_, E_, performance.nIterations(), performance.finalResidual());
+}
+
+
+Foam::solverPerformance Foam::electricField::solve(const dimensionedScalar& epsilon)
+{
     solverPerformance performance;
     for (label corrector = 0; corrector <= nNonOrthogonalCorrectors_; ++corrector)
     {
@@ -134,10 +154,7 @@ void Foam::electricField::answer()
         controls_.set("tolerance", demProcess_.request().tolerance);
         performance = VEqn.solve(controls_);
     }
-
-    E_ = -fvc::grad(V_);
-
-    demProcess_.reply(V_, E_, performance.nIterations(), performance.finalResidual());
+    return performance;
 }
 
 

@@ -2,6 +2,7 @@
 
 #![expect(clippy::unwrap_used, reason = "helpers of tests fail as tests do")]
 
+use crate::foam_case::write_case;
 use crate::{Answer, Bench, Table};
 use rustix::process::Pid;
 use std::process::{Child, Stdio};
@@ -9,8 +10,6 @@ use std::time::{Duration, Instant};
 
 /// Longest wait for something that takes a fraction of a second.
 pub const DEADLINE: Duration = Duration::from_secs(60);
-const HEAD: &str = "FoamFile { version 2.0; format ascii; class CLASS; object OBJECT; }\n";
-
 /// Half-and-half charged grains in a box; every boundary as `phiE` and `[domain.boundary]` say it.
 #[derive(Debug)]
 pub struct FoamBox {
@@ -33,14 +32,6 @@ impl FoamBox {
              [solver]\nopenfoam_case = 'foam'\ntimeout_s = 20.0\n"
         );
         let bench = Bench::new(&scene);
-        for folder in ["foam/0", "foam/system"] {
-            std::fs::create_dir_all(bench.path(folder)).unwrap();
-        }
-        let file = |name: &str, class: &str, text: &str| {
-            let object = name.rsplit('/').next().unwrap();
-            let head = HEAD.replace("CLASS", class).replace("OBJECT", object);
-            bench.write(&format!("foam/{name}"), head + text);
-        };
         let quads = ["(0 4 7 3)", "(1 2 6 5)", "(0 1 5 4)", "(3 7 6 2)", "(0 3 2 1)", "(4 5 6 7)"];
         let names = ["x0", "x1", "y0", "y1", "z0", "z1"];
         let patches: String = (0..6)
@@ -52,33 +43,11 @@ impl FoamBox {
             .collect();
         let conditions: String =
             (0..6).map(|side| format!("{} {{ {} }}\n", names[side], sides[side].1)).collect();
-        file(
-            "system/blockMeshDict",
-            "dictionary",
-            &format!(
-                "convertToMeters 1e-3;\nvertices ((0 0 0) (12 0 0) (12 12 0) (0 12 0) (0 0 10) (12 0 10) (12 12 10) (0 12 10));\n\
-                 blocks (hex (0 1 2 3 4 5 6 7) (12 12 10) simpleGrading (1 1 1));\nboundary ({patches});\n"
-            ),
+        let mesh = format!(
+            "scale 1e-3;\nvertices ((0 0 0) (12 0 0) (12 12 0) (0 12 0) (0 0 10) (12 0 10) (12 12 10) (0 12 10));\n\
+             blocks (hex (0 1 2 3 4 5 6 7) (12 12 10) simpleGrading (1 1 1));\nboundary ({patches});\n"
         );
-        file(
-            "system/controlDict",
-            "dictionary",
-            "startFrom startTime; startTime 0; stopAt endTime; endTime 1; deltaT 1; writeControl timeStep; writeInterval 1;\n",
-        );
-        file(
-            "system/fvSchemes",
-            "dictionary",
-            "ddtSchemes { default none; } gradSchemes { default Gauss linear; } divSchemes { default none; }\n\
-             laplacianSchemes { default Gauss linear corrected; } interpolationSchemes { default linear; } snGradSchemes { default corrected; }\n",
-        );
-        file("system/fvSolution", "dictionary", "solvers {}\n");
-        file(
-            "0/phiE",
-            "volScalarField",
-            &format!(
-                "dimensions [1 2 -3 0 0 -1 0];\ninternalField uniform 0;\nboundaryField {{ {conditions} }}\n"
-            ),
-        );
+        write_case(&bench, &mesh, &conditions, "Gauss linear");
         Self { bench }
     }
 

@@ -2,6 +2,7 @@
 
 mod bench;
 mod foam_box;
+pub mod foam_case;
 
 pub use bench::{Answer, Bench, Table};
 pub use foam_box::{DEADLINE, FoamBox};

@@ -130,7 +130,14 @@ impl ElectricField {
         let domain = far.domain_of_grid();
         let alone = FieldSettings { neutralising_background: true, ..settings.clone() };
         let wrapped: Vec<_> = positions.iter().map(|position| far.mesh().domain().wrap(*position)).collect();
-        let chosen = Tuner::new(&domain, &alone, &wrapped, charges).choose()?;
+        // Beyond the far level's clouds there is nothing for pairs to do.
+        let longest = far.cloud_as_returned().radius;
+        if let Some(cutoff) = settings.cutoff_radius_m.filter(|cutoff| *cutoff > longest) {
+            return Err(FieldError::Settings(format!(
+                "field_cutoff_radius {cutoff:e} m is larger than the {longest:e} m from which on the field solver's mesh takes over; make it smaller or leave it out"
+            )));
+        }
+        let chosen = Tuner::new(&domain, &alone, &wrapped, charges).up_to(longest).choose()?;
         let field = Self::over_far(far, settings, chosen.parameters)?;
         Ok(Self { error_estimated: chosen.estimated, error_measured: chosen.measured, ..field })
     }

@@ -126,6 +126,8 @@ pub(crate) struct Tuner<'a> {
     positions: &'a [Vector3<f64>],
     charges: &'a [f64],
     cloud: Cloud,
+    /// Largest cut-off radius [m].
+    longest: f64,
 }
 
 impl<'a> Tuner<'a> {
@@ -136,7 +138,7 @@ impl<'a> Tuner<'a> {
         charges: &'a [f64],
     ) -> Self {
         let cloud = Cloud::new(domain, settings.relative_permittivity, positions, charges);
-        Self { domain, settings, positions, charges, cloud }
+        Self { domain, settings, positions, charges, cloud, longest: f64::INFINITY }
     }
 
     /// Parameters that meet the tolerance, with their measured error.
@@ -237,6 +239,11 @@ impl<'a> Tuner<'a> {
         })
     }
 
+    /// With cut-off radii up to one [m].
+    pub(crate) fn up_to(self, longest: f64) -> Self {
+        Self { longest, ..self }
+    }
+
     /// Advice about the parameters that the scene fixes.
     fn fixed_keys(&self) -> &'static str {
         match (self.settings.cutoff_radius_m, self.settings.grid_cells) {
@@ -271,7 +278,9 @@ impl<'a> Tuner<'a> {
         let spacing = widest_spacing(self.domain, spacing) * (1.0 + ROUNDING);
         let least = cutoff_over_spacing_for(order, coefficient * spacing)? * spacing;
         let cutoff = self.settings.cutoff_radius_m.unwrap_or(least);
-        (cutoff >= least).then(|| with_best_shapes(order, cutoff, spacing, self.kernel_accuracy(error)))
+        (least..=self.longest)
+            .contains(&cutoff)
+            .then(|| with_best_shapes(order, cutoff, spacing, self.kernel_accuracy(error)))
     }
 
     /// Polynomials a good deal better than the tolerance, never better than round-off.
@@ -291,7 +300,7 @@ impl<'a> Tuner<'a> {
         }
         let distance = cloud.density.cbrt().recip();
         // A cut-off far below the distance of the grains needs clouds, and nodes, of its own size.
-        let cutoff = self.settings.cutoff_radius_m.unwrap_or(f64::INFINITY);
+        let cutoff = self.settings.cutoff_radius_m.unwrap_or(self.longest);
         let least = (self.domain.volume() / MOST_NODES).cbrt();
         let finest = (FINEST * distance).min(FINEST_OF_CUTOFF * cutoff).max(least);
         let count = ((COARSEST * distance / finest).ln() / STEP.ln()).ceil() as i32;

@@ -73,6 +73,30 @@ impl GroundedSphere {
     }
 }
 
+/// E [V/m] at every charge [C] in a grounded spherical cavity of a radius [m] around the origin, of all others and of all
+/// Kelvin images, its own included. Positions [m], none at the centre.
+#[must_use]
+pub fn grounded_cavity(
+    coulomb_constant: f64,
+    radius: f64,
+    positions: &[Vector3<f64>],
+    charges: &[f64],
+) -> Vec<Vector3<f64>> {
+    let field = |at: usize| {
+        let mut e = Vector3::zeros();
+        for (from, (place, &charge)) in positions.iter().zip(charges).enumerate() {
+            let ratio = radius / place.norm();
+            let image = place * (ratio * ratio);
+            e += coulomb_field(coulomb_constant, -charge * ratio, positions[at] - image);
+            if from != at {
+                e += coulomb_field(coulomb_constant, charge, positions[at] - place);
+            }
+        }
+        e
+    };
+    (0..positions.len()).map(field).collect()
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;

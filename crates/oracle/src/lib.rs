@@ -4,6 +4,7 @@
 
 mod charged_ball;
 mod collision;
+mod grounded_cylinder;
 mod grounded_plane;
 mod grounded_sphere;
 mod madelung;
@@ -17,8 +18,9 @@ pub use charged_ball::{ChargedBall, ball_points};
 pub use collision::{
     COLLISION_CHARGES, CollisionCharge, DampedHertzImpact, EQUILIBRIUM_CHARGE_PER_EV, HertzImpact,
 };
+pub use grounded_cylinder::GroundedCylinder;
 pub use grounded_plane::GroundedPlane;
-pub use grounded_sphere::GroundedSphere;
+pub use grounded_sphere::{GroundedSphere, grounded_cavity};
 pub use madelung::{MADELUNG_NACL, rock_salt};
 pub use manufactured::Manufactured;
 pub use norms::{ErrorNorms, field_scale, observed_order, rms, rms_scalar};

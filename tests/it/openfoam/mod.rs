@@ -3,6 +3,7 @@
 mod failures;
 mod fields;
 mod function_object;
+mod meshes;
 
 use amberfield_tests::Answer;
 

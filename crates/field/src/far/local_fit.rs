@@ -10,6 +10,11 @@ use rayon::prelude::*;
 
 /// s: as narrow as leaves the mixed terms determined.
 const WEIGHT_WIDTH: f64 = 0.75;
+/// Rings of cells around one that a fit looks at, at least and at most, and values that are enough for it: tetrahedra have few
+/// neighbours.
+const LEAST_RINGS: usize = 2;
+const MOST_RINGS: usize = 4;
+const ENOUGH: usize = 20;
 /// What keeps terms out of which no neighbour tells anything (a mesh one cell thick) at zero, over the largest of its kind.
 const RIDGE: f64 = 1e-9;
 /// Numbers of a fit: g and H.
@@ -112,35 +117,8 @@ impl LocalFits {
 
 /// The rows of a cell's fit, and its smoothing [m²].
 fn rows_of(mesh: &FarMesh, cell: usize) -> (Vec<Row>, f64) {
-    let here = mesh.centres()[cell];
     let size = mesh.volumes()[cell].cbrt();
-    let mut around: Vec<(Source, Vector3<f64>)> = Vec::new();
-    let mut add = |source: Source, offset: Vector3<f64>| {
-        let known =
-            |(other, at): &(Source, Vector3<f64>)| *other == source && (at - offset).norm() < 1e-6 * size;
-        if offset.norm() > 1e-6 * size && !around.iter().any(known) {
-            around.push((source, offset));
-        }
-    };
-    let mut look = |cell: usize, shift: Vector3<f64>, next: &mut Vec<(usize, Vector3<f64>)>| {
-        for face in mesh.faces_of(cell) {
-            match face.neighbour {
-                Neighbour::Cell { cell, shift: further } => {
-                    let shift = shift + further;
-                    add(Source::Cell(cell), mesh.centres()[cell as usize] + shift - here);
-                    next.push((cell as usize, shift));
-                }
-                Neighbour::Boundary(index) => {
-                    add(Source::Face(index), mesh.boundary()[index as usize].centre + shift - here);
-                }
-            }
-        }
-    };
-    let (mut ring, mut beyond) = (Vec::new(), Vec::new());
-    look(cell, Vector3::zeros(), &mut ring);
-    for (neighbour, shift) in ring {
-        look(neighbour, shift, &mut beyond);
-    }
+    let around = sources_around(mesh, cell, size);
     let equations: Vec<(SVector<f64, TERMS>, f64)> =
         around.iter().map(|(source, offset)| equation(mesh, *source, &(offset / size))).collect();
     let mut normal = SMatrix::<f64, TERMS, TERMS>::zeros();
@@ -166,6 +144,48 @@ fn rows_of(mesh: &FarMesh, cell: usize) -> (Vec<Row>, f64) {
         })
         .collect();
     (rows, finite_volumes_and_place(size) + widening / 15.0)
+}
+
+/// What lies around a cell, from its centre [m]: its neighbours, theirs, and so on until there are enough; boundary faces of
+/// all of them.
+fn sources_around(mesh: &FarMesh, cell: usize, size: f64) -> Vec<(Source, Vector3<f64>)> {
+    let here = mesh.centres()[cell];
+    let mut around: Vec<(Source, Vector3<f64>)> = Vec::new();
+    let mut ring = vec![(cell, Vector3::zeros())];
+    for round in 0..MOST_RINGS {
+        if round >= LEAST_RINGS && around.len() >= ENOUGH {
+            break;
+        }
+        let mut beyond = Vec::new();
+        for (cell, shift) in ring {
+            for face in mesh.faces_of(cell) {
+                let (source, place, next) = match face.neighbour {
+                    Neighbour::Cell { cell, shift: further } => {
+                        let shift = shift + further;
+                        (
+                            Source::Cell(cell),
+                            mesh.centres()[cell as usize] + shift,
+                            Some((cell as usize, shift)),
+                        )
+                    }
+                    Neighbour::Boundary(index) => {
+                        let place = mesh.place_of_condition(&mesh.boundary()[index as usize]);
+                        (Source::Face(index), place + shift, None)
+                    }
+                };
+                let offset = place - here;
+                let known = |(other, at): &(Source, Vector3<f64>)| {
+                    *other == source && (at - offset).norm() < 1e-6 * size
+                };
+                if offset.norm() > 1e-6 * size && !around.iter().any(known) {
+                    around.push((source, offset));
+                    beyond.extend(next);
+                }
+            }
+        }
+        ring = beyond;
+    }
+    around
 }
 
 /// What finite volumes on cubes (−h²/10) and the quadratic's ends (−h²/12) take off again [m²].

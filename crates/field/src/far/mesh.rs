@@ -149,6 +149,19 @@ impl FarMesh {
         &self.parts.boundary
     }
 
+    /// Where a boundary face's condition counts [m]: a slope at the face's centre; a potential at the foot of its cell's centre,
+    /// since finite volumes take the slope along the normal from it.
+    #[must_use]
+    pub fn place_of_condition(&self, face: &BoundaryFace) -> Vector3<f64> {
+        match face.condition {
+            Condition::Slope(_) => face.centre,
+            Condition::Potential(_) => {
+                let inside = &self.parts.centres[face.cell as usize];
+                inside + face.normal * face.normal.dot(&(face.centre - inside))
+            }
+        }
+    }
+
     /// Whether any boundary face prescribes the potential.
     #[must_use]
     pub fn has_conductor(&self) -> bool {

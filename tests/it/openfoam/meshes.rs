@@ -1,0 +1,268 @@
+//! Meshes of many shapes: walls that are curved, cells that are not cubes.
+
+#![expect(clippy::print_stdout, reason = "how good it is, for whoever asks with --nocapture")]
+
+use super::difference;
+use amberfield_core::constants::coulomb_constant;
+use amberfield_core::{Boundary, Domain, FieldSettings, Tuning, Vector3};
+use amberfield_coupling::{Announced, RemoteSolver, SolverSettings};
+use amberfield_field::far::{FarField, FarRequest, FarSource, FarValues};
+use amberfield_field::{ElectricField, FieldValues, Wanted};
+use amberfield_oracle::{GroundedCylinder, grounded_cavity, observed_order};
+use amberfield_tests::Bench;
+use amberfield_tests::foam_case::{
+    Random, ball, cube, cylinder, foam_program, perturb, tetrahedra, write_case,
+};
+use std::time::Duration;
+
+const GROUNDED: &str = "\".*\" { type fixedValue; value uniform 0; }";
+const CHARGE: f64 = 1e-12;
+/// Edge of the cube [mm].
+const EDGE: f64 = 12.0;
+
+/// A case without a mesh yet.
+fn case(mesh: &str, gradient: &str) -> Bench {
+    let bench = Bench::new("");
+    write_case(&bench, mesh, GROUNDED, gradient);
+    bench
+}
+
+fn solver(bench: &Bench) -> RemoteSolver {
+    let settings = SolverSettings {
+        case: bench.path("foam"),
+        application: None,
+        start: true,
+        ranks: 1,
+        timeout: Duration::from_secs(60),
+        far_tolerance: 1e-7,
+        log: Some(bench.path("log")),
+    };
+    Announced::new(settings).and_then(Announced::connect).expect("the solver answers")
+}
+
+fn settings(tolerance: f64) -> FieldSettings {
+    FieldSettings { tolerance, tuning: Tuning::Model, ..FieldSettings::default() }
+}
+
+/// Grains that do not touch, a fifth of them at the walls: `inside` gives a point where a grain's centre may be, `at_wall` one where it
+/// touches.
+fn cloud(
+    count: usize,
+    radius: f64,
+    bipolar: bool,
+    place: impl Fn(&mut Random, bool) -> Vector3<f64>,
+) -> (Vec<Vector3<f64>>, Vec<f64>) {
+    let mut random = Random(7);
+    let mut positions: Vec<Vector3<f64>> = Vec::new();
+    while positions.len() < count {
+        let next = place(&mut random, positions.len() < count / 5);
+        if positions.iter().all(|other| (other - next).norm() > 2.0 * radius) {
+            positions.push(next);
+        }
+    }
+    let charge = |index: usize| if bipolar && index % 2 == 1 { -CHARGE } else { CHARGE };
+    (positions, (0..count).map(charge).collect())
+}
+
+fn evaluate(field: &mut ElectricField, positions: &[Vector3<f64>], charges: &[f64]) -> Vec<Vector3<f64>> {
+    let mut values = FieldValues::default();
+    field.evaluate(positions, charges, Wanted::default(), &mut values).expect("good charges");
+    values.e
+}
+
+/// RMS error over all grains, and the worst of the first fifth, which touch walls, over the RMS field.
+fn errors(found: &[Vector3<f64>], exact: &[Vector3<f64>]) -> (f64, f64) {
+    let rms = |e: &[Vector3<f64>]| (e.iter().map(Vector3::norm_squared).sum::<f64>() / e.len() as f64).sqrt();
+    let apart: Vec<_> = found.iter().zip(exact).map(|(a, b)| a - b).collect();
+    let worst = apart[..apart.len() / 5].iter().map(Vector3::norm).fold(0.0, f64::max);
+    (rms(&apart) / rms(exact), worst / rms(exact))
+}
+
+fn unit_vector(random: &mut Random) -> Vector3<f64> {
+    loop {
+        let v = Vector3::from_fn(|_, _| 2.0 * random.number() - 1.0);
+        if (0.01..1.0).contains(&v.norm_squared()) {
+            return v.normalize();
+        }
+    }
+}
+
+#[test]
+fn in_a_ball_the_field_is_that_of_kelvins_images() {
+    const RADIUS: f64 = 6e-3;
+    const GRAIN: f64 = 2e-4;
+    let bench = case(&ball(6.0, 10, 6), "leastSquares");
+    let place = |random: &mut Random, at_wall: bool| {
+        let depth = if at_wall { 1.0 } else { random.number().cbrt() };
+        unit_vector(random) * (RADIUS - GRAIN) * depth
+    };
+    let exact = |positions: &[Vector3<f64>], charges: &[f64]| {
+        grounded_cavity(coulomb_constant(1.0), RADIUS, positions, charges)
+    };
+    for bipolar in [true, false] {
+        let (positions, charges) = cloud(2000, GRAIN, bipolar, place);
+        let mut field = ElectricField::over_mesh(
+            std::boxed::Box::new(solver(&bench)),
+            &settings(5e-3),
+            &positions,
+            &charges,
+        )
+        .unwrap();
+        let (rms, worst) = errors(&evaluate(&mut field, &positions, &charges), &exact(&positions, &charges));
+        println!("ball, of both signs: {bipolar}: RMS {rms:.2e}, worst at the wall {worst:.2e}");
+        assert!(rms < 1.5e-2 && worst < 3e-2, "{rms:e} {worst:e}");
+        // A lone grain that touches, against its own image.
+        for position in &positions[..5] {
+            let (one, own) = ([*position], exact(&[*position], &[CHARGE])[0]);
+            let error = (evaluate(&mut field, &one, &[CHARGE])[0] - own).norm() / own.norm();
+            assert!(error < 3e-2, "{error:e}");
+        }
+    }
+}
+
+#[test]
+fn in_a_cylinder_the_field_is_that_of_the_fourier_bessel_series() {
+    const GRAIN: f64 = 3e-4;
+    let exact = GroundedCylinder { coulomb_constant: coulomb_constant(1.0), radius: 6e-3, length: 12e-3 };
+    let bench = case(&cylinder(6.0, 12.0, [10, 14], 6), "leastSquares");
+    let place = |random: &mut Random, at_wall: bool| {
+        let angle = std::f64::consts::TAU * random.number();
+        let radius = (exact.radius - GRAIN) * if at_wall { 1.0 } else { random.number().sqrt() };
+        let z = GRAIN + random.number() * (exact.length - 2.0 * GRAIN);
+        Vector3::new(radius * angle.cos(), radius * angle.sin(), z)
+    };
+    for bipolar in [true, false] {
+        let (positions, charges) = cloud(60, GRAIN, bipolar, place);
+        let mut field = ElectricField::over_mesh(
+            std::boxed::Box::new(solver(&bench)),
+            &settings(5e-3),
+            &positions,
+            &charges,
+        )
+        .unwrap();
+        let (rms, worst) =
+            errors(&evaluate(&mut field, &positions, &charges), &exact.field(&positions, &charges));
+        println!("cylinder, of both signs: {bipolar}: RMS {rms:.2e}, worst at the wall {worst:.2e}");
+        assert!(rms < 1.5e-2 && worst < 3e-2, "{rms:e} {worst:e}");
+    }
+}
+
+/// A kind of cells of the cube, some thousand of them.
+fn mesh_of(kind: &str, cells: usize) -> Bench {
+    let grading = if kind == "graded" { 2.0 } else { 1.0 };
+    let gradient = if kind == "hexahedra" { "Gauss linear" } else { "leastSquares" };
+    let bench = case(&cube(EDGE, cells, grading), gradient);
+    match kind {
+        "perturbed" => {
+            foam_program(&bench, "blockMesh", &[]);
+            perturb(&bench, EDGE, cells, 0.2);
+        }
+        "tetrahedra" => tetrahedra(&bench, EDGE, cells, false),
+        "polyhedra" => tetrahedra(&bench, EDGE, cells, true),
+        _ => {}
+    }
+    bench
+}
+
+fn errs_little(kind: &str, cells: usize) {
+    const GRAIN: f64 = 2.5e-4;
+    let bench = mesh_of(kind, cells);
+    let edge = 1e-3 * EDGE;
+    let place = |random: &mut Random, at_wall: bool| {
+        let mut point = Vector3::from_fn(|_, _| GRAIN + random.number() * (edge - 2.0 * GRAIN));
+        if at_wall {
+            let side = random.number() * 6.0;
+            point[side as usize % 3] = if side < 3.0 { GRAIN } else { edge - GRAIN };
+        }
+        point
+    };
+    let domain = Domain::new(Vector3::zeros(), Vector3::repeat(edge), [[Boundary::Grounded; 2]; 3]).unwrap();
+    for bipolar in [true, false] {
+        let (positions, charges) = cloud(3000, GRAIN, bipolar, place);
+        let solver = solver(&bench);
+        let size = (edge.powi(3) / solver.mesh().cell_count() as f64).cbrt();
+        let mut field =
+            ElectricField::over_mesh(std::boxed::Box::new(solver), &settings(5e-3), &positions, &charges)
+                .unwrap();
+        let mut exact = ElectricField::new(&domain, &settings(1e-5), &positions, &charges).unwrap();
+        let [found, truth] = [&mut field, &mut exact].map(|field| evaluate(field, &positions, &charges));
+        let (rms, worst) = errors(&found, &truth);
+        println!("{kind}, of both signs: {bipolar}: RMS {rms:.2e}, worst at the wall {worst:.2e}");
+        assert!(rms < 2e-2, "{kind}: {rms:e}");
+        // A lone charge does not push itself.
+        let unit = coulomb_constant(1.0) * CHARGE / (size * size);
+        for position in positions.iter().skip(600).step_by(300) {
+            let [found, truth] =
+                [&mut field, &mut exact].map(|field| evaluate(field, &[*position], &[CHARGE])[0]);
+            let error = (found - truth).norm() / unit;
+            assert!(error < 1e-2, "{kind}: self-force {error:e} at {position:?}");
+        }
+    }
+}
+
+#[test]
+fn hexahedra_err_little() {
+    errs_little("hexahedra", 12);
+}
+
+#[test]
+fn graded_hexahedra_err_little() {
+    errs_little("graded", 12);
+}
+
+#[test]
+fn perturbed_hexahedra_err_little() {
+    errs_little("perturbed", 12);
+}
+
+#[test]
+fn tetrahedra_err_little() {
+    errs_little("tetrahedra", 7);
+}
+
+#[test]
+fn polyhedra_err_little() {
+    errs_little("polyhedra", 8);
+}
+
+/// V = exp(ax) sin(by) cos(cz), a² = b² + c², prescribed at the walls: what comes back at the centres.
+#[test]
+fn a_manufactured_potential_converges_with_the_cells() {
+    let wave = Vector3::new(250.0, 150.0, 200.0);
+    let potential = |p: &Vector3<f64>| (wave.x * p.x).exp() * (wave.y * p.y).sin() * (wave.z * p.z).cos();
+    for (kind, counts, least) in [
+        ("hexahedra", [12, 24], 1.8),
+        ("perturbed", [12, 24], 1.0),
+        ("tetrahedra", [6, 12], 1.0),
+        ("polyhedra", [6, 12], 1.0),
+    ] {
+        let error = counts.map(|cells| {
+            let mut solver = solver(&mesh_of(kind, cells));
+            let boundary: Vec<f64> = solver
+                .mesh()
+                .boundary()
+                .iter()
+                .map(|face| potential(&solver.mesh().place_of_condition(face)))
+                .collect();
+            let exact: Vec<f64> = solver.mesh().centres().iter().map(potential).collect();
+            let request = FarRequest {
+                source: FarSource::NearestCell,
+                positions: &[],
+                charges: &[],
+                image_positions: &[],
+                image_charges: &[],
+                boundary: &boundary,
+                permittivity: 1.0,
+                guess: &[],
+                neutralising_background: false,
+                time_s: 0.0,
+            };
+            let mut values = FarValues::default();
+            solver.solve(&request, &mut values).expect("it answers");
+            difference(&values.potential, &exact)
+        });
+        let order = observed_order(&[2.0, 1.0], &error);
+        println!("{kind}: errors {:.2e} {:.2e}, order {order:.2}", error[0], error[1]);
+        assert!(order > least, "{kind}: order {order} of {error:?}");
+    }
+}

@@ -1,0 +1,274 @@
+//! Cases of OpenFOAM's with meshes of many shapes.
+
+#![expect(clippy::unwrap_used, reason = "helpers of tests fail as tests do")]
+
+use crate::Bench;
+use std::fmt::Write as _;
+use std::process::Command;
+
+/// The six sides of a hexahedron whose corners are numbered as OpenFOAM does.
+const SIDES: [[usize; 4]; 6] =
+    [[0, 4, 7, 3], [1, 2, 6, 5], [0, 1, 5, 4], [3, 7, 6, 2], [0, 3, 2, 1], [4, 5, 6, 7]];
+const CORNERS: [[i32; 3]; 8] =
+    [[-1, -1, -1], [1, -1, -1], [1, 1, -1], [-1, 1, -1], [-1, -1, 1], [1, -1, 1], [1, 1, 1], [-1, 1, 1]];
+/// Half the inner cube of a ball or cylinder over the radius.
+const CORE: f64 = 0.42;
+
+/// Writes a case into the folder `foam`: a recipe for its mesh, conditions of the potential by patch, a scheme for gradients.
+pub fn write_case(bench: &Bench, mesh: &str, conditions: &str, gradient: &str) {
+    for folder in ["foam/0", "foam/system"] {
+        std::fs::create_dir_all(bench.path(folder)).unwrap();
+    }
+    let file = |name: &str, class: &str, text: &str| {
+        let object = name.rsplit('/').next().unwrap();
+        let head = format!("FoamFile {{ version 2.0; format ascii; class {class}; object {object}; }}\n");
+        bench.write(&format!("foam/{name}"), head + text);
+    };
+    file("system/blockMeshDict", "dictionary", mesh);
+    file(
+        "system/controlDict",
+        "dictionary",
+        "startFrom startTime; startTime 0; stopAt endTime; endTime 1; deltaT 1; writeControl timeStep; writeInterval 1;\n",
+    );
+    file(
+        "system/fvSchemes",
+        "dictionary",
+        &format!(
+            "ddtSchemes {{ default none; }} gradSchemes {{ default {gradient}; }} divSchemes {{ default none; }}\n\
+             laplacianSchemes {{ default Gauss linear corrected; }} interpolationSchemes {{ default linear; }} snGradSchemes {{ default corrected; }}\n"
+        ),
+    );
+    file("system/fvSolution", "dictionary", "solvers {}\n");
+    file(
+        "0/phiE",
+        "volScalarField",
+        &format!(
+            "dimensions [1 2 -3 0 0 -1 0];\ninternalField uniform 0;\nboundaryField {{ {conditions} }}\n"
+        ),
+    );
+}
+
+/// A program of OpenFOAM's, run on the case.
+///
+/// # Panics
+/// When it fails.
+pub fn foam_program(bench: &Bench, program: &str, options: &[&str]) {
+    let mut command = Command::new(program);
+    command.args(options).arg("-case").arg(bench.path("foam"));
+    if std::env::var_os("WM_PROJECT_DIR").is_none() {
+        command.env("WM_PROJECT_DIR", "/usr/share/openfoam");
+    }
+    let output = command.output().expect("OpenFOAM is there; `cargo xtask openfoam` installs it");
+    assert!(output.status.success(), "{program}: {}", String::from_utf8_lossy(&output.stderr));
+}
+
+/// Recipe of a cube of an edge \[mm\], its cells of so different sizes along each axis, and one patch `wall`.
+#[must_use]
+pub fn cube(edge_mm: f64, cells: usize, grading: f64) -> String {
+    let vertex =
+        |c: &[i32; 3]| format!("({} {} {})", at(edge_mm, c[0]), at(edge_mm, c[1]), at(edge_mm, c[2]));
+    let vertices: Vec<String> = CORNERS.iter().map(vertex).collect();
+    let faces: Vec<String> = SIDES.iter().map(|side| quad(side, 0)).collect();
+    format!(
+        "scale 1e-3;\nvertices ({});\nblocks (hex (0 1 2 3 4 5 6 7) ({cells} {cells} {cells}) simpleGrading ({grading} {grading} {grading}));\n\
+         boundary ( wall {{ type wall; faces ({}); }} );\n",
+        vertices.join(" "),
+        faces.join(" ")
+    )
+}
+
+/// Recipe of a ball around the origin: an inner cube of `cells` and as many on each of six sides, `layers` deep.
+#[must_use]
+pub fn ball(radius_mm: f64, cells: usize, layers: usize) -> String {
+    let corner = |scale: f64| {
+        CORNERS.map(|c| {
+            format!("({} {} {})", scale * f64::from(c[0]), scale * f64::from(c[1]), scale * f64::from(c[2]))
+        })
+    };
+    let vertices = [corner(CORE * radius_mm), corner(radius_mm / 3.0_f64.sqrt())].concat();
+    let mut blocks = format!("hex (0 1 2 3 4 5 6 7) ({cells} {cells} {cells}) simpleGrading (1 1 1)\n");
+    let (mut faces, mut projected) = (String::new(), String::new());
+    for side in &SIDES {
+        let [a, b, c, d] = side;
+        let outer = quad(side, 8);
+        writeln!(
+            blocks,
+            "hex ({a} {b} {c} {d} {} {} {} {}) ({cells} {cells} {layers}) simpleGrading (1 1 1)",
+            a + 8,
+            b + 8,
+            c + 8,
+            d + 8
+        )
+        .unwrap();
+        writeln!(projected, "project {outer} ball").unwrap();
+        faces += &outer;
+    }
+    let mut edges = String::new();
+    for (a, first) in CORNERS.iter().enumerate() {
+        for (b, second) in CORNERS.iter().enumerate().skip(a + 1) {
+            if (0..3).filter(|&axis| first[axis] != second[axis]).count() == 1 {
+                writeln!(edges, "project {} {} (ball)", a + 8, b + 8).unwrap();
+            }
+        }
+    }
+    format!(
+        "scale 1e-3;\ngeometry {{ ball {{ type searchableSphere; centre (0 0 0); radius {radius_mm}; }} }}\nvertices ({});\nblocks ({blocks});\n\
+         edges ({edges});\nfaces ({projected});\nboundary ( wall {{ type wall; faces ({faces}); }} );\n",
+        vertices.join(" ")
+    )
+}
+
+/// Recipe of a cylinder around the z axis from z = 0: an inner square of `cells` and as many on each of four sides,
+/// `layers` deep.
+#[must_use]
+pub fn cylinder(radius_mm: f64, length_mm: f64, cells: [usize; 2], layers: usize) -> String {
+    let square = [[-1.0, -1.0], [1.0, -1.0], [1.0, 1.0], [-1.0, 1.0]];
+    let mut vertices = Vec::new();
+    for z in [0.0, length_mm] {
+        for scale in [CORE * radius_mm, radius_mm / 2.0_f64.sqrt()] {
+            vertices.extend(square.iter().map(|[x, y]| format!("({} {} {z})", scale * x, scale * y)));
+        }
+    }
+    let [across, along] = cells;
+    let mut blocks = format!("hex (0 1 2 3 8 9 10 11) ({across} {across} {along}) simpleGrading (1 1 1)\n");
+    let (mut mantle, mut ends, mut edges) =
+        (String::new(), "(0 3 2 1) (8 9 10 11)".to_owned(), String::new());
+    for a in 0..4 {
+        let b = (a + 1) % 4;
+        let (c, d) = (b + 4, a + 4);
+        writeln!(
+            blocks,
+            "hex ({a} {d} {c} {b} {} {} {} {}) ({layers} {across} {along}) simpleGrading (1 1 1)",
+            a + 8,
+            d + 8,
+            c + 8,
+            b + 8
+        )
+        .unwrap();
+        write!(mantle, "({d} {c} {} {})", c + 8, d + 8).unwrap();
+        write!(ends, "({a} {b} {c} {d}) ({} {} {} {})", a + 8, d + 8, c + 8, b + 8).unwrap();
+        let middle = [[0.0, -1.0], [1.0, 0.0], [0.0, 1.0], [-1.0, 0.0]][a].map(|x: f64| x * radius_mm);
+        for (floor, z) in [(0, 0.0), (8, length_mm)] {
+            writeln!(edges, "arc {} {} ({} {} {z})", d + floor, c + floor, middle[0], middle[1]).unwrap();
+        }
+    }
+    format!(
+        "scale 1e-3;\nvertices ({});\nblocks ({blocks});\nedges ({edges});\n\
+         boundary ( mantle {{ type wall; faces ({mantle}); }} ends {{ type wall; faces ({ends}); }} );\n",
+        vertices.join(" ")
+    )
+}
+
+/// Moves the inner points of a cube's mesh by up to a share of its cells \[m\], and those of its faces within them.
+///
+/// # Panics
+/// Without a mesh.
+pub fn perturb(bench: &Bench, edge_mm: f64, cells: usize, share: f64) {
+    let text = bench.read("foam/constant/polyMesh/points");
+    let (edge, most) = (1e-3 * edge_mm, 1e-3 * share * edge_mm / cells as f64);
+    let mut random = Random(1);
+    let lines = text.lines().map(|line| {
+        let numbers: Vec<f64> =
+            line.trim_matches(['(', ')']).split(' ').filter_map(|word| word.parse().ok()).collect();
+        if numbers.len() != 3 {
+            return line.to_owned();
+        }
+        let moved: Vec<String> = numbers
+            .iter()
+            .map(|x| {
+                let step = most * (2.0 * random.number() - 1.0);
+                let at_end = x.abs() < 1e-9 || (x - edge).abs() < 1e-9;
+                (if at_end { *x } else { x + step }).to_string()
+            })
+            .collect();
+        format!("({})", moved.join(" "))
+    });
+    let lines: Vec<String> = lines.collect();
+    bench.write("foam/constant/polyMesh/points", lines.join("\n"));
+}
+
+/// Makes a mesh of tetrahedra, six for each of a cube's cells with moved corners; with `dual` its polyhedra.
+pub fn tetrahedra(bench: &Bench, edge_mm: f64, cells: usize, dual: bool) {
+    const MOVED: f64 = 0.1;
+    let mut random = Random(2);
+    let size = 1e-3 * edge_mm / cells as f64;
+    let index = |at: [usize; 3]| (at[0] * (cells + 1) + at[1]) * (cells + 1) + at[2] + 1;
+    let mut nodes = String::new();
+    for_each_of(cells + 1, |at| {
+        let place = at.map(|k| {
+            let step = if k == 0 || k == cells { 0.0 } else { MOVED * (2.0 * random.number() - 1.0) };
+            size * (k as f64 + step)
+        });
+        writeln!(nodes, "{} {} {} {}", index(at), place[0], place[1], place[2]).unwrap();
+    });
+    let mut elements = String::new();
+    let mut count = 0;
+    for_each_of(cells, |at| {
+        for (order, even) in [
+            ([0, 1, 2], true),
+            ([1, 2, 0], true),
+            ([2, 0, 1], true),
+            ([0, 2, 1], false),
+            ([1, 0, 2], false),
+            ([2, 1, 0], false),
+        ] {
+            let mut corner = at;
+            let mut tetrahedron = vec![index(corner)];
+            for axis in order {
+                corner[axis] += 1;
+                tetrahedron.push(index(corner));
+            }
+            if !even {
+                tetrahedron.swap(1, 2);
+            }
+            count += 1;
+            let [a, b, c, d] = tetrahedron[..] else { unreachable!() };
+            writeln!(elements, "{count} 4 2 1 1 {a} {b} {c} {d}").unwrap();
+        }
+    });
+    let points = (cells + 1).pow(3);
+    bench.write(
+        "mesh.msh",
+        format!("$MeshFormat\n2.2 0 8\n$EndMeshFormat\n$Nodes\n{points}\n{nodes}$EndNodes\n$Elements\n{count}\n{elements}$EndElements\n"),
+    );
+    foam_program(bench, "gmshToFoam", &[&bench.path("mesh.msh").display().to_string()]);
+    if dual {
+        let potential = bench.read("foam/0/phiE");
+        std::fs::remove_file(bench.path("foam/0/phiE")).unwrap();
+        foam_program(bench, "polyDualMesh", &["30", "-overwrite"]);
+        bench.write("foam/0/phiE", potential);
+    }
+}
+
+/// Equally distributed numbers in \[0, 1) that are the same everywhere (Marsaglia's xorshift64*).
+#[derive(Debug)]
+pub struct Random(pub u64);
+
+impl Random {
+    /// The next one.
+    pub fn number(&mut self) -> f64 {
+        self.0 ^= self.0 >> 12;
+        self.0 ^= self.0 << 25;
+        self.0 ^= self.0 >> 27;
+        (self.0.wrapping_mul(0x2545_F491_4F6C_DD1D) >> 11) as f64 / (1_u64 << 53) as f64
+    }
+}
+
+fn for_each_of(count: usize, mut visit: impl FnMut([usize; 3])) {
+    for x in 0..count {
+        for y in 0..count {
+            for z in 0..count {
+                visit([x, y, z]);
+            }
+        }
+    }
+}
+
+fn at(edge: f64, side: i32) -> f64 {
+    if side < 0 { 0.0 } else { edge }
+}
+
+fn quad(side: &[usize; 4], add: usize) -> String {
+    let [a, b, c, d] = side.map(|corner| corner + add);
+    format!("({a} {b} {c} {d})")
+}
