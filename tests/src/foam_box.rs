@@ -2,7 +2,7 @@
 
 #![expect(clippy::unwrap_used, reason = "helpers of tests fail as tests do")]
 
-use crate::foam_case::write_case;
+use crate::foam_case::{brick, write_case};
 use crate::{Answer, Bench, Table};
 use rustix::process::Pid;
 use std::process::{Child, Stdio};
@@ -23,7 +23,7 @@ impl FoamBox {
     /// # Panics
     /// When its folder cannot be written.
     #[must_use]
-    pub fn new(sides: &[(&str, &str)], faces: &str, charge: &str) -> Self {
+    pub fn new(sides: &[(&str, &str); 6], faces: &str, charge: &str) -> Self {
         let scene = format!(
             "[domain]\nmin_m = [0, 0, 0]\nmax_m = [0.012, 0.012, 0.01]\n[domain.boundary]\n{faces}\n\
              [[materials]]\nname = 'glass'\ndensity_kg_m3 = 2500.0\nyoung_Pa = 5e5\npoisson = 0.22\nrestitution = 0.6\nfriction = 0.3\n\
@@ -32,21 +32,7 @@ impl FoamBox {
              [solver]\nopenfoam_case = 'foam'\ntimeout_s = 20.0\n"
         );
         let bench = Bench::new(&scene);
-        let quads = ["(0 4 7 3)", "(1 2 6 5)", "(0 1 5 4)", "(3 7 6 2)", "(0 3 2 1)", "(4 5 6 7)"];
-        let names = ["x0", "x1", "y0", "y1", "z0", "z1"];
-        let patches: String = (0..6)
-            .map(|side| {
-                let (kind, faces) = (sides[side].0, quads[side]);
-                let other = names[side ^ 1];
-                format!("{} {{ type {kind}; neighbourPatch {other}; faces ({faces}); }}\n", names[side])
-            })
-            .collect();
-        let conditions: String =
-            (0..6).map(|side| format!("{} {{ {} }}\n", names[side], sides[side].1)).collect();
-        let mesh = format!(
-            "scale 1e-3;\nvertices ((0 0 0) (12 0 0) (12 12 0) (0 12 0) (0 0 10) (12 0 10) (12 12 10) (0 12 10));\n\
-             blocks (hex (0 1 2 3 4 5 6 7) (12 12 10) simpleGrading (1 1 1));\nboundary ({patches});\n"
-        );
+        let (mesh, conditions) = brick([12.0, 12.0, 10.0], [12, 12, 10], sides);
         write_case(&bench, &mesh, &conditions, "Gauss linear");
         Self { bench }
     }

@@ -77,6 +77,29 @@ pub fn cube(edge_mm: f64, cells: usize, grading: f64) -> String {
     )
 }
 
+/// Recipe of a box of edges \[mm\] with a patch on each side, `x0`, `x1`, `y0` …: their kinds and conditions in this order; and the
+/// conditions of all.
+#[must_use]
+pub fn brick(edges_mm: [f64; 3], cells: [usize; 3], sides: &[(&str, &str); 6]) -> (String, String) {
+    const NAMES: [&str; 6] = ["x0", "x1", "y0", "y1", "z0", "z1"];
+    let (mut patches, mut conditions) = (String::new(), String::new());
+    for (side, (kind, condition)) in sides.iter().enumerate() {
+        let (name, other, faces) = (NAMES[side], NAMES[side ^ 1], quad(&SIDES[side], 0));
+        writeln!(patches, "{name} {{ type {kind}; neighbourPatch {other}; faces ({faces}); }}").unwrap();
+        writeln!(conditions, "{name} {{ {condition} }}").unwrap();
+    }
+    let vertex = |c: &[i32; 3]| {
+        format!("({} {} {})", at(edges_mm[0], c[0]), at(edges_mm[1], c[1]), at(edges_mm[2], c[2]))
+    };
+    let vertices: Vec<String> = CORNERS.iter().map(vertex).collect();
+    let [x, y, z] = cells;
+    let mesh = format!(
+        "scale 1e-3;\nvertices ({});\nblocks (hex (0 1 2 3 4 5 6 7) ({x} {y} {z}) simpleGrading (1 1 1));\nboundary ({patches});\n",
+        vertices.join(" ")
+    );
+    (mesh, conditions)
+}
+
 /// Recipe of a ball around the origin: an inner cube of `cells` and as many on each of six sides, `layers` deep.
 #[must_use]
 pub fn ball(radius_mm: f64, cells: usize, layers: usize) -> String {

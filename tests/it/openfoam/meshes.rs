@@ -2,16 +2,16 @@
 
 #![expect(clippy::print_stdout, reason = "how good it is, for whoever asks with --nocapture")]
 
-use super::difference;
+use super::{AGREEMENT, difference};
 use amberfield_core::constants::coulomb_constant;
 use amberfield_core::{Boundary, Domain, FieldSettings, Tuning, Vector3};
 use amberfield_coupling::{Announced, RemoteSolver, SolverSettings};
 use amberfield_field::far::{FarField, FarRequest, FarSource, FarValues};
 use amberfield_field::{ElectricField, FieldValues, Wanted};
-use amberfield_oracle::{GroundedCylinder, grounded_cavity, observed_order};
+use amberfield_oracle::{GroundedCylinder, grounded_cavity, observed_order, reference};
 use amberfield_tests::Bench;
 use amberfield_tests::foam_case::{
-    Random, ball, cube, cylinder, foam_program, perturb, tetrahedra, write_case,
+    Random, ball, brick, cube, cylinder, foam_program, perturb, tetrahedra, write_case,
 };
 use std::time::Duration;
 
@@ -144,6 +144,37 @@ fn in_a_cylinder_the_field_is_that_of_the_fourier_bessel_series() {
             errors(&evaluate(&mut field, &positions, &charges), &exact.field(&positions, &charges));
         println!("cylinder, of both signs: {bipolar}: RMS {rms:.2e}, worst at the wall {worst:.2e}");
         assert!(rms < 1.5e-2 && worst < 3e-2, "{rms:e} {worst:e}");
+    }
+}
+
+/// The exact boxes of the reference set, on 16³ cells.
+#[test]
+fn reference_boxes_come_out_on_cubes() {
+    let (wall, lid, cyclic) = (
+        ("wall", "type fixedValue; value uniform 0;"),
+        ("wall", "type zeroGradient;"),
+        ("cyclic", "type cyclic;"),
+    );
+    for (name, [x, y, z]) in [
+        ("b_periodic_bip_2000", [cyclic; 3]),
+        ("c_grounded_box_bip_2000", [wall; 3]),
+        ("c_grounded_box_gau_net_2000", [wall; 3]),
+        ("d_grounded_z_periodic_xy_net_2000", [cyclic, cyclic, wall]),
+        ("d_grounded_z_insulating_xy_net_2000", [lid, lid, wall]),
+        ("d_insulating_box_neutral_2000", [lid; 3]),
+    ] {
+        let set = reference::by_name(name).expect("the set is there");
+        let edges: [f64; 3] = (set.domain.extent() * 1e3).into();
+        let (mesh, conditions) = brick(edges, [16; 3], &[x, x, y, y, z, z]);
+        let bench = Bench::new("");
+        write_case(&bench, &mesh, &conditions, "Gauss linear");
+        let solver = std::boxed::Box::new(solver(&bench));
+        let mut field =
+            ElectricField::over_mesh(solver, &settings(1e-2), &set.position, &set.charge).unwrap();
+        let found = evaluate(&mut field, &set.position, &set.charge);
+        let (rms, _) = errors(&found, &set.field_si(coulomb_constant(1.0)));
+        println!("{name}: RMS {rms:.2e}");
+        assert!(rms < AGREEMENT, "{name}: {rms:e}");
     }
 }
 
