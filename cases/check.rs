@@ -9,8 +9,12 @@ mod capacitor;
 mod charged_ball;
 #[path = "coupled-settling-bed/check.rs"]
 mod coupled_settling_bed;
+#[path = "electrode-channel/check.rs"]
+mod electrode_channel;
 #[path = "grounded-plane/check.rs"]
 mod grounded_plane;
+#[path = "grounded-sphere/check.rs"]
+mod grounded_sphere;
 #[path = "heap/check.rs"]
 mod heap;
 #[path = "impact/check.rs"]

@@ -43,7 +43,8 @@ impl Case {
         case
     }
 
-    fn path(&self, file: &str) -> PathBuf {
+    /// A path in the copy.
+    pub(crate) fn path(&self, file: &str) -> PathBuf {
         self.folder.path().join(file)
     }
 
