@@ -10,7 +10,7 @@ const HALF_WIDTH_M: f64 = 4e-3;
 const PERIOD_M: f64 = 0.02;
 const HEIGHT_M: f64 = 0.01;
 /// Over the larger of |E| and V₀/H.
-const MOST: f64 = 1.5e-2;
+const MOST: f64 = 1.2e-2;
 
 /// E of the electrode alone.
 fn exact(place: Vector3<f64>) -> Vector3<f64> {
@@ -31,7 +31,7 @@ fn field_is_that_of_the_series_and_grains_over_the_electrode_rise() {
     let places: Vec<Vector3<f64>> = (0..60)
         .map(|index| {
             let (across, up) = (f64::from(index % 10), f64::from(index / 10));
-            Vector3::new(1e-3 + 2e-3 * across, 1e-3 + 4e-4 * across, 2.5e-3 + 1.4e-3 * up)
+            Vector3::new(1e-3 + 2e-3 * across, 1e-3 + 4e-4 * across, 3.5e-3 + 1.2e-3 * up)
         })
         .collect();
     // Charges too small to be felt.
