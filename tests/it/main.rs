@@ -5,6 +5,7 @@
 mod bad_input;
 mod explain_and_doctor;
 mod field;
+mod host_library;
 mod interrupt;
 mod openfoam;
 mod run;

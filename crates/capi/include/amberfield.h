@@ -19,6 +19,13 @@ typedef enum AmberfieldStatus {
 // One rank of a field process.
 typedef struct AmberfieldField AmberfieldField;
 
+// The field of a host program's particles.
+//
+// For a code that runs under MPI: gather positions and charges to one rank of each machine (positions are small beside the work: 32 bytes
+// a particle), call it there, scatter the fields. The library uses all cores that rank may use; one handle for the whole run keeps parameters,
+// memory and a solver's warm start. Call it every so many steps and keep E in between, as the fix of an electric force would.
+typedef struct AmberfieldHost AmberfieldHost;
+
 // One rank's part of the mesh. Vectors are three doubles each; lengths in m.
 typedef struct AmberfieldMesh {
   // Lower corner of all ranks' cells.
@@ -72,6 +79,40 @@ typedef struct AmberfieldRequest {
   // Time of the charges [s].
   double time;
 } AmberfieldRequest;
+
+// A face of the box.
+typedef struct AmberfieldFace {
+  // An AmberfieldBoundary.
+  uint64_t boundary;
+  // Its potential or normal field.
+  double value;
+} AmberfieldFace;
+
+// What a host program wants: method p3m, SI units. Set it to zero, then what differs.
+typedef struct AmberfieldHostSettings {
+  // Lower corner of the box [m].
+  double low[3];
+  // Upper corner [m].
+  double high[3];
+  // Faces in the order x low, x high, y low, ...; with an OpenFOAM case its patches count instead, and its box.
+  struct AmberfieldFace faces[6];
+  // Relative RMS error of E; 0: 1e-2.
+  double tolerance;
+  // Relative permittivity; 0: 1.
+  double relative_permittivity;
+  // 1: a net charge that no face takes is balanced by a uniform background.
+  uint64_t neutralising_background;
+  // 1: parameters by the cost model, the same on every machine; 0: by timing candidates once.
+  uint64_t model_tuning;
+  // Folder of an OpenFOAM case, whose mesh and conditions count, or NULL: the internal grid.
+  const char *openfoam_case;
+  // 1: wait for a solver that somebody else starts (electricFieldFoam without -run finds it); 0: start it.
+  uint64_t wait_for_solver;
+  // Processes of the solver; 0: 1.
+  uint64_t ranks;
+  // How long an answer of the solver may take [s]; 0: 30.
+  double timeout;
+} AmberfieldHostSettings;
 
 #ifdef __cplusplus
 extern "C" {
@@ -150,6 +191,43 @@ void amberfield_field_fail(struct AmberfieldField *field, const char *reason);
 // # Safety
 // As amberfield_field_error; the handle is gone afterwards.
 void amberfield_field_close(struct AmberfieldField *field);
+
+// Opens a field. Never NULL; amberfield_host_error is empty when it worked.
+//
+// # Safety
+// `settings` may be read; its case is a C string or NULL.
+struct AmberfieldHost *amberfield_host_open(const struct AmberfieldHostSettings *settings);
+
+// Why the last call failed; empty if it did not. Valid until the next call.
+//
+// # Safety
+// `host` comes from amberfield_host_open and is not closed.
+const char *amberfield_host_error(const struct AmberfieldHost *host);
+
+// E [V/m] at every particle (three doubles each) and, unless NULL, the potential [V] of all but the particle itself, of particles
+// at positions [m] (three doubles each) with charges [C] at a time [s]. The first call chooses parameters and starts the solver, if there is one.
+//
+// # Safety
+// As amberfield_host_error; the arrays have room for `count` particles.
+enum AmberfieldStatus amberfield_host_field(struct AmberfieldHost *host,
+                                            double time,
+                                            uint64_t count,
+                                            const double *positions,
+                                            const double *charges,
+                                            double *e,
+                                            double *potential);
+
+// Chooses parameters anew at the next call, for particles that are no longer what they were.
+//
+// # Safety
+// As amberfield_host_error.
+void amberfield_host_retune(struct AmberfieldHost *host);
+
+// Ends the solver, if there is one, and closes a handle. NULL is allowed.
+//
+// # Safety
+// As amberfield_host_error; the handle is gone afterwards.
+void amberfield_host_close(struct AmberfieldHost *host);
 
 #ifdef __cplusplus
 }  // extern "C"

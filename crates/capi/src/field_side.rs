@@ -1,8 +1,8 @@
 //! The field side: open the run, send the mesh, wait, take density and boundary data, answer, close.
 
+use crate::foreign::{close, guarded, slice, slice_mut};
 use amberfield_coupling::{FieldSide, MeshPart, Reply};
 use std::ffi::{CStr, CString, c_char};
-use std::panic::{AssertUnwindSafe, catch_unwind};
 
 /// How a call ended.
 #[repr(C)]
@@ -94,11 +94,11 @@ pub unsafe extern "C" fn amberfield_field_open(
     let mut field = Box::new(AmberfieldField { side: None, error: CString::default() });
     // SAFETY: the caller's promise.
     let run = unsafe { CStr::from_ptr(run) }.to_string_lossy();
-    let opened = catch_unwind(|| FieldSide::open(&run, rank, ranks).map_err(|error| error.to_string()));
-    match opened.unwrap_or_else(|_| Err(PANIC.to_owned())) {
-        Ok(side) => field.side = Some(side),
-        Err(error) => field.error = c_text(&error),
-    }
+    let AmberfieldField { side, error } = &mut *field;
+    guarded(error, || {
+        *side = Some(FieldSide::open(&run, rank, ranks).map_err(|error| error.to_string())?);
+        Ok(AmberfieldStatus::Ok)
+    });
     Box::into_raw(field)
 }
 
@@ -282,14 +282,9 @@ pub unsafe extern "C" fn amberfield_field_fail(field: *mut AmberfieldField, reas
 /// As amberfield_field_error; the handle is gone afterwards.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn amberfield_field_close(field: *mut AmberfieldField) {
-    if !field.is_null() {
-        // SAFETY: it was made by Box::into_raw.
-        let field = unsafe { Box::from_raw(field) };
-        let _ = catch_unwind(AssertUnwindSafe(|| drop(field)));
-    }
+    // SAFETY: the caller's promise.
+    unsafe { close(field) };
 }
-
-const PANIC: &str = "a bug of amberfield: its library panicked";
 
 /// Runs a call on a handle that is open; errors and panics become its text.
 ///
@@ -300,44 +295,9 @@ unsafe fn with(
     call: impl FnOnce(&mut FieldSide) -> Result<AmberfieldStatus, amberfield_coupling::CouplingError>,
 ) -> AmberfieldStatus {
     // SAFETY: the caller's promise.
-    let field = unsafe { &mut *field };
-    let outcome = match &mut field.side {
+    let AmberfieldField { side, error } = unsafe { &mut *field };
+    guarded(error, || match side {
         None => Err("the run is not open".to_owned()),
-        Some(side) => catch_unwind(AssertUnwindSafe(|| call(side)))
-            .map_or_else(|_| Err(PANIC.to_owned()), |outcome| outcome.map_err(|error| error.to_string())),
-    };
-    match outcome {
-        Ok(status) => {
-            field.error = CString::default();
-            status
-        }
-        Err(error) => {
-            field.error = c_text(&error);
-            AmberfieldStatus::Failed
-        }
-    }
-}
-
-fn c_text(text: &str) -> CString {
-    CString::new(text.replace('\0', " ")).unwrap_or_default()
-}
-
-/// # Safety
-/// `count` elements lie there, or there are none.
-unsafe fn slice<'a, T>(pointer: *const T, count: usize) -> &'a [T] {
-    if count == 0 {
-        return &[];
-    }
-    // SAFETY: the caller's promise.
-    unsafe { std::slice::from_raw_parts(pointer, count) }
-}
-
-/// # Safety
-/// As `slice`, and nobody else uses them.
-unsafe fn slice_mut<'a, T>(pointer: *mut T, count: usize) -> &'a mut [T] {
-    if count == 0 {
-        return &mut [];
-    }
-    // SAFETY: the caller's promise.
-    unsafe { std::slice::from_raw_parts_mut(pointer, count) }
+        Some(side) => call(side).map_err(|error| error.to_string()),
+    })
 }

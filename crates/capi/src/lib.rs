@@ -1,13 +1,19 @@
-//! The C library of amberfield: what OpenFOAM's side sees of the DEM process. No call panics or throws; errors come as a status,
-//! with a text in the handle.
+//! The C library of amberfield: what OpenFOAM's side sees of the DEM process, and the field for a DEM code of somebody
+//! else's. No call panics or throws; errors come as a status, with a text in the handle.
 //!
 //! `include/amberfield.h` is made of this crate by `cargo xtask header`; a test fails when it is stale.
 
 mod field_side;
+mod foreign;
+mod host_side;
 
 pub use field_side::{
     AmberfieldField, AmberfieldMesh, AmberfieldRequest, AmberfieldStatus, amberfield_field_boundary,
     amberfield_field_close, amberfield_field_density, amberfield_field_error, amberfield_field_fail,
     amberfield_field_guess, amberfield_field_open, amberfield_field_reply, amberfield_field_send_mesh,
     amberfield_field_wait,
+};
+pub use host_side::{
+    AmberfieldBoundary, AmberfieldFace, AmberfieldHost, AmberfieldHostSettings, amberfield_host_close,
+    amberfield_host_error, amberfield_host_field, amberfield_host_open, amberfield_host_retune,
 };

@@ -8,13 +8,13 @@ mod meshes;
 use amberfield_tests::Answer;
 
 /// What two fields may differ by whose tolerances are 1e-2: their squares add.
-const AGREEMENT: f64 = 1.4e-2;
+pub(crate) const AGREEMENT: f64 = 1.4e-2;
 
 fn good(answer: &Answer) {
     assert_eq!(answer.code, Some(0), "{}{}", answer.stdout, answer.stderr);
 }
 
-fn difference(a: &[f64], b: &[f64]) -> f64 {
+pub(crate) fn difference(a: &[f64], b: &[f64]) -> f64 {
     let square = |values: &mut dyn Iterator<Item = f64>| values.map(|v| v * v).sum::<f64>();
     (square(&mut a.iter().zip(b).map(|(a, b)| a - b)) / square(&mut b.iter().copied())).sqrt()
 }
