@@ -10,6 +10,8 @@
 #include "fvMatrices.H"
 #include "surfaceFields.H"
 
+#include <chrono>
+
 namespace
 {
 
@@ -130,15 +132,21 @@ void Foam::electricField::answer()
     // OpenFOAM's residual is relative to what V starts from: from a much larger one it
     // ends too early
     const scalar before = gMax(mag(V_.primitiveField())());
+    const auto begun = std::chrono::steady_clock::now();
     solverPerformance performance(solve(epsilon));
     if (before > mostFall*gMax(mag(V_.primitiveField())()))
     {
         performance = solve(epsilon);
     }
 
+    const std::chrono::duration<scalar> taken = std::chrono::steady_clock::now() - begun;
+
     E_ = -fvc::grad(V_);
 
-    demProcess_.reply(V_, E_, performance.nIterations(), performance.finalResidual());
+    demProcess_.reply
+    (
+        V_, E_, performance.nIterations(), performance.finalResidual(), taken.count()
+    );
 }
 
 

@@ -124,7 +124,8 @@ void Foam::fieldSide::reply
     const scalarField& V,
     const vectorField& E,
     const label iterations,
-    const scalar residual
+    const scalar residual,
+    const scalar seconds
 )
 {
     noTraps quiet;
@@ -137,7 +138,8 @@ void Foam::fieldSide::reply
             reinterpret_cast<const scalar*>(E.cdata()),
             uint64_t(V.size()),
             uint64_t(iterations),
-            residual
+            residual,
+            seconds
         )
     );
 }

@@ -50,6 +50,7 @@ enum Section {
     Kernel,
     Scaling,
     Rates,
+    Coupling,
 }
 
 /// What a section needs to know.
@@ -96,6 +97,7 @@ fn run(arguments: &Arguments) -> Result<()> {
             Section::Kernel => sections::kernel::measure(&context)?,
             Section::Scaling => sections::scaling::measure(&context)?,
             Section::Rates => sections::rates::measure(&context, root)?,
+            Section::Coupling => sections::coupling::measure(&context, root)?,
         }
     }
     // A run without peers keeps what an earlier one said of them.

@@ -1,7 +1,7 @@
 //! The page `docs/reports/speed.md`, made from rows only.
 
 use crate::machine::Machine;
-use crate::sections::{dem, field, kernel, open, rates, scaling};
+use crate::sections::{coupling, dem, field, kernel, open, rates, scaling};
 use crate::store::Store;
 use amberfield_study::{Plot, Series, write_plot};
 use anyhow::{Context as _, Result};
@@ -60,6 +60,7 @@ pub(crate) fn write(store: &Store) -> Result<()> {
         dem::report(store)?,
         rates::report(store)?,
         scaling::report(store)?,
+        coupling::report(store)?,
     ];
     let mut page = "# How fast it is\n\nThis page is written by `cargo xtask bench`; its rows are in [data](data). Machines differ: only ratios \
                     of the same run mean something.\n\n"

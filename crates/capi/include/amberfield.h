@@ -169,7 +169,8 @@ enum AmberfieldStatus amberfield_field_guess(struct AmberfieldField *field,
                                              double *potential,
                                              uint64_t cells);
 
-// Answers a request: potential [V] and E [V/m] (three doubles each) at this rank's cell centres.
+// Answers a request: potential [V] and E [V/m] (three doubles each) at this rank's cell centres; iterations of the linear
+// solver, its final residual, relative, and the time that it took [s].
 //
 // # Safety
 // As amberfield_field_error; the arrays have `cells` entries.
@@ -178,7 +179,8 @@ enum AmberfieldStatus amberfield_field_reply(struct AmberfieldField *field,
                                              const double *e,
                                              uint64_t cells,
                                              uint64_t iterations,
-                                             double residual);
+                                             double residual,
+                                             double seconds);
 
 // Tells the DEM process why this one cannot go on.
 //

@@ -235,7 +235,8 @@ pub unsafe extern "C" fn amberfield_field_guess(
     }
 }
 
-/// Answers a request: potential [V] and E [V/m] (three doubles each) at this rank's cell centres.
+/// Answers a request: potential [V] and E [V/m] (three doubles each) at this rank's cell centres; iterations of the linear
+/// solver, its final residual, relative, and the time that it took [s].
 ///
 /// # Safety
 /// As amberfield_field_error; the arrays have `cells` entries.
@@ -247,6 +248,7 @@ pub unsafe extern "C" fn amberfield_field_reply(
     cells: u64,
     iterations: u64,
     residual: f64,
+    seconds: f64,
 ) -> AmberfieldStatus {
     // SAFETY: the caller's promise.
     unsafe {
@@ -255,6 +257,7 @@ pub unsafe extern "C" fn amberfield_field_reply(
             e: slice(e.cast(), cells as usize),
             iterations,
             residual,
+            seconds,
         };
         with(field, |side| side.reply(&reply).map(|()| AmberfieldStatus::Ok))
     }

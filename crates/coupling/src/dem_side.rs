@@ -168,8 +168,12 @@ impl RemoteSolver {
         let sections = message.sections();
         let potential = sections.exactly::<f64>(Section::Potential, count)?;
         let field = sections.exactly::<[f64; 3]>(Section::Field, count)?;
-        let cells = sections.exactly::<u64>(Section::Cells, values.cells.len())?;
-        let answer = sections.exactly::<f64>(Section::Answer, 4)?;
+        // A solver that was not asked for the density has not looked for the charges' cells.
+        let cells = match sections.get::<u64>(Section::Cells)? {
+            [] => &[],
+            _ => sections.exactly::<u64>(Section::Cells, values.cells.len())?,
+        };
+        let answer = sections.exactly::<f64>(Section::Answer, 5)?;
         values.potential[first..first + count].copy_from_slice(potential);
         for (e, field) in values.e[first..].iter_mut().zip(field) {
             *e = Vector3::from(*field);
@@ -180,6 +184,7 @@ impl RemoteSolver {
         values.outside += answer[1] as u64;
         values.iterations = values.iterations.max(answer[2] as u64);
         values.residual = values.residual.max(answer[3]);
+        values.seconds = values.seconds.max(answer[4]);
         Ok(rank)
     }
 
@@ -191,7 +196,7 @@ impl RemoteSolver {
         values.e.resize(count, Vector3::zeros());
         values.cells.clear();
         values.cells.resize(request.positions.len(), u32::MAX);
-        (values.outside, values.iterations, values.residual) = (0, 0, 0.0);
+        (values.outside, values.iterations, values.residual, values.seconds) = (0, 0, 0.0, 0.0);
         let mut missing = self.settings.ranks;
         let mut seen = vec![false; missing as usize];
         while missing > 0 {

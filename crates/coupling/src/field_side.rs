@@ -38,6 +38,8 @@ pub struct Reply<'a> {
     pub iterations: u64,
     /// Its final residual, relative.
     pub residual: f64,
+    /// Time that it took [s].
+    pub seconds: f64,
 }
 
 /// One rank of the field process.
@@ -230,8 +232,9 @@ impl FieldSide {
             .with::<f64>(Section::Potential, reply.potential.len())
             .with::<[f64; 3]>(Section::Field, reply.e.len())
             .with::<u64>(Section::Cells, self.cells.len())
-            .with::<f64>(Section::Answer, 4);
-        let answer = [self.charge, self.outside as f64, reply.iterations as f64, reply.residual];
+            .with::<f64>(Section::Answer, 5);
+        let answer =
+            [self.charge, self.outside as f64, reply.iterations as f64, reply.residual, reply.seconds];
         let cells = &self.cells;
         self.link.send(&layout, 1, |payload| {
             layout.section_mut::<f64>(payload, Section::Potential)?.copy_from_slice(reply.potential);

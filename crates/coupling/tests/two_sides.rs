@@ -1,8 +1,8 @@
 //! Both sides of the wire in one process: what travels is what the twin solver makes of it, and nothing is left behind.
 
 use amberfield_core::{Boundary, Domain, Vector3};
-use amberfield_coupling::{Announced, BoxSolver, FieldSide, MeshPart, Reply, SolverSettings, stale_runs};
-use amberfield_field::far::{Condition, FarField, FarMesh, FarRequest, FarSource, FarValues, Neighbour};
+use amberfield_coupling::{Announced, BoxSolver, FieldSide, MeshArrays, Reply, SolverSettings, stale_runs};
+use amberfield_field::far::{FarField, FarRequest, FarSource, FarValues};
 use std::time::Duration;
 
 const RADIUS: f64 = 3e-3;
@@ -25,91 +25,12 @@ fn settings(timeout_s: f64) -> SolverSettings {
     }
 }
 
-/// The arrays of a mesh as a solver sends them.
-struct Arrays {
-    centres: Vec<[f64; 3]>,
-    first_face: Vec<u64>,
-    normals: Vec<[f64; 3]>,
-    offsets: Vec<f64>,
-    neighbours: Vec<i64>,
-    shifts: Vec<[f64; 3]>,
-    boundary: Vec<[f64; 16]>,
-}
-
-impl Arrays {
-    fn of(mesh: &FarMesh) -> Self {
-        let faces: Vec<_> = (0..mesh.cell_count()).flat_map(|cell| mesh.faces_of(cell)).collect();
-        let mut first_face = vec![0];
-        for cell in 0..mesh.cell_count() {
-            first_face.push(first_face[cell] + mesh.faces_of(cell).len() as u64);
-        }
-        let beyond = |neighbour: Neighbour| match neighbour {
-            Neighbour::Cell { cell, shift } => (i64::from(cell), shift.into()),
-            Neighbour::Boundary(face) => (-1 - i64::from(face), [0.0; 3]),
-        };
-        let boundary = mesh.boundary().iter().map(|face| {
-            let (kind, value) = match face.condition {
-                Condition::Potential(volts) => (1.0, volts),
-                Condition::Slope(slope) => (0.0, slope),
-            };
-            let (c, n) = (face.centre, face.normal);
-            let m = face.spread;
-            let [xx, xy, xz, yy, yz, zz] = [m.m11, m.m12, m.m13, m.m22, m.m23, m.m33];
-            [
-                c.x,
-                c.y,
-                c.z,
-                n.x,
-                n.y,
-                n.z,
-                face.area,
-                f64::from(face.cell),
-                kind,
-                value,
-                xx,
-                xy,
-                xz,
-                yy,
-                yz,
-                zz,
-            ]
-        });
-        Self {
-            centres: mesh.centres().iter().map(|&centre| centre.into()).collect(),
-            first_face,
-            normals: faces.iter().map(|face| face.normal.into()).collect(),
-            offsets: faces.iter().map(|face| face.offset).collect(),
-            neighbours: faces.iter().map(|face| beyond(face.neighbour).0).collect(),
-            shifts: faces.iter().map(|face| beyond(face.neighbour).1).collect(),
-            boundary: boundary.collect(),
-        }
-    }
-
-    fn part<'a>(&'a self, mesh: &'a FarMesh) -> MeshPart<'a> {
-        let whole = mesh.domain();
-        MeshPart {
-            corners: [whole.min().into(), whole.max().into()],
-            periodic: amberfield_core::Axis::ALL.map(|axis| whole.is_periodic(axis)),
-            first_cell: 0,
-            all_cells: self.centres.len() as u64,
-            centres: &self.centres,
-            volumes: mesh.volumes(),
-            first_face: &self.first_face,
-            face_normals: &self.normals,
-            face_offsets: &self.offsets,
-            face_neighbours: &self.neighbours,
-            face_shifts: &self.shifts,
-            boundary_faces: &self.boundary,
-        }
-    }
-}
-
 /// A solver that answers with the density that it was asked for in place of a potential.
 fn echo(run: &str) {
     let solver = BoxSolver::new(&domain(), [6, 5, 4]).expect("a good mesh");
     let mesh = solver.mesh();
     let mut side = FieldSide::open(run, 0, 1).expect("the run is there");
-    side.send_mesh(&Arrays::of(mesh).part(mesh), 0).expect("a good mesh");
+    side.send_mesh(&MeshArrays::of(mesh).part(mesh), 0).expect("a good mesh");
     while let Some(asked) = side.wait().expect("the DEM side lives") {
         let mut density = vec![0.0; mesh.cell_count()];
         side.density(&mut density).expect("good charges");
@@ -118,7 +39,8 @@ fn echo(run: &str) {
             mesh.boundary().len()
         );
         let e = vec![[1.0, 2.0, asked.permittivity]; mesh.cell_count()];
-        side.reply(&Reply { potential: &density, e: &e, iterations: 3, residual: 1e-9 }).expect("it lives");
+        side.reply(&Reply { potential: &density, e: &e, iterations: 3, residual: 1e-9, seconds: 0.5 })
+            .expect("it lives");
     }
 }
 
@@ -198,7 +120,7 @@ fn charges_that_are_no_numbers_end_the_field_side_and_it_says_why() {
     let field = std::thread::spawn(move || {
         let solver = BoxSolver::new(&domain(), [6, 5, 4]).expect("a good mesh");
         let mut side = FieldSide::open(&name, 0, 1).expect("the run is there");
-        side.send_mesh(&Arrays::of(solver.mesh()).part(solver.mesh()), 0).expect("a good mesh");
+        side.send_mesh(&MeshArrays::of(solver.mesh()).part(solver.mesh()), 0).expect("a good mesh");
         side.wait().expect("the DEM side lives");
         let error = side.density(&mut [0.0; 120]).expect_err("no number");
         side.fail(&error.to_string());

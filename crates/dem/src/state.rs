@@ -44,6 +44,8 @@ pub(crate) struct FieldState {
     pub(crate) fallback: Option<Choice>,
     /// Whether a field solver has a part in it, and is not lost yet.
     pub(crate) has_solver: bool,
+    /// Iterations of its last solve for the motion.
+    pub(crate) solver_iterations: u64,
     /// Of a field solver in another process, at its cells [V].
     pub(crate) far_potential: Vec<f64>,
     pub(crate) forecast: crate::field_stage::Forecast,

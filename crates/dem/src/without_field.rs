@@ -106,6 +106,10 @@ impl ElectricField {
         match *self {}
     }
 
+    pub(crate) fn solver_iterations(&self) -> u64 {
+        match *self {}
+    }
+
     pub(crate) fn has_solver(&self) -> bool {
         match *self {}
     }

@@ -306,6 +306,18 @@ impl ElectricField {
         }
     }
 
+    /// Iterations of a field solver of another process in its last solve; 0 without one.
+    #[must_use]
+    pub fn solver_iterations(&self) -> u64 {
+        self.method.far_solver().map_or(0, FarSolver::iterations)
+    }
+
+    /// Time that a field solver of another process took for its last solve alone [s]; 0 without one.
+    #[must_use]
+    pub fn solver_seconds(&self) -> f64 {
+        self.method.far_solver().map_or(0.0, FarSolver::seconds)
+    }
+
     /// Whether a field solver of another process has a part in it.
     #[must_use]
     pub fn has_solver(&self) -> bool {

@@ -72,7 +72,8 @@ pub enum Section {
     Field = 9,
     /// Cell of each charge (`u64`); `u64::MAX` where it is another rank's.
     Cells = 10,
-    /// Numbers of an answer: charge in the cells [C], charges outside the mesh, iterations, residual.
+    /// Numbers of an answer: charge in the cells [C], charges outside the mesh, iterations, residual, time of the
+    /// linear solver [s].
     Answer = 11,
     /// Cell centres [m].
     Centres = 12,

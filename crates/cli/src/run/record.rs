@@ -22,6 +22,7 @@ struct Columns {
     gravity: bool,
     field: bool,
     limited: bool,
+    solver: bool,
     stages: Vec<&'static str>,
 }
 
@@ -32,6 +33,7 @@ impl Columns {
             field: simulation.plan().has("field"),
             limited: simulation.plan().has("field")
                 && scene.electric_field.as_ref().is_some_and(|field| field.limit_field_force),
+            solver: simulation.plan().has("field") && scene.solver.is_some(),
             stages: simulation.stage_seconds().into_iter().map(|(name, _)| name).collect(),
         }
     }
@@ -42,7 +44,9 @@ impl Columns {
         names.extend(self.field.then_some("electric_J"));
         names.extend(self.field.then_some("net_charge_C"));
         names.extend(self.limited.then_some("limited"));
-        names.extend(["contacts", "wall_s"]);
+        names.push("contacts");
+        names.extend(self.solver.then_some("solver_iterations"));
+        names.push("wall_s");
         let stages = self.stages.iter().map(|stage| format!("wall_s_{stage}"));
         names.into_iter().map(ToOwned::to_owned).chain(stages).collect()
     }
@@ -114,6 +118,7 @@ impl Record {
             row.push(Cell::Count(simulation.limited().unwrap_or_default().grains));
         }
         row.push(Cell::Count(simulation.contacts() as u64));
+        row.extend(self.columns.solver.then(|| Cell::Count(simulation.solver_iterations())));
         row.push(Cell::Number(clock.wall_s));
         row.extend(clock.stages.iter().map(|seconds| Cell::Number(*seconds)));
         Ok(self.history.append(&row)?)

@@ -60,6 +60,8 @@ type ChunkLimited = (u64, f64);
 #[derive(Debug)]
 pub(crate) struct FieldStage {
     pub(crate) source: Source,
+    /// Of a field solver, in its last solve for the motion.
+    pub(crate) solver_iterations: u64,
     settings: FieldSettings,
     /// By the set-up's order.
     pub(crate) member: Vec<bool>,
@@ -98,6 +100,7 @@ impl FieldStage {
         let source = Source::new(domain, setup, (&position, &charge), state)?;
         let mut stage = Self {
             source,
+            solver_iterations: 0,
             settings,
             member,
             smallest_radius,
@@ -118,6 +121,7 @@ impl FieldStage {
             stage.energy = state.energy;
             stage.control = state.control;
             stage.travel = state.travel;
+            stage.solver_iterations = state.solver_iterations;
             stage.plasma_steps = state.plasma_steps;
             stage.plasma_limit = state.plasma_limit;
             stage.limited = state.limited;
@@ -130,6 +134,7 @@ impl FieldStage {
             choice: self.source.field.choice().clone(),
             fallback: self.source.fallback(),
             has_solver: self.source.field.has_solver(),
+            solver_iterations: self.solver_iterations,
             far_potential: self.source.field.far_potential().to_vec(),
             forecast: self.forecast.clone(),
             energy: self.energy,
@@ -181,6 +186,7 @@ impl FieldStage {
     ) -> Result<(), DemError> {
         self.members.collect(&self.member, domain, grains, particles);
         self.source.evaluate(domain, &self.settings, &self.members, &mut self.values)?;
+        self.solver_iterations = self.source.field.solver_iterations();
         let scale = self.scale(domain);
         let age = self.control.age;
         self.energy.renew(self.energy_of(&self.members, domain), age);

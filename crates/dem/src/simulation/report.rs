@@ -10,6 +10,12 @@ use crate::timing::STAGE_NAMES;
 use amberfield_core::{Particles, Plan, Vector3};
 
 impl Simulation {
+    /// Iterations of a field solver of another process, in its last solve for the motion; 0 without one.
+    #[must_use]
+    pub fn solver_iterations(&self) -> u64 {
+        self.field.as_ref().map_or(0, |field| field.solver_iterations)
+    }
+
     /// Simulated time [s].
     #[must_use]
     pub fn time_s(&self) -> f64 {

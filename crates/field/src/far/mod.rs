@@ -76,6 +76,8 @@ pub struct FarValues {
     pub iterations: u64,
     /// Its residual, relative.
     pub residual: f64,
+    /// Time that it took, without the mapping of charges and the way there and back [s].
+    pub seconds: f64,
 }
 
 /// Refuses a net charge [C] that no face of a mesh takes, in a medium of a permittivity [F/m].

@@ -38,6 +38,18 @@ impl FarSolver {
         if self.guess.is_empty() { &self.values.potential } else { &self.guess }
     }
 
+    /// Iterations of the last solve.
+    #[must_use]
+    pub fn iterations(&self) -> u64 {
+        self.values.iterations
+    }
+
+    /// Time that the last solve took [s].
+    #[must_use]
+    pub fn seconds(&self) -> f64 {
+        self.values.seconds
+    }
+
     /// Starts the next solve from a potential of an earlier run [V].
     pub fn start_from(&mut self, potential: &[f64]) {
         if potential.len() == self.mesh().cell_count() {

@@ -15,7 +15,7 @@ const ALLOWED: [(&str, &[&str]); 13] = [
     ("oracle", &["core"]),
     ("scene", &["core"]),
     ("study", &["core", "oracle", "scene"]),
-    ("bench", &["core", "dem", "field", "oracle", "scene", "study"]),
+    ("bench", &["core", "coupling", "dem", "field", "oracle", "scene", "study"]),
     ("cli", &["core", "laws", "field", "dem", "coupling", "oracle", "scene", "study"]),
     ("xtask", &[]),
 ];

@@ -1,0 +1,287 @@
+//! What it costs to have the far field solved by another process.
+
+use crate::Context;
+use crate::beds::{self, Cloud};
+use crate::page::{Table, figure, verdict};
+use crate::store::Store;
+use crate::timing::{median, median_seconds};
+use amberfield_core::{Boundary, Domain, FieldSettings, Tuning, Vector3};
+use amberfield_coupling::{
+    Announced, BoxSolver, FieldSide, MeshArrays, Reply, SolverSettings, solver_program,
+};
+use amberfield_field::far::{FarField, FarRequest, FarSource, FarValues};
+use amberfield_field::{ElectricField, FieldValues, Wanted};
+use anyhow::{Context as _, Result};
+use serde::{Deserialize, Serialize};
+use std::io::{Read as _, Write as _};
+use std::os::unix::net::UnixStream;
+use std::path::Path;
+use std::time::Duration;
+
+const NAME: &str = "coupling";
+const FRACTION: f64 = 0.4;
+/// Shares of a field evaluation that an exchange may take: an empty message, and one with everything in it.
+const GOALS: [f64; 2] = [0.01, 0.03];
+/// Grains per second that a core maps to cells.
+const MAPPED: f64 = 5e6;
+/// Far-field step over the bare linear solve.
+const STEP: f64 = 1.3;
+
+#[derive(Debug, Serialize, Deserialize)]
+struct Row {
+    what: String,
+    grains: usize,
+    cells: usize,
+    seconds: f64,
+}
+
+pub(crate) fn measure(context: &Context, root: &Path) -> Result<()> {
+    let (grains, cells_along) = if context.quick { (1000, 8) } else { (100_000, 46) };
+    let cloud = beds::cloud(grains, FRACTION);
+    let edge = cloud.domain.extent().x;
+    let faces = [[Boundary::Periodic; 2], [Boundary::Periodic; 2], [Boundary::Grounded; 2]];
+    let domain = Domain::new(cloud.domain.min(), cloud.domain.max(), faces)?;
+    let cells = cells_along * cells_along * cells_along;
+    let mut rows = Vec::new();
+    let mut add = |what: &str, seconds: f64| {
+        let row = Row { what: what.to_owned(), grains, cells, seconds };
+        println!("{row:?}");
+        rows.push(row);
+    };
+
+    let twin = BoxSolver::new(&domain, [cells_along; 3])?;
+    let mesh = twin.mesh();
+    let mut last: Vec<u32> = cloud.position.iter().map(|place| mesh.locate(place, None).0).collect();
+    let one_core = || {
+        for (cell, place) in last.iter_mut().zip(&cloud.position) {
+            *cell = mesh.locate(place, Some(*cell)).0;
+        }
+    };
+    add("mapping, warm, one core", median_seconds(0.3, one_core));
+
+    let (empty, full, bytes) = exchange(&domain, cells_along, &cloud)?;
+    add("exchange without payload", empty);
+    add("exchange", full);
+    add("the same bytes through a Unix socket", socket(bytes)?);
+
+    if solver_program().is_file() {
+        over_openfoam(&cloud, (edge, cells_along), root, &mut add)?;
+    } else {
+        println!("electricFieldFoam is not built (cargo xtask openfoam): what needs it is not measured");
+    }
+    context.store.save(NAME, &rows)
+}
+
+fn settings(case: &Path, start: bool) -> SolverSettings {
+    SolverSettings {
+        case: case.to_owned(),
+        application: None,
+        start,
+        ranks: 1,
+        timeout: Duration::from_secs(120),
+        far_tolerance: 1e-6,
+        log: start.then(|| case.join("log")),
+    }
+}
+
+/// Seconds of an exchange with a field side that answers at once, without charges and with all of them, and the bytes there and back.
+fn exchange(domain: &Domain, cells_along: usize, cloud: &Cloud) -> Result<(f64, f64, [usize; 2])> {
+    let announced = Announced::new(settings(Path::new("none"), false))?;
+    let (run, box_of) = (announced.run().to_owned(), domain.clone());
+    let field = std::thread::spawn(move || -> Result<()> {
+        let solver = BoxSolver::new(&box_of, [cells_along; 3])?;
+        let mesh = solver.mesh();
+        let mut side = FieldSide::open(&run, 0, 1)?;
+        side.send_mesh(&MeshArrays::of(mesh).part(mesh), 0)?;
+        let (potential, e) = (vec![0.0; mesh.cell_count()], vec![[0.0; 3]; mesh.cell_count()]);
+        while side.wait()?.is_some() {
+            side.reply(&Reply { potential: &potential, e: &e, iterations: 0, residual: 0.0, seconds: 0.0 })?;
+        }
+        Ok(())
+    });
+    let mut remote = announced.connect()?;
+    let boundary = vec![0.0; remote.mesh().boundary().len()];
+    let mut values = FarValues::default();
+    let mut time = |positions: &[Vector3<f64>], charges: &[f64]| {
+        let request = FarRequest {
+            source: FarSource::NearestCell,
+            positions,
+            charges,
+            image_positions: &[],
+            image_charges: &[],
+            boundary: &boundary,
+            permittivity: 1.0,
+            guess: &[],
+            neutralising_background: false,
+            time_s: 0.0,
+        };
+        median_seconds(0.5, || remote.solve(&request, &mut values).expect("it answers"))
+    };
+    let full = time(&cloud.position, &cloud.charge);
+    drop(remote);
+    field.join().expect("no panic")?;
+    let (grains, cells) = (cloud.position.len(), cells_along.pow(3));
+    Ok((round_trip()?, full, [32 * grains + 8 * boundary.len(), 32 * cells + 8 * grains]))
+}
+
+/// Seconds of a round trip with a mesh of one cell and no charge.
+fn round_trip() -> Result<f64> {
+    let announced = Announced::new(settings(Path::new("none"), false))?;
+    let run = announced.run().to_owned();
+    let domain = Domain::new(Vector3::zeros(), Vector3::repeat(1.0), [[Boundary::Grounded; 2]; 3])?;
+    let field = std::thread::spawn(move || -> Result<()> {
+        let solver = BoxSolver::new(&domain, [1; 3])?;
+        let mut side = FieldSide::open(&run, 0, 1)?;
+        side.send_mesh(&MeshArrays::of(solver.mesh()).part(solver.mesh()), 0)?;
+        while side.wait()?.is_some() {
+            side.reply(&Reply {
+                potential: &[0.0],
+                e: &[[0.0; 3]],
+                iterations: 0,
+                residual: 0.0,
+                seconds: 0.0,
+            })?;
+        }
+        Ok(())
+    });
+    let mut remote = announced.connect()?;
+    let mut values = FarValues::default();
+    let request = FarRequest {
+        source: FarSource::NearestCell,
+        positions: &[],
+        charges: &[],
+        image_positions: &[],
+        image_charges: &[],
+        boundary: &[0.0; 6],
+        permittivity: 1.0,
+        guess: &[],
+        neutralising_background: false,
+        time_s: 0.0,
+    };
+    let seconds = median_seconds(0.3, || remote.solve(&request, &mut values).expect("it answers"));
+    drop(remote);
+    field.join().expect("no panic")?;
+    Ok(seconds)
+}
+
+/// Seconds to write so many bytes into a socket, read them at its other end, and have as many as the second number back.
+fn socket([out, back]: [usize; 2]) -> Result<f64> {
+    let (mut here, mut there) = UnixStream::pair()?;
+    let echo = std::thread::spawn(move || {
+        let (mut received, answer) = (vec![0_u8; out], vec![1_u8; back]);
+        while there.read_exact(&mut received).is_ok() && there.write_all(&answer).is_ok() {}
+    });
+    let (sent, mut received) = (vec![2_u8; out], vec![0_u8; back]);
+    let seconds = median_seconds(0.5, || {
+        here.write_all(&sent).and_then(|()| here.read_exact(&mut received)).expect("the other end is there");
+    });
+    drop(here);
+    echo.join().expect("no panic");
+    Ok(seconds)
+}
+
+/// Whole evaluations over OpenFOAM: all of it, its far-field step, and the bare linear solve in that.
+fn over_openfoam(
+    cloud: &Cloud,
+    (edge, cells_along): (f64, usize),
+    root: &Path,
+    add: &mut impl FnMut(&str, f64),
+) -> Result<()> {
+    const EVALUATIONS: usize = 9;
+    let case = root.join("target/bench-case");
+    provide_case(root, &case, edge, cells_along, cloud.domain.min())?;
+    let remote = Announced::new(settings(&case, true))?.connect()?;
+    let field = FieldSettings { tolerance: 1e-2, tuning: Tuning::Model, ..FieldSettings::default() };
+    let mut field = ElectricField::over_mesh(Box::new(remote), &field, &cloud.position, &cloud.charge)?;
+    let mut out = FieldValues::default();
+    let mut samples: [Vec<f64>; 3] = Default::default();
+    for evaluation in 0..=EVALUATIONS {
+        // Grains that move a little: the solver starts warm and has something to do.
+        let shift = Vector3::new(1e-2 * edge / cells_along as f64 * evaluation as f64, 0.0, 0.0);
+        let moved: Vec<_> = cloud.position.iter().map(|place| place + shift).collect();
+        field.evaluate(&moved, &cloud.charge, Wanted::default(), &mut out)?;
+        let seconds = field.statistics().seconds;
+        let of = |name: &str| seconds.iter().filter(|(stage, _)| *stage == name).map(|(_, s)| s).sum::<f64>();
+        let parts = [seconds.iter().map(|(_, s)| s).sum(), of("far"), field.solver_seconds()];
+        if evaluation > 0 {
+            samples.iter_mut().zip(parts).for_each(|(all, part)| all.push(part));
+        }
+    }
+    for (what, samples) in
+        ["field evaluation", "far-field step", "bare Poisson solve"].iter().zip(&mut samples)
+    {
+        add(what, median(samples));
+    }
+    Ok(())
+}
+
+/// The case of coupled-settling-bed on a cube with other cells.
+fn provide_case(root: &Path, case: &Path, edge: f64, cells_along: usize, low: Vector3<f64>) -> Result<()> {
+    let source = root.join("cases/coupled-settling-bed/foam");
+    let _ = std::fs::remove_dir_all(case);
+    for folder in ["0", "system"] {
+        std::fs::create_dir_all(case.join(folder))?;
+        for entry in std::fs::read_dir(source.join(folder))? {
+            let entry = entry?;
+            std::fs::copy(entry.path(), case.join(folder).join(entry.file_name()))?;
+        }
+    }
+    let corner = |x: f64, y: f64, z: f64| {
+        let place = low + Vector3::new(x, y, z) * edge;
+        format!("({} {} {})", 1e3 * place.x, 1e3 * place.y, 1e3 * place.z)
+    };
+    let floor = |z: f64| {
+        [corner(0.0, 0.0, z), corner(1.0, 0.0, z), corner(1.0, 1.0, z), corner(0.0, 1.0, z)].join(" ")
+    };
+    let path = case.join("system/blockMeshDict");
+    let mut text = std::fs::read_to_string(&path)?;
+    for (from, to) in [
+        ("(0 0 0) (6 0 0) (6 6 0) (0 6 0)", floor(0.0)),
+        ("(0 0 10) (6 0 10) (6 6 10) (0 6 10)", floor(1.0)),
+        ("(12 12 20)", format!("({cells_along} {cells_along} {cells_along})")),
+    ] {
+        anyhow::ensure!(text.contains(from), "{} has no {from}", path.display());
+        text = text.replace(from, &to);
+    }
+    std::fs::write(&path, text).with_context(|| path.display().to_string())
+}
+
+/// The section's part of the page.
+pub(crate) fn report(store: &Store) -> Result<Option<String>> {
+    let Some((date, rows)) = store.newest::<Row>(NAME)? else { return Ok(None) };
+    let seconds = |what: &str| rows.iter().find(|row| row.what == what).map(|row| row.seconds);
+    let evaluation = seconds("field evaluation");
+    let mut table = Table::new(&["", "time [ms]", "of a field evaluation [%]"]);
+    for row in &rows {
+        let share = evaluation.map(|evaluation| 100.0 * row.seconds / evaluation);
+        table.row(&[row.what.clone(), figure(Some(1e3 * row.seconds), 3), figure(share, 2)]);
+    }
+    let share = |what: &str| Some(seconds(what)? / evaluation?);
+    let over = |what: &str, of: &str| Some(seconds(what)? / seconds(of)?);
+    let rate = seconds("mapping, warm, one core").map(|seconds| rows[0].grains as f64 / seconds);
+    let [empty, full] = ["exchange without payload", "exchange"].map(share);
+    let socket = over("the same bytes through a Unix socket", "exchange");
+    let step = over("far-field step", "bare Poisson solve");
+    Ok(Some(format!(
+        "## Coupling\n\nMeasured {date}, `cargo xtask bench coupling`: {} grains, {} cells, tolerance 1e-2, two processes on this machine. An exchange is charges and boundary data written, \
+         fields read, with an answer at once.\n\n{table}\n\
+         * An exchange takes under {:.0} % of a field evaluation without payload: {} ({} %); under {:.0} % with it: {} ({} %).\n\
+         * A Unix socket takes {} times as long for the same bytes.\n\
+         * Mapping: {} million grains a second on a core, goal {:.0}: {}.\n\
+         * The far-field step (density, solve, gradient, both ways) takes {} times the bare solve, goal {STEP}: {}.\n",
+        rows[0].grains,
+        rows[0].cells,
+        100.0 * GOALS[0],
+        verdict(empty.map(|share| share < GOALS[0])),
+        figure(empty.map(|share| 100.0 * share), 3),
+        100.0 * GOALS[1],
+        verdict(full.map(|share| share < GOALS[1])),
+        figure(full.map(|share| 100.0 * share), 2),
+        figure(socket, 2),
+        figure(rate.map(|rate| 1e-6 * rate), 1),
+        1e-6 * MAPPED,
+        verdict(rate.map(|rate| rate >= MAPPED)),
+        figure(step, 2),
+        verdict(step.map(|step| step <= STEP)),
+    )))
+}

@@ -1,0 +1,89 @@
+//! A mesh in the wire's arrays: for field solvers in Rust, of tests and measurements.
+
+use crate::mesh_message::{BOUNDARY_NUMBERS, MeshPart};
+use amberfield_core::Axis;
+use amberfield_field::far::{Condition, FarMesh, Neighbour};
+
+/// A whole mesh in arrays as a solver of one rank sends them.
+#[derive(Clone, Debug)]
+pub struct MeshArrays {
+    centres: Vec<[f64; 3]>,
+    first_face: Vec<u64>,
+    normals: Vec<[f64; 3]>,
+    offsets: Vec<f64>,
+    neighbours: Vec<i64>,
+    shifts: Vec<[f64; 3]>,
+    boundary: Vec<[f64; BOUNDARY_NUMBERS]>,
+}
+
+impl MeshArrays {
+    /// Of a mesh.
+    #[must_use]
+    pub fn of(mesh: &FarMesh) -> Self {
+        let faces: Vec<_> = (0..mesh.cell_count()).flat_map(|cell| mesh.faces_of(cell)).collect();
+        let mut first_face = vec![0];
+        for cell in 0..mesh.cell_count() {
+            first_face.push(first_face[cell] + mesh.faces_of(cell).len() as u64);
+        }
+        let beyond = |neighbour: Neighbour| match neighbour {
+            Neighbour::Cell { cell, shift } => (i64::from(cell), shift.into()),
+            Neighbour::Boundary(face) => (-1 - i64::from(face), [0.0; 3]),
+        };
+        let boundary = mesh.boundary().iter().map(|face| {
+            let (kind, value) = match face.condition {
+                Condition::Potential(volts) => (1.0, volts),
+                Condition::Slope(slope) => (0.0, slope),
+            };
+            let (c, n) = (face.centre, face.normal);
+            let m = face.spread;
+            let [xx, xy, xz, yy, yz, zz] = [m.m11, m.m12, m.m13, m.m22, m.m23, m.m33];
+            [
+                c.x,
+                c.y,
+                c.z,
+                n.x,
+                n.y,
+                n.z,
+                face.area,
+                f64::from(face.cell),
+                kind,
+                value,
+                xx,
+                xy,
+                xz,
+                yy,
+                yz,
+                zz,
+            ]
+        });
+        Self {
+            centres: mesh.centres().iter().map(|&centre| centre.into()).collect(),
+            first_face,
+            normals: faces.iter().map(|face| face.normal.into()).collect(),
+            offsets: faces.iter().map(|face| face.offset).collect(),
+            neighbours: faces.iter().map(|face| beyond(face.neighbour).0).collect(),
+            shifts: faces.iter().map(|face| beyond(face.neighbour).1).collect(),
+            boundary: boundary.collect(),
+        }
+    }
+
+    /// The arrays in place, with what `mesh` has in its own.
+    #[must_use]
+    pub fn part<'a>(&'a self, mesh: &'a FarMesh) -> MeshPart<'a> {
+        let whole = mesh.domain();
+        MeshPart {
+            corners: [whole.min().into(), whole.max().into()],
+            periodic: Axis::ALL.map(|axis| whole.is_periodic(axis)),
+            first_cell: 0,
+            all_cells: self.centres.len() as u64,
+            centres: &self.centres,
+            volumes: mesh.volumes(),
+            first_face: &self.first_face,
+            face_normals: &self.normals,
+            face_offsets: &self.offsets,
+            face_neighbours: &self.neighbours,
+            face_shifts: &self.shifts,
+            boundary_faces: &self.boundary,
+        }
+    }
+}
