@@ -170,7 +170,9 @@ pub unsafe extern "C" fn amberfield_host_field(
         for position in positions.iter_mut() {
             *position = scene.domain.wrap(*position);
         }
-        field.at_time(time);
+        if let Some(solver) = field.far_solver_mut() {
+            solver.at_time(time);
+        }
         let wanted = Wanted { potential: !potential.is_null(), ..Wanted::default() };
         field.evaluate(positions, charges, wanted, values).map_err(|error| error.to_string())?;
         // SAFETY: the caller's promise.

@@ -3,7 +3,7 @@
 use crate::failure::Failure;
 use amberfield_scene::Scene;
 
-/// Refuses a scene that asks for what is not built. Without motion nothing touches and nothing overlaps in time.
+/// Refuses a scene that asks for what is not built. Without motion nothing touches.
 pub(crate) fn refuse(scene: &Scene, motion: bool) -> Result<(), Failure> {
     let field = scene.electric_field.as_ref();
     let asked = [
@@ -12,11 +12,6 @@ pub(crate) fn refuse(scene: &Scene, motion: bool) -> Result<(), Failure> {
             motion && field.is_some_and(|field| field.enable_collision_charge_transfer),
             "charge transfer on contact",
             "set electric_field.enable_collision_charge_transfer = false",
-        ),
-        (
-            motion && field.is_some_and(|field| field.overlap),
-            "far solve beside the steps",
-            "set electric_field.overlap = false",
         ),
     ];
     let lines: Vec<String> = asked

@@ -104,6 +104,9 @@ pub struct FieldSettings {
     pub tuning: Tuning,
     /// How often the field is evaluated.
     pub coupling_interval: CouplingInterval,
+    /// Whether a field solver of another process works beside the steps: its part of the field is then forecast from its last
+    /// two answers.
+    pub overlap: bool,
     /// Bound on the electric force, when asked for.
     pub force_limit: Option<ForceLimit>,
 }
@@ -120,6 +123,7 @@ impl Default for FieldSettings {
             grid_cells: None,
             tuning: Tuning::Timed,
             coupling_interval: CouplingInterval::Auto,
+            overlap: false,
             force_limit: None,
         }
     }

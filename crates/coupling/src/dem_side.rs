@@ -38,8 +38,9 @@ pub struct RemoteSolver {
     mesh: FarMesh,
     /// Cells of each rank.
     cells: Vec<usize>,
-    /// Number of the last solve.
+    /// Number of the last solve, and its charges.
     solve: u64,
+    charges: usize,
     /// Whether the last solve was answered.
     healthy: bool,
     // Dropped in this order: the link says goodbye, the process ends, the run's place goes.
@@ -106,23 +107,32 @@ impl Announced {
         let parts = parts.map_err(of_solver)?;
         let cells = parts.iter().map(|part| part.centres.len()).collect();
         let mesh = assemble(&parts)?;
-        Ok(RemoteSolver { settings, mesh, cells, solve: 0, healthy: true, link, process, _root: root })
+        Ok(RemoteSolver {
+            settings,
+            mesh,
+            cells,
+            solve: 0,
+            charges: 0,
+            healthy: true,
+            link,
+            process,
+            _root: root,
+        })
     }
 }
 
 impl RemoteSolver {
-    /// Asks for the far field and takes the answer.
+    /// Asks for the far field and waits for the answer.
     pub(crate) fn ask_for(
         &mut self,
         request: &FarRequest<'_>,
         values: &mut FarValues,
     ) -> Result<(), CouplingError> {
-        let outcome = self.exchange(request, values);
-        self.healthy = outcome.is_ok();
-        outcome
+        let outcome = self.send(request).and_then(|()| self.collect(values));
+        self.noted(outcome)
     }
 
-    fn ask(&mut self, request: &FarRequest<'_>) -> Result<(), CouplingError> {
+    fn write(&mut self, request: &FarRequest<'_>) -> Result<(), CouplingError> {
         let (radius, shape) = match request.source {
             FarSource::Clouds { radius_m, shape } => (radius_m, shape),
             FarSource::NearestCell => (0.0, 0.0),
@@ -159,7 +169,7 @@ impl RemoteSolver {
     }
 
     /// Takes one rank's answer.
-    fn take(&self, message: &Message, values: &mut FarValues) -> Result<usize, WireError> {
+    fn read(&self, message: &Message, values: &mut FarValues) -> Result<usize, WireError> {
         let ranks = self.settings.ranks;
         check_sender(message.header(), ranks, MessageKind::Fields, self.solve)?;
         let rank = message.header().rank as usize;
@@ -188,21 +198,27 @@ impl RemoteSolver {
         Ok(rank)
     }
 
-    fn exchange(&mut self, request: &FarRequest<'_>, values: &mut FarValues) -> Result<(), CouplingError> {
+    /// Asks without waiting.
+    fn send(&mut self, request: &FarRequest<'_>) -> Result<(), CouplingError> {
         self.solve += 1;
-        self.ask(request)?;
+        self.charges = request.positions.len();
+        self.write(request)
+    }
+
+    /// Waits for every rank's answer to what was asked last.
+    fn collect(&mut self, values: &mut FarValues) -> Result<(), CouplingError> {
         let count = self.mesh.cell_count();
         values.potential.resize(count, 0.0);
         values.e.resize(count, Vector3::zeros());
         values.cells.clear();
-        values.cells.resize(request.positions.len(), u32::MAX);
+        values.cells.resize(self.charges, u32::MAX);
         (values.outside, values.iterations, values.residual, values.seconds) = (0, 0, 0.0, 0.0);
         let mut missing = self.settings.ranks;
         let mut seen = vec![false; missing as usize];
         while missing > 0 {
             let process = &mut self.process;
             let message = self.link.receive(self.solve, self.settings.timeout, || alive(process))?;
-            let rank = self.take(&message, values).map_err(of_solver)?;
+            let rank = self.read(&message, values).map_err(of_solver)?;
             missing -= u32::from(!std::mem::replace(&mut seen[rank], true));
         }
         if let Some(cell) = values.potential.iter().position(|potential| !potential.is_finite()) {
@@ -213,6 +229,12 @@ impl RemoteSolver {
         }
         Ok(())
     }
+
+    /// Whether an exchange went well decides how the solver is told goodbye.
+    fn noted(&mut self, outcome: Result<(), CouplingError>) -> Result<(), CouplingError> {
+        self.healthy = outcome.is_ok();
+        outcome
+    }
 }
 
 impl FarField for RemoteSolver {
@@ -222,6 +244,16 @@ impl FarField for RemoteSolver {
 
     fn solve(&mut self, request: &FarRequest<'_>, values: &mut FarValues) -> Result<(), FieldError> {
         Ok(self.ask_for(request, values)?)
+    }
+
+    fn ask(&mut self, request: &FarRequest<'_>) -> Result<(), FieldError> {
+        let outcome = self.send(request);
+        Ok(self.noted(outcome)?)
+    }
+
+    fn take(&mut self, values: &mut FarValues) -> Result<(), FieldError> {
+        let outcome = self.collect(values);
+        Ok(self.noted(outcome)?)
     }
 }
 

@@ -216,7 +216,9 @@ impl Simulation {
     fn evaluate_field(&mut self) -> Result<(), DemError> {
         let time_s = self.time_s();
         if let Some(field) = &mut self.field {
-            field.source.field.at_time(time_s);
+            if let Some(solver) = field.source.field.far_solver_mut() {
+                solver.at_time(time_s);
+            }
             field.evaluate(&self.domain, &self.grains, &self.particles, self.step_s)?;
             self.limits.set_plasma(field.plasma_limit);
         }

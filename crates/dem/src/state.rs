@@ -1,6 +1,7 @@
 //! The complete state of a run, for checkpoints.
 
 use crate::field_crate::Choice;
+use crate::field_crate::far::FarState;
 use amberfield_core::Vector3;
 use serde::{Deserialize, Serialize};
 
@@ -46,8 +47,8 @@ pub(crate) struct FieldState {
     pub(crate) has_solver: bool,
     /// Iterations of its last solve for the motion.
     pub(crate) solver_iterations: u64,
-    /// Of a field solver in another process, at its cells [V].
-    pub(crate) far_potential: Vec<f64>,
+    /// Of a field solver in another process.
+    pub(crate) far: FarState,
     pub(crate) forecast: crate::field_stage::Forecast,
     pub(crate) energy: crate::field_stage::EnergyForecast,
     pub(crate) control: crate::field_stage::IntervalControl,

@@ -286,42 +286,15 @@ impl ElectricField {
         Ok(self.error_measured)
     }
 
-    /// What a field solver of another process found last, at its cells' centres [V]: state of a run; empty without one.
+    /// The field solver of another process that has a part in it, and its state.
     #[must_use]
-    pub fn far_potential(&self) -> &[f64] {
-        self.method.far_solver().map_or(&[], FarSolver::potential)
+    pub fn far_solver(&self) -> Option<&FarSolver> {
+        self.method.far_solver()
     }
 
-    /// Goes on from a field solver's state of an earlier run, as [`Self::far_potential`] gave it.
-    pub fn start_from(&mut self, far_potential: &[f64]) {
-        if let Some(solver) = self.method.far_solver_mut() {
-            solver.start_from(far_potential);
-        }
-    }
-
-    /// Says at what time the next evaluation is [s]: a field solver of another process may wait for its own.
-    pub fn at_time(&mut self, time_s: f64) {
-        if let Some(solver) = self.method.far_solver_mut() {
-            solver.at_time(time_s);
-        }
-    }
-
-    /// Iterations of a field solver of another process in its last solve; 0 without one.
-    #[must_use]
-    pub fn solver_iterations(&self) -> u64 {
-        self.method.far_solver().map_or(0, FarSolver::iterations)
-    }
-
-    /// Time that a field solver of another process took for its last solve alone [s]; 0 without one.
-    #[must_use]
-    pub fn solver_seconds(&self) -> f64 {
-        self.method.far_solver().map_or(0.0, FarSolver::seconds)
-    }
-
-    /// Whether a field solver of another process has a part in it.
-    #[must_use]
-    pub fn has_solver(&self) -> bool {
-        self.mesh_cells.is_some()
+    /// The same, to tell it where and when its next solve is.
+    pub fn far_solver_mut(&mut self) -> Option<&mut FarSolver> {
+        self.method.far_solver_mut()
     }
 
     /// Parameters in force.
@@ -367,7 +340,7 @@ impl ElectricField {
 
 fn far_level(solver: Box<dyn FarField>, settings: &FieldSettings) -> FarLevel {
     let permittivity = VACUUM_PERMITTIVITY * settings.relative_permittivity;
-    FarLevel::new(solver, permittivity, settings.neutralising_background)
+    FarLevel::new(solver, permittivity, settings)
 }
 
 /// As p3m checks at every evaluation, before anything is tuned.

@@ -292,3 +292,65 @@ fn a_grain_outside_the_mesh_is_named() {
         );
     }
 }
+
+#[test]
+fn a_solver_beside_the_steps_leads_to_the_same_motion_and_loses_nothing_when_killed() {
+    let scene = FoamBox::grounded();
+    let text = scene.bench.read("scene.toml") + "[output]\nhistory_every_s = 1e-5\n";
+    let text = text.replace("end_s = 1e-3", "end_s = 4e-3").replace("1e-12", "2e-13");
+    scene.bench.write("scene.toml", text);
+    let run = |out: &str, options: &[&str]| {
+        scene.bench.run(&[&["run", "scene.toml", "--out", out, "--no-progress"], options].concat())
+    };
+    let overlap = ["--set", "electric_field.overlap=true"];
+    good(&run("waits", &[]));
+    good(&run("beside", &overlap));
+    let energy = |out: &str, name: &str| rows(&scene, out).numbers(name);
+    for name in ["kinetic_J", "electric_J"] {
+        let error = difference(&energy("beside", name), &energy("waits", name));
+        assert!(error > 0.0 && error < AGREEMENT, "{name}: {error:e}");
+    }
+
+    // Stopped in the middle, the solver killed in the middle: both go on bit for bit.
+    let steps = rows(&scene, "beside").rows.len() / 2;
+    good(&run("stopped", &[&overlap[..], &["--steps", &steps.to_string()]].concat()));
+    let last = |out: &str| {
+        format!("{out}/checkpoints/{}", scene.bench.names(&format!("{out}/checkpoints")).pop().unwrap())
+    };
+    let resume =
+        |out: &str| {
+            good(&scene.bench.run(
+                &[&["run", "scene.toml", "--resume", &last(out), "--no-progress"], &overlap[..]].concat(),
+            ));
+        };
+    resume("stopped");
+    assert_eq!(rows(&scene, "stopped"), rows(&scene, "beside"));
+
+    let mut killed = scene
+        .bench
+        .command(&[&["run", "scene.toml", "--out", "out", "--no-progress"], &overlap[..]].concat())
+        .stdout(Stdio::null())
+        .stderr(Stdio::null())
+        .spawn()
+        .unwrap();
+    scene.wait_until_it_steps(&mut killed);
+    kill_process(scene.solver(), Signal::KILL).unwrap();
+    assert_eq!(killed.wait().unwrap().code(), Some(3));
+    resume("out");
+    assert_eq!(rows(&scene, "out"), rows(&scene, "beside"));
+}
+
+#[test]
+fn a_solver_beside_the_steps_cannot_be_waited_for() {
+    let scene = FoamBox::grounded();
+    let answer = scene.bench.run(&[
+        "run",
+        "scene.toml",
+        "--set",
+        "electric_field.overlap=true",
+        "--set",
+        "solver.on_solver_loss=\"wait\"",
+    ]);
+    assert_eq!(answer.code, Some(2), "{}", answer.stderr);
+    assert!(answer.stderr.contains("electric_field.overlap = true needs"), "{}", answer.stderr);
+}

@@ -5,18 +5,19 @@ use crate::beds::{self, Cloud};
 use crate::page::{Table, figure, verdict};
 use crate::store::Store;
 use crate::timing::{median, median_seconds};
-use amberfield_core::{Boundary, Domain, FieldSettings, Tuning, Vector3};
+use amberfield_core::{Boundary, CouplingInterval, Domain, FieldSettings, Tuning, Vector3};
 use amberfield_coupling::{
     Announced, BoxSolver, FieldSide, MeshArrays, Reply, SolverSettings, solver_program,
 };
-use amberfield_field::far::{FarField, FarRequest, FarSource, FarValues};
+use amberfield_dem::{FieldStageSetup, Simulation};
+use amberfield_field::far::{Connect, FarField, FarRequest, FarSolver, FarSource, FarValues};
 use amberfield_field::{ElectricField, FieldValues, Wanted};
 use anyhow::{Context as _, Result};
 use serde::{Deserialize, Serialize};
 use std::io::{Read as _, Write as _};
 use std::os::unix::net::UnixStream;
 use std::path::Path;
-use std::time::Duration;
+use std::time::{Duration, Instant};
 
 const NAME: &str = "coupling";
 const FRACTION: f64 = 0.4;
@@ -66,13 +67,16 @@ pub(crate) fn measure(context: &Context, root: &Path) -> Result<()> {
 
     if solver_program().is_file() {
         over_openfoam(&cloud, (edge, cells_along), root, &mut add)?;
+        for (overlap, what) in [(false, "step, solver waited for"), (true, "step, solver beside")] {
+            add(what, step(grains, cells_along, overlap, root)?);
+        }
     } else {
         println!("electricFieldFoam is not built (cargo xtask openfoam): what needs it is not measured");
     }
     context.store.save(NAME, &rows)
 }
 
-fn settings(case: &Path, start: bool) -> SolverSettings {
+fn settings_of(case: &Path, start: bool) -> SolverSettings {
     SolverSettings {
         case: case.to_owned(),
         application: None,
@@ -86,7 +90,7 @@ fn settings(case: &Path, start: bool) -> SolverSettings {
 
 /// Seconds of an exchange with a field side that answers at once, without charges and with all of them, and the bytes there and back.
 fn exchange(domain: &Domain, cells_along: usize, cloud: &Cloud) -> Result<(f64, f64, [usize; 2])> {
-    let announced = Announced::new(settings(Path::new("none"), false))?;
+    let announced = Announced::new(settings_of(Path::new("none"), false))?;
     let (run, box_of) = (announced.run().to_owned(), domain.clone());
     let field = std::thread::spawn(move || -> Result<()> {
         let solver = BoxSolver::new(&box_of, [cells_along; 3])?;
@@ -126,7 +130,7 @@ fn exchange(domain: &Domain, cells_along: usize, cloud: &Cloud) -> Result<(f64, 
 
 /// Seconds of a round trip with a mesh of one cell and no charge.
 fn round_trip() -> Result<f64> {
-    let announced = Announced::new(settings(Path::new("none"), false))?;
+    let announced = Announced::new(settings_of(Path::new("none"), false))?;
     let run = announced.run().to_owned();
     let domain = Domain::new(Vector3::zeros(), Vector3::repeat(1.0), [[Boundary::Grounded; 2]; 3])?;
     let field = std::thread::spawn(move || -> Result<()> {
@@ -190,7 +194,7 @@ fn over_openfoam(
     const EVALUATIONS: usize = 9;
     let case = root.join("target/bench-case");
     provide_case(root, &case, edge, cells_along, cloud.domain.min())?;
-    let remote = Announced::new(settings(&case, true))?.connect()?;
+    let remote = Announced::new(settings_of(&case, true))?.connect()?;
     let field = FieldSettings { tolerance: 1e-2, tuning: Tuning::Model, ..FieldSettings::default() };
     let mut field = ElectricField::over_mesh(Box::new(remote), &field, &cloud.position, &cloud.charge)?;
     let mut out = FieldValues::default();
@@ -202,7 +206,11 @@ fn over_openfoam(
         field.evaluate(&moved, &cloud.charge, Wanted::default(), &mut out)?;
         let seconds = field.statistics().seconds;
         let of = |name: &str| seconds.iter().filter(|(stage, _)| *stage == name).map(|(_, s)| s).sum::<f64>();
-        let parts = [seconds.iter().map(|(_, s)| s).sum(), of("far"), field.solver_seconds()];
+        let parts = [
+            seconds.iter().map(|(_, s)| s).sum(),
+            of("far"),
+            field.far_solver().map_or(0.0, FarSolver::seconds),
+        ];
         if evaluation > 0 {
             samples.iter_mut().zip(parts).for_each(|(all, part)| all.push(part));
         }
@@ -213,6 +221,40 @@ fn over_openfoam(
         add(what, median(samples));
     }
     Ok(())
+}
+
+/// Seconds per DEM step when the field is evaluated every so many steps over OpenFOAM.
+fn step(grains: usize, cells_along: usize, overlap: bool, root: &Path) -> Result<f64> {
+    const INTERVAL: u32 = 10;
+    const INTERVALS: u32 = 8;
+    let case = root.join("target/bench-case");
+    let mut scene = beds::sparse(grains);
+    provide_case(root, &case, scene.domain.extent().x, cells_along, scene.domain.min())?;
+    let settings = FieldSettings {
+        tolerance: 1e-2,
+        tuning: Tuning::Model,
+        coupling_interval: CouplingInterval::Steps(INTERVAL),
+        overlap,
+        ..FieldSettings::default()
+    };
+    scene.particles.charge = (0..grains).map(|i| if i % 2 == 0 { 1e-15 } else { -1e-15 }).collect();
+    let solver = settings_of(&case, true);
+    let connect = Connect::new(move || {
+        let remote = Announced::new(solver.clone())?.connect()?;
+        Ok(Box::new(remote) as Box<dyn FarField>)
+    });
+    let field = FieldStageSetup::new(settings, vec![true; grains]);
+    scene.field = Some(FieldStageSetup { solver: Some(connect), ..field });
+    let mut simulation = Simulation::new(scene)?;
+    let mut steps = |intervals: u32| -> Result<f64> {
+        let start = Instant::now();
+        for _ in 0..intervals * INTERVAL {
+            simulation.step()?;
+        }
+        Ok(start.elapsed().as_secs_f64() / f64::from(intervals * INTERVAL))
+    };
+    steps(3)?;
+    steps(INTERVALS)
 }
 
 /// The case of coupled-settling-bed on a cube with other cells.
@@ -267,6 +309,7 @@ pub(crate) fn report(store: &Store) -> Result<Option<String>> {
          fields read, with an answer at once.\n\n{table}\n\
          * An exchange takes under {:.0} % of a field evaluation without payload: {} ({} %); under {:.0} % with it: {} ({} %).\n\
          * A Unix socket takes {} times as long for the same bytes.\n\
+         * With `overlap` a step of 100 000 grains at a fraction of 0.1, the field anew every ten steps, takes {} of the time that it takes when the solver is waited for.\n\
          * Mapping: {} million grains a second on a core, goal {:.0}: {}.\n\
          * The far-field step (density, solve, gradient, both ways) takes {} times the bare solve, goal {STEP}: {}.\n",
         rows[0].grains,
@@ -278,6 +321,7 @@ pub(crate) fn report(store: &Store) -> Result<Option<String>> {
         verdict(full.map(|share| share < GOALS[1])),
         figure(full.map(|share| 100.0 * share), 2),
         figure(socket, 2),
+        figure(over("step, solver beside", "step, solver waited for"), 2),
         figure(rate.map(|rate| 1e-6 * rate), 1),
         1e-6 * MAPPED,
         verdict(rate.map(|rate| rate >= MAPPED)),

@@ -74,6 +74,8 @@ pub(crate) fn field_of(
     positions: &[Vector3<f64>],
     charges: &[f64],
 ) -> Result<ElectricField, Failure> {
+    // One snapshot: nothing to work beside.
+    let settings = &FieldSettings { overlap: false, ..settings.clone() };
     let field = match solver {
         None => ElectricField::new(domain, settings, positions, charges),
         Some(solver) => {

@@ -15,6 +15,12 @@ const FAR_TOLERANCE: f64 = 1e-4;
 pub(crate) fn connect_solver(scene: &mut Scene) -> Result<Option<Connect>, Failure> {
     let (Some(solver), Some(field)) = (&scene.solver, &scene.electric_field) else { return Ok(None) };
     refuse(field.field.method)?;
+    if field.field.overlap && (field.field.method != Method::P3m || solver.on_solver_loss == SolverLoss::Wait)
+    {
+        return Err(Failure::bad_input(
+            "electric_field.overlap = true needs method \"p3m\" and solver.on_solver_loss \"stop\" or \"fallback\"; change one of them",
+        ));
+    }
     if solver.on_solver_loss == SolverLoss::Fallback && scene.domain.is_none() {
         return Err(Failure::bad_input(
             "solver.on_solver_loss = \"fallback\" needs the box and the boundaries with which the internal grid goes on; add [domain] and [domain.boundary]",

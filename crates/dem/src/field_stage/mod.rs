@@ -21,6 +21,7 @@ pub use interval::Intervals;
 
 use crate::chunks::{CHUNK, chunk_count, for_each_chunk, is_parallel};
 use crate::error::DemError;
+use crate::field_crate::far::FarSolver;
 use crate::field_crate::{FieldValues, Wanted};
 use crate::grains::Grains;
 use crate::setup::FieldStageSetup;
@@ -133,9 +134,9 @@ impl FieldStage {
         FieldState {
             choice: self.source.field.choice().clone(),
             fallback: self.source.fallback(),
-            has_solver: self.source.field.has_solver(),
+            has_solver: self.source.field.far_solver().is_some(),
             solver_iterations: self.solver_iterations,
-            far_potential: self.source.field.far_potential().to_vec(),
+            far: self.source.far_state(),
             forecast: self.forecast.clone(),
             energy: self.energy,
             control: self.control,
@@ -186,11 +187,17 @@ impl FieldStage {
     ) -> Result<(), DemError> {
         self.members.collect(&self.member, domain, grains, particles);
         self.source.evaluate(domain, &self.settings, &self.members, &mut self.values)?;
-        self.solver_iterations = self.source.field.solver_iterations();
+        let far = self.source.field.far_solver();
+        self.solver_iterations = far.map_or(0, FarSolver::iterations);
+        let missed = far.map_or(0.0, FarSolver::missed);
         let scale = self.scale(domain);
         let age = self.control.age;
         self.energy.renew(self.energy_of(&self.members, domain), age);
-        let check = self.forecast.renew(&self.members, &self.values.e, age, scale);
+        let mut check = self.forecast.renew(&self.members, &self.values.e, age, scale);
+        if let Some(check) = check.as_mut().filter(|_| missed > 0.0) {
+            // A solver that works beside the steps has its own forecast.
+            check.rms = check.rms.hypot(missed / scale);
+        }
         self.watch_plasma(grains, step);
         let FieldSettings { coupling_interval, tolerance, .. } = self.settings;
         self.control.evaluated(check, coupling_interval, tolerance, self.plasma_steps);
@@ -296,10 +303,10 @@ impl FieldStage {
         particles: &Particles,
     ) -> Result<f64, DemError> {
         self.onlookers.collect(&self.member, domain, grains, particles);
-        let before = self.source.field.far_potential().to_vec();
-        self.source.evaluate(domain, &self.settings, &self.onlookers, &mut self.values)?;
-        // A field solver goes on from where the motion left it.
-        self.source.field.start_from(&before);
+        let looked = self.source.evaluate_aside(domain, &self.settings, &self.onlookers, &mut self.values)?;
+        if !looked {
+            return Ok(self.forecast_energy());
+        }
         Ok(self.energy_of(&self.onlookers, domain))
     }
 

@@ -3,6 +3,7 @@
 use super::WANTED;
 use super::members::Members;
 use crate::error::DemError;
+use crate::field_crate::far::{FarSolver, FarState};
 use crate::field_crate::{Choice, ElectricField, FieldError, FieldValues};
 use crate::setup::FieldStageSetup;
 use crate::state::FieldState;
@@ -43,7 +44,9 @@ impl Source {
         };
         let fallback = match state {
             Some(state) => {
-                field.start_from(&state.far_potential);
+                if let Some(solver) = field.far_solver_mut() {
+                    solver.start_from(&state.far)?;
+                }
                 state.fallback.clone()
             }
             None if fallback && has_solver => {
@@ -73,9 +76,34 @@ impl Source {
         Ok(self.field.evaluate(position, charge, WANTED, values)?)
     }
 
+    /// Evaluates E for onlookers: a field solver goes on from where the motion left it. `false` where it works beside
+    /// the steps and would be disturbed.
+    pub(super) fn evaluate_aside(
+        &mut self,
+        domain: &Domain,
+        settings: &FieldSettings,
+        members: &Members,
+        values: &mut FieldValues,
+    ) -> Result<bool, DemError> {
+        if self.field.far_solver().is_some_and(FarSolver::overlaps) {
+            return Ok(false);
+        }
+        let before = self.far_state();
+        self.evaluate(domain, settings, members, values)?;
+        if let Some(solver) = self.field.far_solver_mut() {
+            solver.start_from(&before)?;
+        }
+        Ok(true)
+    }
+
     /// Whether another process may be lost and the run with it.
     pub(super) fn may_be_lost(&self) -> bool {
-        self.field.has_solver() && self.fallback.is_none()
+        self.field.far_solver().is_some() && self.fallback.is_none()
+    }
+
+    /// State of a field solver.
+    pub(super) fn far_state(&self) -> FarState {
+        self.field.far_solver().map_or_else(FarState::default, FarSolver::state)
     }
 
     /// The internal grid's parameters, for a state.

@@ -12,7 +12,7 @@ use super::mesh::{Condition, FarMesh};
 use super::walls::Walls;
 use super::{FarField, FarRequest, FarSolver, FarSource, check_net_charge};
 use crate::FieldError;
-use amberfield_core::{Axis, Boundary, Domain};
+use amberfield_core::{Axis, Boundary, Domain, FieldSettings};
 use amberfield_laws::kaiser_bessel_cloud::Cloud;
 use nalgebra::Vector3;
 use rayon::prelude::*;
@@ -41,7 +41,7 @@ pub(crate) struct FarLevel {
 
 impl FarLevel {
     /// `permittivity` of the medium [F/m].
-    pub(crate) fn new(solver: Box<dyn FarField>, permittivity: f64, neutralising_background: bool) -> Self {
+    pub(crate) fn new(solver: Box<dyn FarField>, permittivity: f64, settings: &FieldSettings) -> Self {
         let mesh = solver.mesh();
         let size = mesh.largest_cell();
         let depth = DEPTH_OF_CELL * size;
@@ -51,12 +51,12 @@ impl FarLevel {
             fits: LocalFits::new(mesh),
             cloud: Cloud { radius: RADIUS_OF_CELL * size, shape: SHAPE },
             permittivity,
-            neutralising_background,
+            neutralising_background: settings.neutralising_background,
             image_positions: Vec::new(),
             image_charges: Vec::new(),
             boundary: Vec::new(),
             cells: Vec::new(),
-            solver: FarSolver::new(solver),
+            solver: FarSolver::new(solver, settings.overlap),
         }
     }
 
@@ -140,7 +140,7 @@ impl FarLevel {
         };
         self.solver.solve(&request)?;
         let mesh = self.solver.mesh();
-        self.fits.fit(mesh, &self.solver.values.potential, &self.boundary);
+        self.fits.fit(mesh, self.solver.potential(), &self.boundary);
         Ok(())
     }
 

@@ -13,7 +13,7 @@ mod walls;
 pub use density::SmoothDensity;
 pub(crate) use level::FarLevel;
 pub use mesh::{BoundaryFace, CellFace, Condition, FarMesh, FarMeshParts, Neighbour};
-pub use solver::FarSolver;
+pub use solver::{FarSolver, FarState};
 
 use crate::FieldError;
 use crate::inputs::NET_CHARGE_ROUND_OFF;
@@ -135,4 +135,22 @@ pub trait FarField: fmt::Debug + Send + Sync {
     /// # Errors
     /// A peer that is lost, a request that does not fit the mesh, an answer that makes no sense.
     fn solve(&mut self, request: &FarRequest<'_>, values: &mut FarValues) -> Result<(), FieldError>;
+
+    /// Asks without waiting for the answer, which [`Self::take`] gives.
+    ///
+    /// # Errors
+    /// As [`Self::solve`]; whoever works in this process cannot work beside it.
+    fn ask(&mut self, _request: &FarRequest<'_>) -> Result<(), FieldError> {
+        Err(FieldError::Settings(
+            "electric_field.overlap needs a field solver that is not waited for when it is lost; set it to false, or solver.on_solver_loss to \"stop\"".into(),
+        ))
+    }
+
+    /// Waits for the answer to what was asked last.
+    ///
+    /// # Errors
+    /// As [`Self::solve`].
+    fn take(&mut self, _values: &mut FarValues) -> Result<(), FieldError> {
+        Err(FieldError::Settings("nothing was asked".into()))
+    }
 }

@@ -1,7 +1,13 @@
 //! Somebody who solves for the far field, what was found last, and where the next solve starts.
+//!
+//! With overlap the solver works while the grains move on: an evaluation takes the answer to what the one before asked, asks for
+//! its own, and goes on with a forecast, the potential on the line through the last two answers. The far field is smooth in
+//! space and slow in time; what the forecast misses is measured when the answer comes.
 
-use super::{FarField, FarMesh, FarRequest, FarValues};
+use super::{FarField, FarMesh, FarRequest, FarSource, FarValues};
 use crate::FieldError;
+use nalgebra::Vector3;
+use serde::{Deserialize, Serialize};
 
 /// A far field with its state.
 #[derive(Debug)]
@@ -13,11 +19,112 @@ pub struct FarSolver {
     guess: Vec<f64>,
     /// Time of the next solve [s].
     time_s: f64,
+    /// `None`: every evaluation waits for its own answer.
+    overlap: Option<Box<Overlap>>,
+}
+
+/// State of a far field: what a run needs to go on bit for bit.
+#[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
+pub struct FarState {
+    /// Potential at the cells' centres [V]; empty without a field solver.
+    potential: Vec<f64>,
+    /// E there [V/m], with overlap.
+    e: Vec<Vector3<f64>>,
+    overlap: Option<Box<Overlap>>,
+}
+
+impl FarState {
+    /// Potential at the cells' centres of the last answer [V]; empty without a field solver.
+    #[must_use]
+    pub fn potential(&self) -> &[f64] {
+        &self.potential
+    }
+}
+
+/// What is known while the solver works.
+#[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
+struct Overlap {
+    /// Time of the last answer [s].
+    latest_s: f64,
+    /// The answer before, and its time [s].
+    earlier: Option<(f64, Answer)>,
+    /// What is forecast now.
+    forecast: Answer,
+    /// RMS over the cells of what the last forecast missed of E [V/m].
+    missed: f64,
+    /// What is being solved.
+    pending: Option<Asked>,
+    /// Whether anything was solved yet.
+    begun: bool,
+}
+
+/// Potential [V] and E [V/m] at the cells' centres.
+#[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
+struct Answer {
+    potential: Vec<f64>,
+    e: Vec<Vector3<f64>>,
+}
+
+impl Answer {
+    fn of(values: &FarValues) -> Self {
+        Self { potential: values.potential.clone(), e: values.e.clone() }
+    }
+}
+
+/// A request that may have to be made again.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+struct Asked {
+    cloud: Option<(f64, f64)>,
+    positions: Vec<Vector3<f64>>,
+    charges: Vec<f64>,
+    image_positions: Vec<Vector3<f64>>,
+    image_charges: Vec<f64>,
+    boundary: Vec<f64>,
+    permittivity: f64,
+    neutralising_background: bool,
+    time_s: f64,
+}
+
+impl Asked {
+    fn of(request: &FarRequest<'_>) -> Self {
+        Self {
+            cloud: match request.source {
+                FarSource::Clouds { radius_m, shape } => Some((radius_m, shape)),
+                FarSource::NearestCell => None,
+            },
+            positions: request.positions.to_vec(),
+            charges: request.charges.to_vec(),
+            image_positions: request.image_positions.to_vec(),
+            image_charges: request.image_charges.to_vec(),
+            boundary: request.boundary.to_vec(),
+            permittivity: request.permittivity,
+            neutralising_background: request.neutralising_background,
+            time_s: request.time_s,
+        }
+    }
+
+    fn request<'a>(&'a self, guess: &'a [f64]) -> FarRequest<'a> {
+        FarRequest {
+            source: self
+                .cloud
+                .map_or(FarSource::NearestCell, |(radius_m, shape)| FarSource::Clouds { radius_m, shape }),
+            positions: &self.positions,
+            charges: &self.charges,
+            image_positions: &self.image_positions,
+            image_charges: &self.image_charges,
+            boundary: &self.boundary,
+            permittivity: self.permittivity,
+            guess,
+            neutralising_background: self.neutralising_background,
+            time_s: self.time_s,
+        }
+    }
 }
 
 impl FarSolver {
-    pub(crate) fn new(solver: Box<dyn FarField>) -> Self {
-        Self { solver, values: FarValues::default(), guess: Vec::new(), time_s: 0.0 }
+    pub(crate) fn new(solver: Box<dyn FarField>, overlap: bool) -> Self {
+        let overlap = overlap.then(Box::default);
+        Self { solver, values: FarValues::default(), guess: Vec::new(), time_s: 0.0, overlap }
     }
 
     pub(crate) fn mesh(&self) -> &FarMesh {
@@ -27,15 +134,47 @@ impl FarSolver {
     /// Solves, from where it is to start; the request's own guess and time do not count.
     pub(crate) fn solve(&mut self, request: &FarRequest<'_>) -> Result<(), FieldError> {
         let request = FarRequest { guess: &self.guess, time_s: self.time_s, ..*request };
-        self.solver.solve(&request, &mut self.values)?;
+        match &mut self.overlap {
+            Some(overlap) if overlap.begun => {
+                if let Some(asked) = overlap.pending.take() {
+                    let before = Answer::of(&self.values);
+                    if let Err(error) = self.solver.take(&mut self.values) {
+                        // Nothing has happened: a state of now asks again.
+                        (self.values.potential, self.values.e) = (before.potential, before.e);
+                        overlap.pending = Some(asked);
+                        return Err(error);
+                    }
+                    overlap.missed = rms_difference(&self.values.e, &overlap.forecast.e);
+                    overlap.earlier = Some((overlap.latest_s, before));
+                    overlap.latest_s = asked.time_s;
+                }
+                self.solver.ask(&request)?;
+                overlap.pending = Some(Asked::of(&request));
+                overlap.foresee(&self.values, self.time_s);
+            }
+            Some(overlap) => {
+                self.solver.solve(&request, &mut self.values)?;
+                overlap.begun = true;
+                overlap.latest_s = self.time_s;
+                overlap.forecast = Answer::of(&self.values);
+            }
+            None => self.solver.solve(&request, &mut self.values)?,
+        }
         self.guess.clear();
         Ok(())
     }
 
-    /// What the next solve starts from at the cells' centres [V]: the potential of the last one, unless told otherwise.
+    /// The potential at the cells' centres that counts now [V]: found, or forecast.
+    pub(crate) fn potential(&self) -> &[f64] {
+        self.overlap.as_ref().map_or(&self.values.potential, |overlap| &overlap.forecast.potential)
+    }
+
+    /// State for a checkpoint: with what the next solve starts.
     #[must_use]
-    pub fn potential(&self) -> &[f64] {
-        if self.guess.is_empty() { &self.values.potential } else { &self.guess }
+    pub fn state(&self) -> FarState {
+        let potential = if self.guess.is_empty() { &self.values.potential } else { &self.guess };
+        let e = self.overlap.as_ref().map_or_else(Vec::new, |_| self.values.e.clone());
+        FarState { potential: potential.clone(), e, overlap: self.overlap.clone() }
     }
 
     /// Iterations of the last solve.
@@ -50,15 +189,65 @@ impl FarSolver {
         self.values.seconds
     }
 
-    /// Starts the next solve from a potential of an earlier run [V].
-    pub fn start_from(&mut self, potential: &[f64]) {
-        if potential.len() == self.mesh().cell_count() {
-            self.guess = potential.to_vec();
+    /// RMS over the cells of what the last forecast missed of E [V/m]; 0 without overlap.
+    #[must_use]
+    pub fn missed(&self) -> f64 {
+        self.overlap.as_ref().map_or(0.0, |overlap| overlap.missed)
+    }
+
+    /// Whether the solver works beside the steps.
+    #[must_use]
+    pub fn overlaps(&self) -> bool {
+        self.overlap.is_some()
+    }
+
+    /// Goes on from a state of an earlier run.
+    ///
+    /// # Errors
+    /// What was being solved then cannot be asked for again.
+    pub fn start_from(&mut self, state: &FarState) -> Result<(), FieldError> {
+        if state.potential.len() != self.mesh().cell_count() {
+            return Ok(());
         }
+        self.guess.clone_from(&state.potential);
+        if let (Some(overlap), Some(known)) = (&mut self.overlap, &state.overlap) {
+            overlap.clone_from(known);
+            if overlap.begun {
+                self.values.potential = std::mem::take(&mut self.guess);
+                self.values.e.clone_from(&state.e);
+            }
+            if let Some(asked) = &overlap.pending {
+                self.solver.ask(&asked.request(&self.values.potential))?;
+            }
+        }
+        Ok(())
     }
 
     /// Says at what time the next solve is [s].
     pub fn at_time(&mut self, time_s: f64) {
         self.time_s = time_s;
     }
+}
+
+impl Overlap {
+    /// Forecasts the answer at a time [s] from the last one and the one before.
+    fn foresee(&mut self, latest: &FarValues, time_s: f64) {
+        self.forecast = Answer::of(latest);
+        let Some((earlier_s, earlier)) = &self.earlier else { return };
+        let interval = self.latest_s - earlier_s;
+        if interval > 0.0 {
+            let ahead = (time_s - self.latest_s) / interval;
+            for (potential, before) in self.forecast.potential.iter_mut().zip(&earlier.potential) {
+                *potential += ahead * (*potential - before);
+            }
+            for (e, before) in self.forecast.e.iter_mut().zip(&earlier.e) {
+                *e += ahead * (*e - before);
+            }
+        }
+    }
+}
+
+fn rms_difference(a: &[Vector3<f64>], b: &[Vector3<f64>]) -> f64 {
+    let squares: f64 = a.iter().zip(b).map(|(a, b)| (a - b).norm_squared()).sum();
+    (squares / a.len().max(1) as f64).sqrt()
 }

@@ -91,7 +91,7 @@ pub(super) struct SolverCells {
 impl SolverCells {
     pub(super) fn new(solver: Box<dyn FarField>, neutralising_background: bool) -> Self {
         let boundary = solver.mesh().boundary().iter().map(|face| face.condition.value()).collect();
-        Self { solver: FarSolver::new(solver), neutralising_background, places: Vec::new(), boundary }
+        Self { solver: FarSolver::new(solver, false), neutralising_background, places: Vec::new(), boundary }
     }
 }
 

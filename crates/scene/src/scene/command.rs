@@ -126,7 +126,7 @@ impl ElectricFieldSettings {
                 CouplingInterval::Steps(steps) => steps.to_string(),
             },
         );
-        line("overlap", self.overlap.to_string());
+        line("overlap", self.field.overlap.to_string());
         line("tuning", quoted(if field.tuning == Tuning::Timed { "timed" } else { "model" }));
         line("far_tolerance", self.far_tolerance.map_or_else(auto, |tolerance| format!("{tolerance:?}")));
         line("neutralising_background", field.neutralising_background.to_string());
@@ -146,7 +146,7 @@ impl ElectricFieldSettings {
         for (key, differs) in [
             ("external_field_V_m", field.external_field_v_m != Vector3::zeros()),
             ("coupling_interval", field.coupling_interval != CouplingInterval::Auto),
-            ("overlap", self.overlap),
+            ("overlap", self.field.overlap),
             ("tuning", field.tuning != plain.tuning),
             ("far_tolerance", self.far_tolerance.is_some()),
             ("neutralising_background", field.neutralising_background),

@@ -85,8 +85,6 @@ pub struct ElectricFieldSettings {
     pub limit_field_force: bool,
     /// Dimensionless factor of the bound, in [0, 1].
     pub field_force_limit_factor: f64,
-    /// Whether the far solve runs beside the steps.
-    pub overlap: bool,
     /// Relative tolerance of the linear solver; `None`: automatic.
     pub far_tolerance: Option<f64>,
 }
@@ -109,7 +107,6 @@ impl Default for ElectricFieldSettings {
             charge_transfer_cutoff_m: CHARGE_TRANSFER_CUTOFF_M,
             limit_field_force: false,
             field_force_limit_factor: FIELD_FORCE_LIMIT_FACTOR,
-            overlap: false,
             far_tolerance: None,
         }
     }

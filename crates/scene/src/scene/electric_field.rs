@@ -54,7 +54,7 @@ fn read_keys(table: &Table<'_>) -> Result<ElectricFieldSettings, SceneError> {
     field.tuning = table.word("tuning", &tunings)?.unwrap_or_default();
     field.neutralising_background = table.boolean("neutralising_background")?.unwrap_or(false);
     field.grid_cells = read_grid(table)?;
-    read.overlap = table.boolean("overlap")?.unwrap_or(false);
+    read.field.overlap = table.boolean("overlap")?.unwrap_or(false);
     read.far_tolerance = table.number_or_auto("far_tolerance", TOLERANCE)?.flatten();
     let needs_cutoff = matches!(read.field.method, Method::Kolehmainen | Method::Cutoff);
     if needs_cutoff && read.field.cutoff_radius_m.is_none() {

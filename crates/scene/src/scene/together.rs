@@ -169,6 +169,9 @@ fn warn(scene: &mut Scene) {
     if scene.solver.is_none() && far_tolerance {
         scene.warnings.push("electric_field.far_tolerance has no effect without [solver]: the internal grid is solved exactly".to_owned());
     }
+    if scene.solver.is_none() && scene.electric_field.as_ref().is_some_and(|field| field.field.overlap) {
+        scene.warnings.push("electric_field.overlap has no effect without [solver]: the internal grid has nothing to work beside".to_owned());
+    }
     if method.is_some() && scene.solver.is_none() {
         for wall in &scene.walls {
             if matches!(wall.shape, WallShape::Mesh(_)) && wall.charging == WallCharging::Grounded {

@@ -74,7 +74,7 @@ fn settings() -> impl Strategy<Value = ElectricFieldSettings> {
             settings.field.coupling_interval = steps.map_or(CouplingInterval::Auto, CouplingInterval::Steps);
             settings.field.neutralising_background = background;
             settings.field.tuning = if model { Tuning::Model } else { Tuning::Timed };
-            settings.overlap = overlap;
+            settings.field.overlap = overlap;
             settings.far_tolerance = far;
         }
         settings
