@@ -145,7 +145,7 @@ enum AmberfieldStatus amberfield_field_send_mesh(struct AmberfieldField *field,
 // As amberfield_field_error; `request` may be written.
 enum AmberfieldStatus amberfield_field_wait(struct AmberfieldField *field, struct AmberfieldRequest *request);
 
-// Charge density [C/m^3] at this rank's cell centres; finds every charge's cell on the way.
+// Charge density [C/m^3] at this rank's cell centres; finds the cell of every charge that is spread over its cell.
 //
 // # Safety
 // As amberfield_field_error; `density` has room for `cells` numbers, this rank's cells.

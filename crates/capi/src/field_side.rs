@@ -176,7 +176,7 @@ pub unsafe extern "C" fn amberfield_field_wait(
     }
 }
 
-/// Charge density [C/m^3] at this rank's cell centres; finds every charge's cell on the way.
+/// Charge density [C/m^3] at this rank's cell centres; finds the cell of every charge that is spread over its cell.
 ///
 /// # Safety
 /// As amberfield_field_error; `density` has room for `cells` numbers, this rank's cells.

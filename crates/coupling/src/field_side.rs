@@ -147,17 +147,20 @@ impl FieldSide {
         all.get(cells).map(Some).ok_or_else(error)
     }
 
-    /// Density [C/m³] at this rank's cell centres of what was asked for, and each charge's cell.
+    /// Density [C/m³] at this rank's cell centres of what was asked for; of charges that are spread over their cells, each one's cell.
     ///
     /// # Errors
     /// Charges that are not finite.
     pub fn density(&mut self, density: &mut [f64]) -> Result<(), CouplingError> {
         let numbers = self.section::<f64>(Section::Request)?;
         let cloud = [numbers[1], numbers[2]];
-        self.map(density)?;
+        self.check_charges()?;
         if cloud[0] == 0.0 {
-            return Ok(());
+            return self.map(density);
         }
+        // Clouds belong to no cell, and the DEM side knows where its grains are.
+        self.cells.clear();
+        (self.charge, self.outside) = (0.0, 0);
         let mesh = self.mesh.as_ref().ok_or_else(no_mesh)?;
         if self.density.as_ref().is_none_or(|(known, _)| *known != cloud) {
             let centres = mesh.centres();
@@ -187,6 +190,23 @@ impl FieldSide {
         Ok(())
     }
 
+    /// Refuses charges and places that are no numbers.
+    fn check_charges(&self) -> Result<(), CouplingError> {
+        for (places, charges) in
+            [(Section::Positions, Section::Charges), (Section::ImagePositions, Section::ImageCharges)]
+        {
+            let places = self.section::<[f64; 3]>(places)?;
+            let charges = self.section::<f64>(charges)?;
+            let is_number = |(place, charge): (&[f64; 3], &f64)| {
+                charge.is_finite() && place.iter().all(|x| x.is_finite())
+            };
+            if let Some(index) = places.iter().zip(charges).position(|pair| !is_number(pair)) {
+                return Err(CouplingError::Mesh(amberfield_field::FieldError::NotFinite { index }));
+            }
+        }
+        Ok(())
+    }
+
     /// Finds each charge's cell and adds up the cells' charge over their volumes.
     fn map(&mut self, density: &mut [f64]) -> Result<(), CouplingError> {
         let message = self.asked.as_ref().ok_or_else(no_request)?;
@@ -200,9 +220,6 @@ impl FieldSide {
         density.fill(0.0);
         for (index, (place, &charge)) in places.iter().zip(charges).enumerate() {
             let place = Vector3::from(*place);
-            if !(charge.is_finite() && place.iter().all(|x| x.is_finite())) {
-                return Err(CouplingError::Mesh(amberfield_field::FieldError::NotFinite { index }));
-            }
             let last = (self.last_cells[index] != u32::MAX).then_some(self.last_cells[index]);
             let (cell, inside) = mesh.locate(&place, last);
             self.last_cells[index] = cell;

@@ -70,7 +70,7 @@ pub enum Section {
     Potential = 8,
     /// E at the cells' centres [V/m].
     Field = 9,
-    /// Cell of each charge (`u64`); `u64::MAX` where it is another rank's.
+    /// Cell of each charge (`u64`), `u64::MAX` where it is another rank's; empty unless the source is by cell.
     Cells = 10,
     /// Numbers of an answer: charge in the cells [C], charges outside the mesh, iterations, residual, time of the
     /// linear solver [s].

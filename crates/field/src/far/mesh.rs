@@ -98,6 +98,8 @@ pub struct FarMeshParts {
 #[derive(Clone, Debug)]
 pub struct FarMesh {
     parts: FarMeshParts,
+    /// Cube root of each cell's volume [m].
+    sizes: Vec<f64>,
     bins: Bins,
 }
 
@@ -108,7 +110,8 @@ impl FarMesh {
     /// The first part that makes no sense.
     pub fn new(parts: FarMeshParts) -> Result<Self, FieldError> {
         check(&parts)?;
-        let mut mesh = Self { bins: Bins::new(&parts), parts };
+        let sizes = parts.volumes.iter().map(|volume| volume.cbrt()).collect();
+        let mut mesh = Self { bins: Bins::new(&parts), sizes, parts };
         mesh.bins.fill(&mesh.parts);
         Ok(mesh)
     }
@@ -171,7 +174,7 @@ impl FarMesh {
     /// Largest cell size, the cube root of the volume [m].
     #[must_use]
     pub fn largest_cell(&self) -> f64 {
-        self.volumes().iter().fold(0.0_f64, |largest, volume| largest.max(volume.cbrt()))
+        self.sizes.iter().fold(0.0, |largest: f64, size| largest.max(*size))
     }
 
     /// The cell that holds a point of the domain [m], and whether the point is in it (a point beyond the last face is
@@ -188,7 +191,7 @@ impl FarMesh {
     /// beyond a faceted wall belongs to that wall's cell.
     pub(crate) fn check_inside(&self, positions: &[Vector3<f64>], cells: &[u32]) -> Result<(), FieldError> {
         let is_outside = |position: &Vector3<f64>, cell: u32| {
-            let most = MOST_BEYOND * self.parts.volumes[cell as usize].cbrt();
+            let most = MOST_BEYOND * self.sizes[cell as usize];
             let at_end = |face: &&CellFace| matches!(face.neighbour, Neighbour::Boundary(_));
             let mut ends = self.faces_of(cell as usize).iter().filter(at_end);
             ends.any(|face| face.normal.dot(position) - face.offset > most)
@@ -207,7 +210,7 @@ impl FarMesh {
     fn walk(&self, point: &Vector3<f64>, from: u32) -> (u32, bool) {
         let mut cell = from;
         for _ in 0..LONGEST_WALK {
-            let size = self.parts.volumes[cell as usize].cbrt();
+            let size = self.sizes[cell as usize];
             // Through the farthest face that leads on; a walk ends at the mesh's end only where no other face is crossed.
             let (mut next, mut farthest, mut outside) = (None, ON_FACE * size, false);
             for face in self.faces_of(cell as usize) {
