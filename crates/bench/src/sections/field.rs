@@ -154,6 +154,9 @@ pub(crate) fn ours(cloud: &Cloud, exact: &[Vector3<f64>], tolerance: f64) -> Res
     })
 }
 
+/// Grains from which on the peer runs with the settings that were best for a tenth of them: pppm takes minutes to set up.
+const VERY_MANY: usize = 1_000_000;
+
 /// The peer's fastest settings whose error is at most the tolerance.
 fn peer(
     context: &Context,
@@ -166,16 +169,17 @@ fn peer(
     let Some(peers) = &context.peers else { return Ok(None) };
     let grains = cloud.position.len();
     let file = peers.file("cloud.bin", cloud.numbers(exact))?;
-    // Many grains: only around what was best for fewer of them.
+    // Many grains: only around what was best for fewer of them; very many: just that.
     let best = known.iter().rfind(|row| {
         row.program == PEER
             && row.tolerance == tolerance
             && row.fraction == fraction
             && row.grains * 10 == grains
     });
+    let around: &[f64] = if grains < VERY_MANY { &[0.85, 1.0, 1.2] } else { &[1.0] };
     let (cutoffs, orders) = match best.and_then(|row| Setting::read(&row.settings)) {
         Some(best) => (
-            [0.85, 1.0, 1.2].map(|factor| (factor * best.cutoff).to_string()).join(","),
+            around.iter().map(|factor| (factor * best.cutoff).to_string()).collect::<Vec<_>>().join(","),
             best.order.to_string(),
         ),
         None if tolerance > 2e-3 => ("1.5,2,2.5,3,4".to_owned(), "4,5".to_owned()),
