@@ -354,3 +354,35 @@ fn a_solver_beside_the_steps_cannot_be_waited_for() {
     assert_eq!(answer.code, Some(2), "{}", answer.stderr);
     assert!(answer.stderr.contains("electric_field.overlap = true needs"), "{}", answer.stderr);
 }
+
+#[test]
+fn a_solver_that_comes_back_with_another_mesh_is_refused() {
+    let scene = FoamBox::grounded();
+    let text = scene.bench.read("scene.toml") + "on_solver_loss = 'wait'\n[output]\nhistory_every_s = 1e-5\n";
+    let text = text.replace("end_s = 1e-3", "end_s = 1e3").replace("1e-12", "1e-15").replace("-9.81", "0");
+    scene.bench.write("scene.toml", text);
+    let mut run = scene
+        .bench
+        .command(&[
+            "run",
+            "scene.toml",
+            "--out",
+            "out",
+            "--no-progress",
+            "--set",
+            "electric_field.coupling_interval=5",
+        ])
+        .stdout(Stdio::null())
+        .stderr(Stdio::piped())
+        .spawn()
+        .unwrap();
+    scene.wait_until_it_steps(&mut run);
+    let mesh = scene.bench.read("foam/system/blockMeshDict");
+    scene.bench.write("foam/system/blockMeshDict", mesh.replace("(12 12 10)", "(10 12 10)"));
+    std::fs::remove_dir_all(scene.bench.path("foam/constant")).unwrap();
+    kill_process(scene.solver(), Signal::KILL).unwrap();
+    let output = run.wait_with_output().unwrap();
+    let said = String::from_utf8_lossy(&output.stderr).into_owned();
+    assert_eq!(output.status.code(), Some(3), "{said}");
+    assert!(said.contains("the field solver came back with another mesh") && said.contains("1440"), "{said}");
+}
