@@ -5,7 +5,7 @@ use crate::beds::{self, Cloud};
 use crate::page::{Table, figure, verdict};
 use crate::store::Store;
 use crate::timing::{median, median_seconds};
-use amberfield_core::{Boundary, CouplingInterval, Domain, FieldSettings, Tuning, Vector3};
+use amberfield_core::{Boundary, CouplingInterval, Domain, FieldSettings, Method, Tuning, Vector3};
 use amberfield_coupling::{
     Announced, BoxSolver, FieldSide, MeshArrays, Reply, SolverSettings, solver_program,
 };
@@ -66,7 +66,9 @@ pub(crate) fn measure(context: &Context, root: &Path) -> Result<()> {
     add("the same bytes through a Unix socket", socket(bytes)?);
 
     if solver_program().is_file() {
-        over_openfoam(&cloud, (edge, cells_along), root, &mut add)?;
+        for path in &PATHS {
+            over_openfoam(&cloud, (edge, cells_along), path, root, &mut add)?;
+        }
         for (overlap, what) in [(false, "step, solver waited for"), (true, "step, solver beside")] {
             add(what, step(grains, cells_along, overlap, root)?);
         }
@@ -184,18 +186,43 @@ fn socket([out, back]: [usize; 2]) -> Result<f64> {
     Ok(seconds)
 }
 
+/// A way to have the far field solved: what its rows are called, method, ranks.
+struct SolvedBy {
+    suffix: &'static str,
+    method: Method,
+    ranks: u32,
+}
+
+/// The default, and the others.
+const PATHS: [SolvedBy; 3] = [
+    SolvedBy { suffix: "", method: Method::P3m, ranks: 1 },
+    SolvedBy { suffix: ", 2 ranks", method: Method::P3m, ranks: 2 },
+    SolvedBy { suffix: ", kolehmainen", method: Method::Kolehmainen, ranks: 1 },
+];
+/// Cut-off of kolehmainen over the cell size.
+const HYBRID_CUTOFF: f64 = 1.8;
+
 /// Whole evaluations over OpenFOAM: all of it, its far-field step, and the bare linear solve in that.
 fn over_openfoam(
     cloud: &Cloud,
     (edge, cells_along): (f64, usize),
+    path: &SolvedBy,
     root: &Path,
     add: &mut impl FnMut(&str, f64),
 ) -> Result<()> {
     const EVALUATIONS: usize = 9;
     let case = root.join("target/bench-case");
     provide_case(root, &case, edge, cells_along, cloud.domain.min())?;
-    let remote = Announced::new(settings_of(&case, true))?.connect()?;
-    let field = FieldSettings { tolerance: 1e-2, tuning: Tuning::Model, ..FieldSettings::default() };
+    let remote =
+        Announced::new(SolverSettings { ranks: path.ranks, ..settings_of(&case, true) })?.connect()?;
+    let hybrid = path.method == Method::Kolehmainen;
+    let field = FieldSettings {
+        method: path.method,
+        tolerance: 1e-2,
+        cutoff_radius_m: hybrid.then_some(HYBRID_CUTOFF * edge / cells_along as f64),
+        tuning: Tuning::Model,
+        ..FieldSettings::default()
+    };
     let mut field = ElectricField::over_mesh(Box::new(remote), &field, &cloud.position, &cloud.charge)?;
     let mut out = FieldValues::default();
     let mut samples: [Vec<f64>; 3] = Default::default();
@@ -208,7 +235,7 @@ fn over_openfoam(
         let of = |name: &str| seconds.iter().filter(|(stage, _)| *stage == name).map(|(_, s)| s).sum::<f64>();
         let parts = [
             seconds.iter().map(|(_, s)| s).sum(),
-            of("far"),
+            of(if hybrid { "mesh" } else { "far" }),
             field.far_solver().map_or(0.0, FarSolver::seconds),
         ];
         if evaluation > 0 {
@@ -218,7 +245,7 @@ fn over_openfoam(
     for (what, samples) in
         ["field evaluation", "far-field step", "bare Poisson solve"].iter().zip(&mut samples)
     {
-        add(what, median(samples));
+        add(&format!("{what}{}", path.suffix), median(samples));
     }
     Ok(())
 }
@@ -311,7 +338,7 @@ pub(crate) fn report(store: &Store) -> Result<Option<String>> {
          * A Unix socket takes {} times as long for the same bytes.\n\
          * With `overlap` a step of 100 000 grains at a fraction of 0.1, the field anew every ten steps, takes {} of the time that it takes when the solver is waited for.\n\
          * Mapping: {} million grains a second on a core, goal {:.0}: {}.\n\
-         * The far-field step (density, solve, gradient, both ways) takes {} times the bare solve, goal {STEP}: {}.\n",
+         * The far-field step (density, solve, gradient, both ways) takes {} times the bare solve, goal {STEP}: {}; on two ranks {} times, with kolehmainen {} times.\n",
         rows[0].grains,
         rows[0].cells,
         100.0 * GOALS[0],
@@ -327,5 +354,7 @@ pub(crate) fn report(store: &Store) -> Result<Option<String>> {
         verdict(rate.map(|rate| rate >= MAPPED)),
         figure(step, 2),
         verdict(step.map(|step| step <= STEP)),
+        figure(over("far-field step, 2 ranks", "bare Poisson solve, 2 ranks"), 2),
+        figure(over("far-field step, kolehmainen", "bare Poisson solve, kolehmainen"), 2),
     )))
 }
