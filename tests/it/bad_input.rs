@@ -31,7 +31,6 @@ fn bad_values_name_file_line_key_and_value() {
 
 #[test]
 fn what_is_not_built_is_refused_by_name() {
-    refused("tuning = \"model\"", "overlap = true", &["this version has no far solve beside the steps"]);
     let transfer = "enable_collision_charge_transfer = true";
     refused("tuning = \"model\"", transfer, &["materials[0].work_function_eV"]);
     refused(
@@ -39,6 +38,15 @@ fn what_is_not_built_is_refused_by_name() {
         &format!("work_function_eV = 4.5\n[gas]\n# {transfer}"),
         &["this version has no coupled gas flow"],
     );
+}
+
+#[test]
+fn what_has_no_effect_is_said() {
+    let bench = Bench::new(&CHARGED.replace("tuning = \"model\"", "tuning = \"model\"\noverlap = true"));
+    let answer = bench.run(&["explain", "scene.toml"]);
+    assert_eq!(answer.code, Some(0), "{}", answer.stderr);
+    let said = "electric_field.overlap has no effect without [solver]";
+    assert!(answer.stdout.contains(said), "{}", answer.stdout);
 }
 
 #[test]
