@@ -195,9 +195,9 @@ mod tests {
         header.section_count = u64::MAX;
         assert!(matches!(error(&header), WireError::Bounds { .. }));
         header.version = PROTOCOL_VERSION + 1;
-        assert!(
-            header.check(7).unwrap_err().to_string().contains("version 2 of the protocol, this program 1")
-        );
+        let (theirs, ours) = (PROTOCOL_VERSION + 1, PROTOCOL_VERSION);
+        let said = format!("version {theirs} of the protocol, this program {ours}");
+        assert!(header.check(7).unwrap_err().to_string().contains(&said));
         let header = Header { kind: 99, version: PROTOCOL_VERSION, ..header };
         assert_eq!((header.check(7), header.check(8).is_err()), (Err(WireError::Kind(99)), true));
     }
