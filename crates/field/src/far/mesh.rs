@@ -10,6 +10,8 @@ use std::fmt::Display;
 const ON_FACE: f64 = 1e-9;
 /// Farthest that a grain's centre may be outside the mesh, over the size of the cell there.
 const MOST_BEYOND: f64 = 0.5;
+/// What the place of a condition is moved from the foot towards its face's centre, over their distance.
+const APART: f64 = 1e-3;
 /// Cells of a walk at most, before the search begins anew.
 const LONGEST_WALK: usize = 10_000;
 /// Cells per bin of the table in which walks begin.
@@ -153,14 +155,16 @@ impl FarMesh {
     }
 
     /// Where a boundary face's condition counts [m]: a slope at the face's centre; a potential at the foot of its cell's centre,
-    /// since finite volumes take the slope along the normal from it.
+    /// since finite volumes take the slope along the normal from it (a hair towards the face's centre, so that two faces of a
+    /// cell in one plane have two places).
     #[must_use]
     pub fn place_of_condition(&self, face: &BoundaryFace) -> Vector3<f64> {
         match face.condition {
             Condition::Slope(_) => face.centre,
             Condition::Potential(_) => {
                 let inside = &self.parts.centres[face.cell as usize];
-                inside + face.normal * face.normal.dot(&(face.centre - inside))
+                let foot = inside + face.normal * face.normal.dot(&(face.centre - inside));
+                foot + APART * (face.centre - foot)
             }
         }
     }

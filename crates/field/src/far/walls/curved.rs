@@ -60,10 +60,9 @@ impl CurvedWall {
         }
     }
 
-    /// The point of the surface over a face's centre.
-    pub(super) fn place(&self, face: usize) -> Vector3<f64> {
-        let facet = &self.facets[face];
-        facet.centre + facet.height * facet.normal
+    /// The point of the surface over a point of a face.
+    pub(super) fn place(&self, face: usize, point: &Vector3<f64>) -> Vector3<f64> {
+        self.facets[face].foot(point).at
     }
 
     /// What it makes of a charge at a point.

@@ -88,7 +88,7 @@ impl Walls {
     /// Walls that mirror charges up to `depth` [m].
     pub(crate) fn new(mesh: &FarMesh, depth: f64) -> Self {
         let boundary = mesh.boundary();
-        let mut places: Vec<_> = boundary.iter().map(|face| face.centre).collect();
+        let mut places: Vec<_> = boundary.iter().map(|face| mesh.place_of_condition(face)).collect();
         let around = neighbours(mesh);
         let mut walls = Vec::new();
         for faces in connected(&around) {
@@ -106,7 +106,7 @@ impl Walls {
                         .collect();
                     let wall = CurvedWall::new(mesh, &faces, &within, depth);
                     for (index, &face) in faces.iter().enumerate() {
-                        places[face as usize] = wall.place(index);
+                        places[face as usize] = wall.place(index, &places[face as usize]);
                     }
                     Shape::Curved(wall)
                 }
