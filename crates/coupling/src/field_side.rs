@@ -71,6 +71,7 @@ impl FieldSide {
     pub fn open(run: &str, rank: u32, ranks: u32) -> Result<Self, CouplingError> {
         let deadline = Instant::now() + OPENING;
         let root = if run.is_empty() { RunRoot::open_waiting(deadline)? } else { RunRoot::open(run)? };
+        root.check_version()?;
         let link = Link::new(&root, SideOf::Field { rank }, ranks, deadline)?;
         Ok(Self {
             link,

@@ -312,3 +312,26 @@ fn until<T, E: std::fmt::Debug>(
 fn said<T, E: std::fmt::Debug>(result: Result<T, E>) -> Result<T, CouplingError> {
     result.map_err(|error| CouplingError::SharedMemory(format!("{error:?}")))
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use amberfield_wire::PROTOCOL_VERSION;
+
+    #[test]
+    fn a_message_of_another_version_is_refused() {
+        let root = RunRoot::create().unwrap();
+        let deadline = Instant::now() + Duration::from_secs(1);
+        let link = |side| Link::new(&root, side, 1, deadline).unwrap();
+        let (dem, mut field) = (link(SideOf::Dem), link(SideOf::Field { rank: 0 }));
+        let version = PROTOCOL_VERSION + 1;
+        let header = Header { version, ..Header::new(MessageKind::Mesh, root.run(), 0) };
+        field.send(&Layout::new(header), 1, |_| Ok(())).unwrap();
+        let refused = dem.receive(0, Duration::from_secs(1), || Ok(())).unwrap_err();
+        let expected = WireError::Version { theirs: version, ours: PROTOCOL_VERSION };
+        assert!(
+            matches!(&refused, CouplingError::Wire { error, .. } if *error == expected),
+            "the version in {refused}"
+        );
+    }
+}

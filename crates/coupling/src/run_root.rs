@@ -1,6 +1,8 @@
 //! The folder of a run in shared memory, and everything else there that bears the run's name.
 
 use crate::CouplingError;
+use crate::link::SideOf;
+use amberfield_wire::{PROTOCOL_VERSION, WireError};
 use rustix::fs::Mode;
 use std::path::{Path, PathBuf};
 use std::time::{Duration, Instant};
@@ -9,6 +11,8 @@ use std::time::{Duration, Instant};
 const SHARED: &str = "/dev/shm";
 /// File of a run that waits for a solver which somebody else starts.
 const INVITATION: &str = "waiting";
+/// File with the version of the protocol that the run's DEM process speaks.
+const PROTOCOL: &str = "protocol";
 /// How often one looks for a run that waits.
 const POLL: Duration = Duration::from_millis(20);
 
@@ -33,7 +37,11 @@ impl RunRoot {
         loop {
             let root = Self { name: name_of(run), run, owned: true };
             match rustix::fs::mkdir(root.path(), Mode::RWXU) {
-                Ok(()) => return Ok(root),
+                Ok(()) => {
+                    let version = std::fs::write(root.path().join(PROTOCOL), PROTOCOL_VERSION.to_string());
+                    version.map_err(|error| no_room(0, &error))?;
+                    return Ok(root);
+                }
                 Err(rustix::io::Errno::EXIST) => run = run.wrapping_add(1),
                 Err(error) => {
                     return Err(CouplingError::SharedMemory(format!(
@@ -87,6 +95,18 @@ impl RunRoot {
                     )));
                 }
             }
+        }
+    }
+
+    /// Refuses a DEM process of another version, before anything of it is read.
+    pub(crate) fn check_version(&self) -> Result<(), CouplingError> {
+        let text = std::fs::read_to_string(self.path().join(PROTOCOL)).unwrap_or_default();
+        match text.trim().parse().unwrap_or(0) {
+            PROTOCOL_VERSION => Ok(()),
+            theirs => Err(CouplingError::Wire {
+                peer: SideOf::Field { rank: 0 }.peer(),
+                error: WireError::Version { theirs, ours: PROTOCOL_VERSION },
+            }),
         }
     }
 

@@ -2,7 +2,10 @@
 //!
 //! SI units. Electric field points away from positive charge. Unit vectors n point from i to j.
 
+pub mod charge_transfer;
+pub mod contact_area;
 pub mod coulomb_friction;
+pub mod dielectric_breakdown;
 pub mod force_limit;
 pub mod hertz_mindlin;
 pub mod image_in_plane;

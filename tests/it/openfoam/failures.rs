@@ -244,6 +244,19 @@ fn a_solver_that_dies_or_hangs_before_it_says_a_word_is_missed() {
 }
 
 #[test]
+fn a_solver_refuses_a_run_of_another_version() {
+    let scene = FoamBox::grounded();
+    // As if the DEM process had been built from a later source.
+    let solver = concat!(env!("CARGO_MANIFEST_DIR"), "/../openfoam-solver/build/electricFieldFoam");
+    let script = format!("echo 1000 > /dev/shm/$4/protocol\nexec '{solver}' \"$@\"");
+    let output = stand_in(&scene, &script).output().unwrap();
+    let said = String::from_utf8_lossy(&output.stderr).into_owned();
+    assert_eq!(output.status.code(), Some(3), "{said}");
+    assert!(said.contains("the field solver is gone"), "{said}");
+    assert!(said.contains("the peer speaks version 1000 of the protocol, this program"), "{said}");
+}
+
+#[test]
 fn two_runs_at_once_do_not_meet() {
     let scenes = [FoamBox::grounded(), FoamBox::grounded()];
     let start = |scene: &FoamBox| {

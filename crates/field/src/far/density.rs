@@ -25,7 +25,6 @@ pub struct SmoothDensity {
     grid: GridLevel,
     positions: Vec<Vector3<f64>>,
     charges: Vec<f64>,
-    found: Vec<(Vector3<f64>, f64)>,
 }
 
 impl SmoothDensity {
@@ -56,7 +55,6 @@ impl SmoothDensity {
             padded,
             positions: Vec::new(),
             charges: Vec::new(),
-            found: Vec::new(),
         }
     }
 
@@ -90,11 +88,7 @@ impl SmoothDensity {
     /// Density [C/m³] at places in the box [m].
     pub fn at(&mut self, places: &[Vector3<f64>], density: &mut [f64]) {
         self.grid.solve(&self.positions, &self.charges);
-        self.found.resize(places.len(), (Vector3::zeros(), 0.0));
-        self.grid.gather(places, &mut self.found);
-        for (density, found) in density.iter_mut().zip(&self.found) {
-            *density = found.1;
-        }
+        self.grid.gather_values(places, density);
     }
 }
 

@@ -109,6 +109,17 @@ impl GridLevel {
         }
     }
 
+    /// Potential alone (density, of a grid that has one) at the given positions, after [`Self::solve`].
+    pub(crate) fn gather_values(&self, positions: &[Vector3<f64>], values: &mut [f64]) {
+        match self.order {
+            4 => self.gather_values_of_order::<4>(positions, values),
+            5 => self.gather_values_of_order::<5>(positions, values),
+            6 => self.gather_values_of_order::<6>(positions, values),
+            7 => self.gather_values_of_order::<7>(positions, values),
+            _ => self.gather_values_of_order::<8>(positions, values),
+        }
+    }
+
     /// Slabs write their own planes and the beginning of the next slab's: even slabs first, then odd ones, so
     /// that every node adds its charges in an order that does not depend on the number of threads.
     fn spread<const P: usize>(&mut self, positions: &[Vector3<f64>], charges: &[f64]) {
@@ -143,6 +154,16 @@ impl GridLevel {
                 let [slope_x, slope_y, slope_z, potential] = found;
                 let e = Vector3::new(slope_x * inverse[0], slope_y * inverse[1], slope_z * inverse[2]);
                 *field = (e, potential);
+            }
+        });
+    }
+
+    fn gather_values_of_order<const P: usize>(&self, positions: &[Vector3<f64>], values: &mut [f64]) {
+        let (nodes, steps) = (&self.nodes.values[..], self.nodes.steps());
+        values.par_chunks_mut(GATHER).zip(positions.par_chunks(GATHER)).for_each(|(values, positions)| {
+            for (value, position) in values.iter_mut().zip(positions) {
+                let place = node_place(&self.axes, position);
+                gather_value::<P>(self.instructions, &self.window, place, steps, nodes, value);
             }
         });
     }
@@ -254,6 +275,38 @@ fn gather_field<const P: usize, V: Vector<Number = f64>>(
         joined(&value, &dz, count),
         joined(&value, &wz, count),
     ];
+}
+
+dispatched! {
+    /// Potential at a place (in node units).
+    fn gather_value<const P: usize>(
+        window: &Window, place: [f64; 3], steps: [usize; 2], nodes: &[f64], found: &mut f64,
+    ) = gather_potential
+}
+
+#[inline(always)]
+fn gather_potential<const P: usize, V: Vector<Number = f64>>(
+    window: &Window,
+    place: [f64; 3],
+    steps: [usize; 2],
+    nodes: &[f64],
+    found: &mut f64,
+) {
+    let weights = window.weights::<P, V>(place);
+    let corner = corner(&weights, steps);
+    let [wx, wy, wz] = weights.value;
+    let mut sums: Row<V> = [V::splat(0.0); MAX_ORDER / 2];
+    let count = P.div_ceil(V::LANES);
+    for i in 0..P {
+        for j in 0..P {
+            let row = &nodes[corner + i * steps[0] + j * steps[1]..][..MAX_ORDER];
+            let weight = V::splat(wx[i] * wy[j]);
+            for v in 0..count {
+                sums[v] = weight.mul_add(V::load(&row[v * V::LANES..]), sums[v]);
+            }
+        }
+    }
+    *found = joined(&sums, &vectors::<V>(&wz), count);
 }
 
 /// Sum of the products of the first vectors.

@@ -1,0 +1,161 @@
+//! Charge traded while a contact area grows: dT/dA = ε [(W_i − W_j)/(δe) + E_c·n_ij] = β − αT.
+//!
+//! T charge moved from i to j since first touch [C]: q_i −= T, q_j += T; A contact area [m²]; W work functions [J]; δ cut-off
+//! distance of the transfer [m]; e elementary charge; E_c field at the contact [V/m], the colliders' own included; n_ij from i to j. With
+//! E_x the field of everything else and r the radii,
+//!
+//! ```text
+//! two grains               α = (1/r_i² + 1/r_j²)/(4π)      β = ε(W_i − W_j)/(δe) + q_i/(4πr_i²) − q_j/(4πr_j²) + ε E_x·n_ij
+//! grain, grounded wall     α = 1/(2πr²)                    β = ε(W_p − W_w)/(δe) + q/(2πr²) + ε E_x·n_pw
+//! grain, insulating facet  α = 1/(4πr²) + 1/(2A_f)         β = ε(W_p − W_w)/(δe) + q/(4πr²) − Q_f/(2A_f) + ε E_x·n_pw
+//! ```
+//!
+//! While the area grows by ΔA, T = (β/α)(1 − e^{−αΔA}): exact for one contact and bounded for any ΔA, where βΔA runs away beyond
+//! αΔA = 2. A contact that shrinks moves nothing. The higher work function ends negative. Range: overlaps small against the radii.
+//! Source: J. Kolehmainen, A. Ozel, C. M. Boyce & S. Sundaresan, AIChE J. 63, 1872 (2017), with its signs made consistent.
+//!
+//! ```
+//! use amberfield_laws::charge_transfer::{Grain, between_grains};
+//! let (left, right) = (Grain { charge: 1e-13, radius: 75e-6 }, Grain { charge: -1e-13, radius: 75e-6 });
+//! let drive = between_grains(8.854e-12, 0.0, [left, right], 0.0);
+//! let moved = drive.transfer(1e-12);
+//! assert!(moved > 0.0 && moved < 1e-13);
+//! ```
+
+use std::f64::consts::PI;
+
+/// A grain as far as a contact knows it.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Grain {
+    /// Charge [C].
+    pub charge: f64,
+    /// Radius [m].
+    pub radius: f64,
+}
+
+/// What moves charge through a contact: dT/dA = β − αT.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Drive {
+    /// α [1/m²], positive.
+    pub decay: f64,
+    /// β at T = 0 [C/m²].
+    pub drive: f64,
+}
+
+impl Drive {
+    /// Charge moved from i to j [C] while the area grows by `growth` [m²].
+    #[must_use]
+    pub fn transfer(self, growth: f64) -> f64 {
+        -self.drive / self.decay * (-self.decay * growth).exp_m1()
+    }
+}
+
+/// ε(W_i − W_j)/(δe) [C/m²] of work functions in eV, permittivity ε [F/m] and cut-off distance δ [m].
+#[must_use]
+pub fn work_term(permittivity: f64, work_functions_ev: [f64; 2], cutoff_m: f64) -> f64 {
+    permittivity * (work_functions_ev[0] - work_functions_ev[1]) / cutoff_m
+}
+
+/// Grain i with grain j; `work` is [`work_term`], `field` E_x·n_ij [V/m].
+#[must_use]
+pub fn between_grains(permittivity: f64, work: f64, [i, j]: [Grain; 2], field: f64) -> Drive {
+    let [per_i, per_j] = [i, j].map(|grain| 1.0 / (4.0 * PI * grain.radius * grain.radius));
+    let own = i.charge * per_i - j.charge * per_j;
+    Drive { decay: per_i + per_j, drive: work + own + permittivity * field }
+}
+
+/// A grain with a grounded wall; `field` E_x·n_pw [V/m] without the grain's own image.
+#[must_use]
+pub fn with_grounded_wall(permittivity: f64, work: f64, grain: Grain, field: f64) -> Drive {
+    let per_area = 1.0 / (2.0 * PI * grain.radius * grain.radius);
+    Drive { decay: per_area, drive: work + grain.charge * per_area + permittivity * field }
+}
+
+/// A grain with a facet of an insulating wall, of an area [m²] that holds a charge [C]; `field` E_x·n_pw [V/m].
+#[must_use]
+pub fn with_insulating_facet(
+    permittivity: f64,
+    work: f64,
+    grain: Grain,
+    [area, charge]: [f64; 2],
+    field: f64,
+) -> Drive {
+    let per_area = 1.0 / (4.0 * PI * grain.radius * grain.radius);
+    let facet = 1.0 / (2.0 * area);
+    let own = grain.charge * per_area - charge * facet;
+    Drive { decay: per_area + facet, drive: work + own + permittivity * field }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    const PERMITTIVITY: f64 = 8.854_187_812_8e-12;
+    const CUTOFF: f64 = 5e-7;
+    /// Round-off of a handful of operations.
+    const ROUND_OFF: f64 = 1e-13;
+
+    fn pair(qi: f64, qj: f64) -> [Grain; 2] {
+        [Grain { charge: qi, radius: 1e-4 }, Grain { charge: qj, radius: 3e-4 }]
+    }
+
+    #[test]
+    fn single_bounces_add_up_to_the_closed_form() {
+        let [mut i, mut j] = pair(3e-13, -1e-13);
+        let work = work_term(PERMITTIVITY, [4.5, 4.2], CUTOFF);
+        let whole = between_grains(PERMITTIVITY, work, [i, j], 2e4).transfer(1e-8);
+        let mut moved = 0.0;
+        for _ in 0..100 {
+            let part = between_grains(PERMITTIVITY, work, [i, j], 2e4).transfer(1e-10);
+            i.charge -= part;
+            j.charge += part;
+            moved += part;
+        }
+        assert!((moved - whole).abs() < 1e2 * ROUND_OFF * whole.abs(), "{moved:e} {whole:e}");
+    }
+
+    #[test]
+    fn small_growth_is_the_derivative_and_large_growth_the_steady_state() {
+        let drive = between_grains(PERMITTIVITY, 1e-6, pair(1e-13, 0.0), -3e3);
+        let small = 1e-9 / drive.decay;
+        assert!((drive.transfer(small) / (drive.drive * small) - 1.0).abs() < 1e-8);
+        assert_eq!(drive.transfer(1e9 / drive.decay), drive.drive / drive.decay);
+        assert_eq!(drive.transfer(0.0), 0.0);
+    }
+
+    #[test]
+    fn exchange_of_names_turns_the_sign() {
+        let [i, j] = pair(1e-13, 2e-13);
+        let work = work_term(PERMITTIVITY, [4.0, 5.0], CUTOFF);
+        let there = between_grains(PERMITTIVITY, work, [i, j], 1e3);
+        let back = between_grains(PERMITTIVITY, -work, [j, i], -1e3);
+        assert_eq!(there.decay, back.decay);
+        assert!((there.drive + back.drive).abs() < ROUND_OFF * there.drive.abs());
+    }
+
+    #[test]
+    fn higher_work_function_ends_negative() {
+        // i holds on to its electrons: what moves from i to j is positive, and i ends negative.
+        let work = work_term(PERMITTIVITY, [5.0, 4.0], CUTOFF);
+        let moved = between_grains(PERMITTIVITY, work, pair(0.0, 0.0), 0.0).transfer(1e-10);
+        assert!(-moved < 0.0);
+    }
+
+    #[test]
+    fn one_electronvolt_on_a_grounded_wall() {
+        let grain = Grain { charge: 0.0, radius: 75e-6 };
+        let drive = with_grounded_wall(PERMITTIVITY, work_term(PERMITTIVITY, [1.0, 0.0], CUTOFF), grain, 0.0);
+        let equilibrium = -drive.transfer(1e3 / drive.decay);
+        assert!((equilibrium / -6.2587e-13 - 1.0).abs() < 1e-5, "{equilibrium:e}");
+    }
+
+    #[test]
+    fn wide_facet_is_an_isolated_grain_and_its_charge_repels() {
+        let grain = Grain { charge: 1e-13, radius: 75e-6 };
+        let wide = with_insulating_facet(PERMITTIVITY, 0.0, grain, [1.0, 0.0], 0.0);
+        assert!((wide.decay * 4.0 * PI * 75e-6_f64.powi(2) - 1.0).abs() < 1e-7);
+        let charged = with_insulating_facet(PERMITTIVITY, 0.0, grain, [1e-8, 1e-13], 0.0);
+        let bare = with_insulating_facet(PERMITTIVITY, 0.0, grain, [1e-8, 0.0], 0.0);
+        assert!(charged.drive < bare.drive && charged.decay == bare.decay);
+    }
+}
