@@ -4,6 +4,7 @@
 //! SI units everywhere, angles in radians. Electric field `E` in V/m points away from positive charge;
 //! potential `V` in volts with `E = −∇V`.
 
+mod charge_transfer;
 pub mod constants;
 mod domain;
 mod field_settings;
@@ -13,6 +14,7 @@ mod plan;
 mod time_settings;
 mod wall;
 
+pub use charge_transfer::ChargeTransfer;
 pub use domain::{Axis, Boundary, Domain, DomainError, Side};
 pub use field_settings::{CouplingInterval, FieldSettings, ForceLimit, Method, Tuning};
 pub use material::{Material, MaterialId};

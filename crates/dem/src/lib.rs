@@ -4,6 +4,7 @@
 //! runs them. Results are bit-identical for any number of threads of the caller's rayon pool.
 
 mod cells;
+mod charging;
 mod chunks;
 mod contact_batch;
 mod contact_law;
@@ -31,6 +32,7 @@ use amberfield_field as field_crate;
 #[cfg(not(feature = "field"))]
 use without_field as field_crate;
 
+pub use charging::{Facet, Ledger};
 pub use energy::{ElectricEnergy, Energies};
 pub use error::DemError;
 pub use field_stage::{Intervals, Limited};

@@ -107,6 +107,7 @@ impl PairTable {
             friction: self.constants.iter().any(|c| c.friction > 0.0),
             rolling: self.constants.iter().any(|c| c.rolling > 0.0),
             damping: self.constants.iter().any(|c| c.damping > 0.0),
+            charging: false,
         }
     }
 }
@@ -117,6 +118,8 @@ pub(crate) struct Features {
     pub(crate) friction: bool,
     pub(crate) rolling: bool,
     pub(crate) damping: bool,
+    /// Whether contacts move charge; materials do not know.
+    pub(crate) charging: bool,
 }
 
 impl Features {

@@ -30,6 +30,8 @@ const SLIVER: f64 = 1e-10;
 pub(crate) struct Found {
     pub(crate) normal: Vector3<f64>,
     pub(crate) overlap: f64,
+    /// Of a mesh, where it is touched.
+    pub(crate) triangle: u32,
 }
 
 /// A closest point.
@@ -79,6 +81,12 @@ impl MeshWall {
     /// Whether no triangle is left.
     pub(crate) fn is_empty(&self) -> bool {
         self.triangles.is_empty()
+    }
+
+    /// Corners of a triangle [m].
+    pub(crate) fn corners(&self, triangle: u32) -> [Vector3<f64>; 3] {
+        let Triangle { a, b, c } = self.triangles[triangle as usize];
+        [a, b, c].map(plain)
     }
 
     /// Calls `found` with every triangle within `reach` [m] of a point, in ascending order.
@@ -134,7 +142,11 @@ impl MeshWall {
                 cosine > SAME_DIRECTION || beyond >= -PLANE_SLACK * radius
             });
             if !covered && count < MOST_CONTACTS {
-                found[count] = Found { normal: candidate.direction, overlap: radius - candidate.distance };
+                found[count] = Found {
+                    normal: candidate.direction,
+                    overlap: radius - candidate.distance,
+                    triangle: candidate.triangle,
+                };
                 count += 1;
             }
         }

@@ -1,6 +1,7 @@
 //! Verlet lists by chunk, and the contact histories that live in them.
 
 use crate::cells::{Cells, INDEX_BITS, INDEX_MASK};
+use crate::charging::{Grown, Growth};
 use crate::chunks::{CHUNK, chunk_count, for_each_chunk, is_parallel};
 use crate::grains::Grains;
 use crate::material_pairs::Features;
@@ -40,6 +41,10 @@ pub(crate) struct ChunkList {
     pub(crate) spring: Vec<[f64; 4]>,
     /// Rolling spring torque [N·m]; empty without rolling friction.
     pub(crate) rolling: Vec<[f64; 3]>,
+    /// Charging of the entries; empty without charge transfer.
+    pub(crate) growth: Vec<Growth>,
+    /// Entries whose growth is due, in the order in which they began to grow.
+    pub(crate) grown: Vec<Grown>,
     /// Scratch of the step.
     pub(crate) hits: Vec<Hit>,
     /// What this chunk does to other chunks.
@@ -107,7 +112,7 @@ impl Neighbours {
         )| {
             let list = &mut list[0];
             list.fill(k, cells, grains, features);
-            if features.rotation() && !previous.is_empty() {
+            if (features.rotation() || features.charging) && !previous.is_empty() {
                 list.inherit(k, grains, shifts, previous, order, features);
             }
         });
@@ -228,6 +233,10 @@ impl ChunkList {
         self.spring.resize(if features.friction { entries } else { 0 }, [0.0; 4]);
         self.rolling.clear();
         self.rolling.resize(if features.rolling { entries } else { 0 }, [0.0; 3]);
+        self.growth.clear();
+        self.growth.resize(if features.charging { entries } else { 0 }, Growth::default());
+        self.grown.clear();
+        self.grown.reserve(self.growth.len());
         self.hits.resize(entries + 1, Hit::default());
         self.contacts = 0;
     }
@@ -265,6 +274,9 @@ impl ChunkList {
                     }
                     if features.rolling {
                         self.rolling[entry] = list.rolling[old].map(|c| sign * c);
+                    }
+                    if features.charging {
+                        self.growth[entry] = list.growth[old].seen_from(sign);
                     }
                 }
             }

@@ -2,7 +2,7 @@
 
 use crate::field_crate::Choice;
 use crate::field_crate::far::Connect;
-use amberfield_core::{Domain, FieldSettings, Material, Particles, TimeSettings, Wall};
+use amberfield_core::{ChargeTransfer, Domain, FieldSettings, Material, Particles, TimeSettings, Wall};
 
 /// The electric field of a scene.
 #[derive(Clone, Debug)]
@@ -15,6 +15,8 @@ pub struct FieldStageSetup {
     pub choice: Option<Choice>,
     /// A field solver of another process; `None`: the internal grid.
     pub solver: Option<Connect>,
+    /// Charge transfer on contact; `None`: charges stay as they are.
+    pub transfer: Option<ChargeTransfer>,
     /// Whether the internal grid goes on when the field solver is lost; its boundaries are the domain's.
     pub fallback: bool,
 }
@@ -23,7 +25,7 @@ impl FieldStageSetup {
     /// On the internal grid, with parameters of the field's choice.
     #[must_use]
     pub fn new(settings: FieldSettings, member: Vec<bool>) -> Self {
-        Self { settings, member, choice: None, solver: None, fallback: false }
+        Self { settings, member, choice: None, solver: None, transfer: None, fallback: false }
     }
 }
 

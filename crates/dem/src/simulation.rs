@@ -1,11 +1,13 @@
 //! One run: the stages of a scene and the order in which they act.
 
+mod charge;
 mod plan;
 mod report;
 mod start;
 
+use crate::charging::Charging;
 use crate::error::DemError;
-use crate::field_stage::FieldStage;
+use crate::field_stage::{Extras, FieldStage};
 use crate::grains::Grains;
 use crate::guards::{ElectricLimits, Limits, electric_stiffness, electric_stiffness_bound};
 use crate::integrate::{Bounds, ChunkMotion, drift, kick};
@@ -16,6 +18,7 @@ use crate::state::State;
 use crate::timing::{Stage, Stopwatch};
 use crate::walls::Walls;
 use amberfield_core::{Domain, OnExit, Particles, Plan, TimeSettings, Vector3};
+use charge::Trade;
 
 /// Margin of the displacement test against round-off.
 const HALF_SKIN: f64 = 0.499_999;
@@ -40,6 +43,8 @@ pub struct Simulation {
     neighbours: Neighbours,
     walls: Option<Walls>,
     field: Option<FieldStage>,
+    charging: Option<Charging>,
+    extras: Extras,
     /// Bound on any grain's displacement since the lists were built [m].
     travel: f64,
     /// Largest speed of the last drift [m/s].
@@ -108,9 +113,11 @@ impl Simulation {
             walls.forces(&self.grains, &self.table, self.features, step, force, torque);
             self.watch.lap(Stage::Walls);
         }
+        self.charge_contacts(step);
         // The forces at the start come with a step of zero: the field was evaluated just before.
         let speed = self.speed;
         let due = step > 0.0 && self.field.as_mut().is_some_and(|field| field.is_due(step, speed));
+        let due = due || (step > 0.0 && self.charges_have_changed());
         if due {
             self.evaluate_field()?;
         }
@@ -145,6 +152,7 @@ impl Simulation {
 
     /// Wraps, sorts and lists the grains anew; histories move along.
     fn rebuild(&mut self) {
+        self.trade(Trade::Pairs);
         if self.periodic {
             for c in &mut self.grains.centre {
                 let wrapped = self.domain.wrap(Vector3::new(c[0], c[1], c[2]));
@@ -198,6 +206,7 @@ impl Simulation {
         if gone.is_empty() {
             return;
         }
+        self.trade(Trade::Pairs);
         let wall_histories = self.walls.as_ref().map(|walls| walls.histories(&self.grains));
         let mut keep: Vec<u32> = (0..self.grains.len() as u32).collect();
         keep.retain(|&i| gone.binary_search(&(i as usize)).is_err());
@@ -215,12 +224,18 @@ impl Simulation {
     /// Evaluates the field now.
     fn evaluate_field(&mut self) -> Result<(), DemError> {
         let time_s = self.time_s();
+        self.trade(Trade::Pairs);
+        self.ask_at_contacts();
         if let Some(field) = &mut self.field {
             if let Some(solver) = field.source.field.far_solver_mut() {
                 solver.at_time(time_s);
             }
-            field.evaluate(&self.domain, &self.grains, &self.particles, self.step_s)?;
+            field.evaluate(&self.domain, &self.grains, &self.particles, &self.extras, self.step_s)?;
             self.limits.set_plasma(field.plasma_limit);
+            if let Some(charging) = &mut self.charging {
+                let charge = &self.particles.charge;
+                charging.take(field.beside(), &mut self.neighbours, self.walls.as_mut(), charge);
+            }
         }
         Ok(())
     }

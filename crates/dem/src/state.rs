@@ -1,5 +1,6 @@
 //! The complete state of a run, for checkpoints.
 
+use crate::charging::{Facet, Grown, Growth, Ledger};
 use crate::field_crate::Choice;
 use crate::field_crate::far::FarState;
 use amberfield_core::Vector3;
@@ -31,10 +32,36 @@ pub(crate) struct WallHistory {
     pub(crate) normal: [f64; 3],
     /// Overlap [m].
     pub(crate) overlap: f64,
+    /// Of a mesh, where it is touched.
+    pub(crate) triangle: u32,
     /// Tangential force [N] and contact radius [m].
     pub(crate) spring: [f64; 4],
     /// Rolling torque [N·m].
     pub(crate) rolling: [f64; 3],
+    pub(crate) growth: Growth,
+}
+
+/// Charging of a listed pair.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
+pub(crate) struct PairGrowth {
+    /// Chunk whose list holds the pair, and entry in it.
+    pub(crate) slot: [u32; 2],
+    pub(crate) growth: Growth,
+}
+
+/// State of charge transfer.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+pub(crate) struct ChargingState {
+    /// Charges now, and at the last evaluation of the field, by the set-up's order [C].
+    pub(crate) charge: Vec<f64>,
+    pub(crate) evaluated: Vec<f64>,
+    pub(crate) pairs: Vec<PairGrowth>,
+    /// By chunk, the pairs whose growth is due, in the order in which they began to grow.
+    pub(crate) grown: Vec<Vec<Grown>>,
+    pub(crate) facets: Vec<Facet>,
+    pub(crate) ledger: Ledger,
+    pub(crate) backwards: bool,
+    pub(crate) lag: f64,
 }
 
 /// State of the field stage.
@@ -84,6 +111,7 @@ pub struct State {
     pub(crate) pairs: Vec<PairHistory>,
     pub(crate) walls: Vec<WallHistory>,
     pub(crate) field: Option<FieldState>,
+    pub(crate) charging: Option<ChargingState>,
 }
 
 impl State {

@@ -9,16 +9,18 @@ pub(crate) enum Stage {
     Neighbours,
     Contacts,
     Walls,
+    Charging,
     Field,
 }
 
 /// Names as in `history.csv`'s `wall_s_<stage>`.
-pub(crate) const STAGE_NAMES: [&str; 5] = ["integrate", "neighbours", "contacts", "walls", "field"];
+pub(crate) const STAGE_NAMES: [&str; 6] =
+    ["integrate", "neighbours", "contacts", "walls", "charge transfer", "field"];
 
 /// A stopwatch that results never depend on.
 #[derive(Debug, Default)]
 pub(crate) struct Stopwatch {
-    pub(crate) seconds: [f64; 5],
+    pub(crate) seconds: [f64; 6],
     last: Option<Instant>,
 }
 

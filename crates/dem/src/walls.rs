@@ -1,7 +1,11 @@
 //! Contacts with plane and mesh walls.
 
+mod charging;
 mod near;
 
+pub(crate) use charging::{Surface, Touch};
+
+use crate::charging::Growth;
 use crate::chunks::{CHUNK, chunk_count, for_each_chunk, is_parallel};
 use crate::contact_law::{Contact, History, respond};
 use crate::error::DemError;
@@ -9,7 +13,7 @@ use crate::grains::Grains;
 use crate::material_pairs::{Features, PairTable};
 use crate::mesh_wall::{Candidate, Found, MOST_CONTACTS, MeshWall};
 use crate::state::WallHistory;
-use amberfield_core::{Domain, Particles, Vector3, Wall, WallShape};
+use amberfield_core::{Domain, Particles, Vector3, Wall, WallCharging, WallShape};
 use std::ops::Range;
 
 /// Cosine of the largest turn between two steps for which a contact is still the same (60°).
@@ -25,6 +29,7 @@ enum Shape {
 struct Solid {
     name: String,
     material: u16,
+    charging: WallCharging,
     shape: Shape,
 }
 
@@ -33,6 +38,7 @@ struct Solid {
 struct WallContact {
     normal: Vector3<f64>,
     overlap: f64,
+    triangle: u32,
     spring: [f64; 4],
     rolling: [f64; 3],
 }
@@ -56,6 +62,8 @@ pub(crate) struct ChunkWalls {
     entries: Vec<Entry>,
     triangles: Vec<(u32, u32)>,
     contacts: Vec<WallContact>,
+    /// Charging of the contacts; empty without charge transfer.
+    growth: Vec<Growth>,
     scratch: Vec<Candidate>,
 }
 
@@ -64,11 +72,13 @@ pub(crate) struct ChunkWalls {
 pub(crate) struct Walls {
     solids: Vec<Solid>,
     shifts: [[f64; 3]; 32],
+    /// Whether contacts move charge.
+    charge: bool,
     chunks: Vec<ChunkWalls>,
 }
 
 impl Walls {
-    pub(crate) fn new(walls: &[Wall], shifts: [[f64; 3]; 32]) -> Result<Self, DemError> {
+    pub(crate) fn new(walls: &[Wall], shifts: [[f64; 3]; 32], charge: bool) -> Result<Self, DemError> {
         let mut solids = Vec::new();
         for wall in walls {
             let shape = match &wall.shape {
@@ -102,23 +112,24 @@ impl Walls {
                     Shape::Mesh(Box::new(mesh))
                 }
             };
-            solids.push(Solid { name: wall.name.clone(), material: wall.material.0, shape });
+            let (name, material, charging) = (wall.name.clone(), wall.material.0, wall.charging);
+            solids.push(Solid { name, material, charging, shape });
         }
-        Ok(Self { solids, shifts, chunks: Vec::new() })
+        Ok(Self { solids, shifts, charge, chunks: Vec::new() })
     }
 
     /// Finds the grains near walls; histories stay with their grain and wall.
     pub(crate) fn build(&mut self, domain: &Domain, grains: &Grains, skin: f64, histories: &[WallHistory]) {
         let chunks = chunk_count(grains.len());
         self.chunks.resize_with(chunks, ChunkWalls::default);
-        let (solids, shifts, near) = (&self.solids, &self.shifts, &mut self.chunks);
+        let (solids, shifts, charge, near) = (&self.solids, &self.shifts, self.charge, &mut self.chunks);
         let mut marks = vec![(); chunks];
         for_each_chunk!(is_parallel(grains.len()), chunks, (near / 1, marks / 1), |k: usize,
                                                                                    (near, _): (
             &mut [ChunkWalls],
             &mut [()]
         )| {
-            near[0].fill(k, solids, shifts, domain, grains, skin, histories);
+            near[0].fill(k, (solids, charge), shifts, domain, grains, skin, histories);
         });
     }
 
@@ -128,14 +139,19 @@ impl Walls {
         for (k, chunk) in self.chunks.iter().enumerate() {
             for entry in &chunk.entries {
                 let original = grains.original[k * CHUNK + entry.local as usize];
-                let first = entry.contacts as usize;
-                out.extend(chunk.contacts[first..first + entry.count as usize].iter().map(|c| WallHistory {
-                    grain: original,
-                    wall: entry.wall,
-                    normal: c.normal.into(),
-                    overlap: c.overlap,
-                    spring: c.spring,
-                    rolling: c.rolling,
+                let touching = entry.contacts as usize..(entry.contacts + entry.count) as usize;
+                out.extend(touching.map(|number| {
+                    let contact = &chunk.contacts[number];
+                    WallHistory {
+                        grain: original,
+                        wall: entry.wall,
+                        normal: contact.normal.into(),
+                        overlap: contact.overlap,
+                        triangle: contact.triangle,
+                        spring: contact.spring,
+                        rolling: contact.rolling,
+                        growth: chunk.growth.get(number).copied().unwrap_or_default(),
+                    }
                 }));
             }
         }
@@ -262,7 +278,7 @@ impl ChunkWalls {
         force: &mut [Vector3<f64>],
         torque: &mut [Vector3<f64>],
     ) {
-        let Self { entries, triangles, contacts, scratch } = self;
+        let Self { entries, triangles, contacts, growth, scratch } = self;
         for entry in entries {
             let local = entry.local as usize;
             let i = k * CHUNK + local;
@@ -272,7 +288,7 @@ impl ChunkWalls {
             let count = match &solid.shape {
                 Shape::Plane { point, normal } => {
                     let overlap = radius - (centre - point).dot(normal);
-                    found[0] = Found { normal: -normal, overlap };
+                    found[0] = Found { normal: -normal, overlap, triangle: 0 };
                     usize::from(overlap > 0.0)
                 }
                 Shape::Mesh(mesh) => {
@@ -284,7 +300,10 @@ impl ChunkWalls {
                 }
             };
             let kept = &mut contacts[entry.contacts as usize..];
-            renew(kept, entry.count as usize, &found[..count]);
+            let from = renew(kept, entry.count as usize, &found[..count]);
+            if !growth.is_empty() {
+                charging::renew(&mut growth[entry.contacts as usize..], &from[..count]);
+            }
             entry.count = count as u32;
             let pair = table.get(grains.material[i], solid.material);
             for wall_contact in &mut kept[..count] {
@@ -324,18 +343,23 @@ fn contact_of<const FRICTION: bool, const ROLLING: bool>(
     (contact, arm)
 }
 
-/// Replaces the contacts of the last step by those found now; springs go to the nearest direction.
-fn renew(kept: &mut [WallContact], old_count: usize, found: &[Found]) {
+/// Replaces the contacts of the last step by those found now; springs go to the nearest direction. Which of the old contacts each
+/// one was.
+fn renew(kept: &mut [WallContact], old_count: usize, found: &[Found]) -> [Option<usize>; MOST_CONTACTS] {
     let mut old = [WallContact::default(); MOST_CONTACTS];
     old[..old_count].copy_from_slice(&kept[..old_count]);
     let mut unused = [true; MOST_CONTACTS];
-    for (kept, found) in kept.iter_mut().zip(found) {
-        *kept = WallContact { normal: found.normal, overlap: found.overlap, ..WallContact::default() };
-        if let Some(m) = best_match(&old[..old_count], &unused, &found.normal) {
+    let mut from = [None; MOST_CONTACTS];
+    for ((kept, found), from) in kept.iter_mut().zip(found).zip(&mut from) {
+        let Found { normal, overlap, triangle } = *found;
+        *kept = WallContact { normal, overlap, triangle, ..WallContact::default() };
+        *from = best_match(&old[..old_count], &unused, &normal);
+        if let Some(m) = *from {
             unused[m] = false;
             (kept.spring, kept.rolling) = (old[m].spring, old[m].rolling);
         }
     }
+    from
 }
 
 /// The unused old contact whose direction is nearest.

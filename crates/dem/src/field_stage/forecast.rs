@@ -38,6 +38,13 @@ impl Forecast {
         self.at(grain, age) * self.charge[grain]
     }
 
+    /// Takes a grain's new charge [C]; nothing is known before the first evaluation.
+    pub(crate) fn recharge(&mut self, grain: usize, charge: f64) {
+        if let Some(known) = self.charge.get_mut(grain) {
+            *known = charge;
+        }
+    }
+
     /// Whether it is one of `count` grains.
     pub(crate) fn fits(&self, count: usize) -> bool {
         [self.e.len(), self.slope.len(), self.charge.len()] == [count; 3]

@@ -3,7 +3,7 @@
 use crate::grains::Grains;
 use amberfield_core::{Domain, Particles, Vector3};
 
-/// Members of the field: sorted indices, positions inside the domain, charges.
+/// Members of the field: sorted indices, positions inside the domain, charges; the last two go on with what is beside the grains.
 #[derive(Debug, Default)]
 pub(crate) struct Members {
     pub(super) index: Vec<u32>,
@@ -13,6 +13,26 @@ pub(crate) struct Members {
     pub(super) count: usize,
 }
 
+/// What takes part in an evaluation beside the grains: charges of walls, and places without charge at which E is asked for.
+#[derive(Debug, Default)]
+pub(crate) struct Extras {
+    position: Vec<Vector3<f64>>,
+    charge: Vec<f64>,
+}
+
+impl Extras {
+    pub(crate) fn clear(&mut self) {
+        self.position.clear();
+        self.charge.clear();
+    }
+
+    /// A place inside the domain [m] and its charge [C].
+    pub(crate) fn push(&mut self, position: Vector3<f64>, charge: f64) {
+        self.position.push(position);
+        self.charge.push(charge);
+    }
+}
+
 impl Members {
     pub(super) fn collect(
         &mut self,
@@ -20,6 +40,7 @@ impl Members {
         domain: &Domain,
         grains: &Grains,
         particles: &Particles,
+        extras: &Extras,
     ) {
         self.index.clear();
         self.position.clear();
@@ -32,5 +53,7 @@ impl Members {
                 self.charge.push(particles.charge[original as usize]);
             }
         }
+        self.position.extend(&extras.position);
+        self.charge.extend(&extras.charge);
     }
 }

@@ -18,6 +18,7 @@ mod source;
 pub(crate) use forecast::{EnergyForecast, Forecast};
 pub(crate) use interval::IntervalControl;
 pub use interval::Intervals;
+pub(crate) use members::Extras;
 
 use crate::chunks::{CHUNK, chunk_count, for_each_chunk, is_parallel};
 use crate::error::DemError;
@@ -97,7 +98,10 @@ impl FieldStage {
         let members = || (0..particles.len()).filter(|&i| member[i]);
         let smallest_radius = members().map(|i| particles.radius[i]).fold(f64::INFINITY, f64::min);
         let position: Vec<_> = members().map(|i| domain.wrap(particles.position[i])).collect();
-        let charge: Vec<_> = members().map(|i| particles.charge[i]).collect();
+        let mut charge: Vec<_> = members().map(|i| particles.charge[i]).collect();
+        if charge.iter().all(|charge| *charge == 0.0) {
+            stand_in(&mut charge);
+        }
         let source = Source::new(domain, setup, (&position, &charge), state)?;
         let mut stage = Self {
             source,
@@ -183,9 +187,10 @@ impl FieldStage {
         domain: &Domain,
         grains: &Grains,
         particles: &Particles,
+        extras: &Extras,
         step: f64,
     ) -> Result<(), DemError> {
-        self.members.collect(&self.member, domain, grains, particles);
+        self.members.collect(&self.member, domain, grains, particles, extras);
         self.source.evaluate(domain, &self.settings, &self.members, &mut self.values)?;
         let far = self.source.field.far_solver();
         self.solver_iterations = far.map_or(0, FarSolver::iterations);
@@ -208,15 +213,36 @@ impl FieldStage {
     /// What errors of E are relative to [V/m]: the RMS of E less the external field, or q_rms n^{2/3}/(4πε)
     /// where symmetry makes E vanish.
     fn scale(&self, domain: &Domain) -> f64 {
-        let Members { position, charge, .. } = &self.members;
-        let count = position.len().max(1) as f64;
+        let Members { index, charge, .. } = &self.members;
+        let count = index.len().max(1) as f64;
         let external = self.settings.external_field_v_m;
-        let e2 = self.values.e.iter().map(|e| (e - external).norm_squared()).sum::<f64>() / count;
-        let q2 = charge.iter().map(|q| q * q).sum::<f64>() / count;
+        let e2 =
+            self.values.e[..index.len()].iter().map(|e| (e - external).norm_squared()).sum::<f64>() / count;
+        let q2 = charge[..index.len()].iter().map(|q| q * q).sum::<f64>() / count;
         let density = count / domain.volume();
         let floor =
             coulomb_constant(self.settings.relative_permittivity) * q2.sqrt() * density.powf(2.0 / 3.0);
         e2.sqrt().max(floor)
+    }
+
+    /// E at the last evaluation at what was beside the grains [V/m].
+    pub(crate) fn beside(&self) -> &[Vector3<f64>] {
+        &self.values.e[self.members.index.len()..]
+    }
+
+    /// E at a grain now, on its line [V/m].
+    pub(crate) fn at(&self, grain: usize) -> Vector3<f64> {
+        self.forecast.at(grain, self.control.age as f64)
+    }
+
+    /// Takes a grain's new charge [C].
+    pub(crate) fn recharge(&mut self, grain: usize, charge: f64) {
+        self.forecast.recharge(grain, charge);
+    }
+
+    /// Whether E is evaluated as often as its error asks.
+    pub(crate) fn is_automatic(&self) -> bool {
+        self.settings.coupling_interval == CouplingInterval::Auto
     }
 
     /// Adds the electric force of this step to `total` [N], for the list's `skin` [m] and the `step` [s].
@@ -301,8 +327,9 @@ impl FieldStage {
         domain: &Domain,
         grains: &Grains,
         particles: &Particles,
+        extras: &Extras,
     ) -> Result<f64, DemError> {
-        self.onlookers.collect(&self.member, domain, grains, particles);
+        self.onlookers.collect(&self.member, domain, grains, particles, extras);
         let looked = self.source.evaluate_aside(domain, &self.settings, &self.onlookers, &mut self.values)?;
         if !looked {
             return Ok(self.forecast_energy());
@@ -322,6 +349,13 @@ impl FieldStage {
         let (external, centre) = (self.settings.external_field_v_m, domain.centre());
         let terms = position.iter().zip(charge).zip(&self.values.potential);
         0.5 * terms.map(|((x, q), v)| q * (v - external.dot(&(x - centre)))).sum::<f64>()
+    }
+}
+
+/// Charges for which the field chooses its parameters where there are none yet: of both signs, none in all.
+fn stand_in(charge: &mut [f64]) {
+    for pair in charge.chunks_exact_mut(2) {
+        pair.copy_from_slice(&[1e-15, -1e-15]);
     }
 }
 
@@ -365,7 +399,7 @@ mod tests {
         let setup = FieldStageSetup::new(settings, vec![true; 4]);
         let mut stage = FieldStage::new(&domain, setup, &particles, None).expect("a good scene");
         let grains = Grains::new(&particles, vec![0; 4], false);
-        stage.evaluate(&domain, &grains, &particles, STEP).expect("a good scene");
+        stage.evaluate(&domain, &grains, &particles, &Extras::default(), STEP).expect("a good scene");
         (stage, grains, particles, domain)
     }
 
@@ -378,7 +412,7 @@ mod tests {
     fn grains_that_move_are_due_after_half_a_radius_and_all_under_the_plasma_limit() {
         let (mut stage, grains, particles, domain) = stage();
         let evaluate = |stage: &mut FieldStage| {
-            stage.evaluate(&domain, &grains, &particles, STEP).expect("a good scene");
+            stage.evaluate(&domain, &grains, &particles, &Extras::default(), STEP).expect("a good scene");
         };
         // The first interval is one step; grains at rest then double theirs up to the plasma limit.
         assert_eq!(interval(&mut stage, 0.0), 1);

@@ -1,7 +1,7 @@
 //! Which stages a scene has, and why.
 
 use crate::material_pairs::Features;
-use amberfield_core::Plan;
+use amberfield_core::{ChargeTransfer, Plan};
 
 /// The plan; the field's own plan is appended.
 pub(super) fn plan(
@@ -10,6 +10,7 @@ pub(super) fn plan(
     walls: usize,
     levels: usize,
     field_asked: bool,
+    transfer: Option<&ChargeTransfer>,
     field: Option<Plan>,
 ) -> Plan {
     let mut plan = Plan::new();
@@ -41,12 +42,36 @@ pub(super) fn plan(
     );
     entry(features.rotation(), "rotation", "friction can turn grains".to_owned(), "nothing can turn a grain");
     entry(periodic, "periodic images", "an axis is periodic".to_owned(), "no axis is periodic");
+    entry(
+        transfer.is_some(),
+        "charge transfer",
+        "enable_collision_charge_transfer: charge moves where contacts grow".to_owned(),
+        "no enable_collision_charge_transfer",
+    );
+    if let Some(transfer) = transfer {
+        entry(
+            transfer.beyond_previous_maximum,
+            "largest contact areas",
+            "beyond_previous_maximum: only what grows beyond moves charge".to_owned(),
+            "no beyond_previous_maximum",
+        );
+        let breakdown = transfer.breakdown_field_v_m;
+        let limit = format!("breakdown_field_V_m = {:e}", breakdown.unwrap_or_default());
+        entry(breakdown.is_some(), "dielectric breakdown", limit, "no breakdown_field_V_m");
+        entry(
+            transfer.stiffness_correction.is_some(),
+            "contact-area correction",
+            "stiffness_correction: areas scaled towards young_real_Pa".to_owned(),
+            "no stiffness_correction",
+        );
+    }
     let reason = if field_asked {
         "every charge in the particle group is zero and nothing makes one"
     } else {
         "no [electric_field]"
     };
-    entry(field.is_some(), "field", "charged grains".to_owned(), reason);
+    let charged = if transfer.is_some() { "charges, or what makes them" } else { "charged grains" };
+    entry(field.is_some(), "field", charged.to_owned(), reason);
     if let Some(field) = field {
         plan.extend(field);
     }

@@ -89,7 +89,11 @@ impl Simulation {
             (None, _) | (_, ElectricEnergy::LeftOut) => None,
             (Some(field), ElectricEnergy::Forecast) => Some(field.forecast_energy()),
             (Some(field), ElectricEnergy::Evaluated) => {
-                Some(field.fresh_energy(&self.domain, &self.grains, &self.particles)?)
+                self.extras.clear();
+                if let Some(charging) = &self.charging {
+                    charging.add_facets(&mut self.extras);
+                }
+                Some(field.fresh_energy(&self.domain, &self.grains, &self.particles, &self.extras)?)
             }
         };
         Ok(Energies {

@@ -2,19 +2,20 @@
 
 use super::Simulation;
 use crate::cells::{Cells, levels_of, shifts};
+use crate::charging::Charging;
 use crate::error::DemError;
-use crate::field_stage::FieldStage;
+use crate::field_stage::{Extras, FieldStage};
 use crate::grains::Grains;
 use crate::guards::Limits;
 use crate::integrate::{Bounds, kick};
-use crate::material_pairs::PairTable;
+use crate::material_pairs::{Features, PairTable};
 use crate::neighbours::Neighbours;
-use crate::setup::Setup;
+use crate::setup::{FieldStageSetup, Setup};
 use crate::start_checks;
 use crate::state::State;
 use crate::timing::Stopwatch;
 use crate::walls::Walls;
-use amberfield_core::{Axis, Domain, Step, Vector3};
+use amberfield_core::{Axis, Domain, Particles, Step, Vector3};
 
 impl Simulation {
     /// Checks a scene, builds its stages and computes the forces at the start.
@@ -44,9 +45,12 @@ impl Simulation {
     ///
     /// # Errors
     /// As [`Self::new`], and a state that does not fit the scene.
-    pub fn resume(setup: Setup, state: State) -> Result<Self, DemError> {
+    pub fn resume(mut setup: Setup, state: State) -> Result<Self, DemError> {
         start_checks::check(&setup)?;
         check_state(&setup, &state)?;
+        if let Some(charging) = &state.charging {
+            setup.particles.charge.clone_from(&charging.charge);
+        }
         let mut run = Self::assemble(setup, state.skin_m, Some(&state))?;
         run.grains.reorder(&state.original);
         let count = state.original.len();
@@ -63,6 +67,9 @@ impl Simulation {
             walls.build(&run.domain, &run.grains, run.skin, &state.walls);
         }
         run.neighbours.restore(&run.grains, &state.pairs).map_err(DemError::State)?;
+        if let (Some(charging), Some(saved)) = (&mut run.charging, &state.charging) {
+            charging.restore(saved, &mut run.neighbours).map_err(DemError::State)?;
+        }
         place(&mut run.grains, &state.centre);
         run.grains.velocity = state.velocity;
         run.grains.angular = state.angular;
@@ -96,20 +103,27 @@ impl Simulation {
             pairs: self.neighbours.histories(&self.grains),
             walls: self.walls.as_ref().map(|w| w.histories(&self.grains)).unwrap_or_default(),
             field: self.field.as_ref().map(FieldStage::state),
+            charging: self.charging.as_ref().map(|c| c.state(&self.particles, &self.neighbours)),
         }
     }
 
     fn assemble(setup: Setup, skin: f64, state: Option<&State>) -> Result<Self, DemError> {
         let Setup { domain, materials, particles, walls, time, field } = setup;
         let table = PairTable::new(&materials);
-        let features = table.features();
+        let transfer = field.as_ref().and_then(|field| field.transfer);
+        let features = Features { charging: transfer.is_some(), ..table.features() };
         let (level, level_radius) = levels_of(particles.radius.iter().copied());
         let shifts = shifts(&domain);
         let wall_count = walls.len();
-        let walls = if walls.is_empty() { None } else { Some(Walls::new(&walls, shifts)?) };
+        let walls =
+            if walls.is_empty() { None } else { Some(Walls::new(&walls, shifts, features.charging)?) };
         let asked = field.is_some();
+        let charging = field.as_ref().zip(transfer).map(|(field, transfer)| {
+            let of_field = (field.settings.relative_permittivity, field.settings.tolerance);
+            Charging::new(transfer, of_field, &materials, &particles, wall_count)
+        });
         let field = match field {
-            Some(f) if (0..particles.len()).any(|i| f.member[i] && particles.charge[i] != 0.0) => {
+            Some(f) if f.transfer.is_some() || is_charged(&f, &particles) => {
                 let saved = state.and_then(|s| s.field.as_ref());
                 if state.is_some() && saved.is_none() {
                     return Err(DemError::State("it holds no electric field".to_owned()));
@@ -127,6 +141,7 @@ impl Simulation {
             wall_count,
             neighbours.level_count(),
             asked,
+            transfer.as_ref(),
             field.as_ref().map(|f| f.source.field.plan()),
         );
         let grains = Grains::new(&particles, level, features.rotation());
@@ -146,6 +161,8 @@ impl Simulation {
             neighbours,
             walls,
             field,
+            charging,
+            extras: Extras::default(),
             travel: 0.0,
             speed: particles.velocity.iter().map(|v| v.norm()).fold(0.0, f64::max),
             particles,
@@ -194,6 +211,11 @@ impl Simulation {
     }
 }
 
+/// Whether any member of a field is charged.
+fn is_charged(field: &FieldStageSetup, particles: &Particles) -> bool {
+    field.member.iter().zip(&particles.charge).any(|(member, charge)| *member && *charge != 0.0)
+}
+
 /// Infinite along periodic axes.
 fn bounds(domain: &Domain) -> Bounds {
     let side = |corner: Vector3<f64>, infinite: f64| {
@@ -211,6 +233,10 @@ fn check_state(setup: &Setup, state: &State) -> Result<(), DemError> {
         if slot.is_none_or(|seen| std::mem::replace(seen, true)) {
             return Err(DemError::State(format!("grain {original} of {total} is unknown or named twice")));
         }
+    }
+    let transfers = setup.field.as_ref().is_some_and(|field| field.transfer.is_some());
+    if state.charging.as_ref().map(|charging| charging.charge.len()) != transfers.then_some(total) {
+        return Err(DemError::State("its charging does not match the scene's".to_owned()));
     }
     let lengths = [state.centre.len(), state.velocity.len(), state.angular.len(), state.force.len()];
     if lengths.iter().any(|&n| n != count) || state.reference.len() != count {

@@ -2,6 +2,7 @@
 
 use super::{ChunkWalls, Entry, Shape, Solid, WallContact};
 use crate::cells::NO_SHIFT;
+use crate::charging::Growth;
 use crate::chunks::CHUNK;
 use crate::grains::Grains;
 use crate::mesh_wall::MOST_CONTACTS;
@@ -13,7 +14,7 @@ impl ChunkWalls {
     pub(super) fn fill(
         &mut self,
         k: usize,
-        solids: &[Solid],
+        (solids, charge): (&[Solid], bool),
         shifts: &[[f64; 3]; 32],
         domain: &Domain,
         grains: &Grains,
@@ -23,6 +24,7 @@ impl ChunkWalls {
         self.entries.clear();
         self.triangles.clear();
         self.contacts.clear();
+        self.growth.clear();
         let mut near = Vec::new();
         let mut most = 0;
         for i in k * CHUNK..grains.len().min((k + 1) * CHUNK) {
@@ -44,6 +46,7 @@ impl ChunkWalls {
                 if room > 0 {
                     let contacts = self.contacts.len();
                     self.contacts.resize(contacts + room, WallContact::default());
+                    self.growth.resize(if charge { contacts + room } else { 0 }, Growth::default());
                     let original = grains.original[i];
                     let from = histories.partition_point(|h| (h.grain, h.wall) < (original, wall as u32));
                     let mut count = 0;
@@ -52,9 +55,13 @@ impl ChunkWalls {
                         self.contacts[contacts + count] = WallContact {
                             normal: h.normal.into(),
                             overlap: h.overlap,
+                            triangle: h.triangle,
                             spring: h.spring,
                             rolling: h.rolling,
                         };
+                        if charge {
+                            self.growth[contacts + count] = h.growth;
+                        }
                         count += 1;
                     }
                     self.entries.push(Entry {

@@ -1,0 +1,103 @@
+//! Which grains touch which, while charges change so fast that contacts must see each other's.
+
+use crate::cells::{INDEX_BITS, INDEX_MASK};
+use crate::chunks::CHUNK;
+use crate::grains::Grains;
+use crate::neighbours::Neighbours;
+use amberfield_core::Vector3;
+
+/// Two places closer than this, over their distance from the grain, are the same grain's.
+const SAME: f64 = 1e-9;
+
+/// A partner that is no grain: a wall.
+pub(super) const NOBODY: usize = usize::MAX;
+
+/// A grain that touches another.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Toucher {
+    pub(super) grain: usize,
+    /// From the grain that it touches to it [m].
+    pub(super) offset: Vector3<f64>,
+}
+
+/// The touching grains of every grain, sorted indices.
+#[derive(Debug, Default)]
+pub(super) struct Around {
+    start: Vec<u32>,
+    touchers: Vec<Toucher>,
+}
+
+impl Around {
+    pub(super) fn build(&mut self, grains: &Grains, neighbours: &Neighbours) {
+        self.start.clear();
+        self.start.resize(grains.len() + 2, 0);
+        each_touching(grains, neighbours, |i, j, _| {
+            self.start[i + 2] += 1;
+            self.start[j + 2] += 1;
+        });
+        for i in 2..self.start.len() {
+            self.start[i] += self.start[i - 1];
+        }
+        let nobody = Toucher { grain: 0, offset: Vector3::zeros() };
+        self.touchers.clear();
+        self.touchers.resize(self.start[grains.len() + 1] as usize, nobody);
+        each_touching(grains, neighbours, |i, j, offset| {
+            for (a, b, offset) in [(i, j, offset), (j, i, -offset)] {
+                let slot = &mut self.start[a + 1];
+                self.touchers[*slot as usize] = Toucher { grain: b, offset };
+                *slot += 1;
+            }
+        });
+    }
+
+    /// Whether it has been built for so many grains.
+    pub(super) fn is_of(&self, grains: &Grains) -> bool {
+        self.start.len() == grains.len() + 2
+    }
+
+    pub(super) fn of(&self, grain: usize) -> &[Toucher] {
+        &self.touchers[self.start[grain] as usize..self.start[grain + 1] as usize]
+    }
+
+    /// Calls `each` with the grains that touch i or j, once each and neither of the two; offsets are from i.
+    pub(super) fn beside(&self, i: usize, j: &Toucher, mut each: impl FnMut(usize, Vector3<f64>)) {
+        let same = |a: &Vector3<f64>, b: &Vector3<f64>| {
+            (a - b).norm_squared() < SAME * SAME * j.offset.norm_squared()
+        };
+        let of_i = self.of(i);
+        for toucher in of_i.iter().filter(|t| t.grain != j.grain || !same(&t.offset, &j.offset)) {
+            each(toucher.grain, toucher.offset);
+        }
+        if j.grain == NOBODY {
+            return;
+        }
+        for toucher in self.of(j.grain) {
+            let offset = j.offset + toucher.offset;
+            let known = of_i.iter().any(|t| t.grain == toucher.grain && same(&t.offset, &offset));
+            let itself = toucher.grain == i && same(&offset, &Vector3::zeros());
+            if !(known || itself) {
+                each(toucher.grain, offset);
+            }
+        }
+    }
+}
+
+fn each_touching(grains: &Grains, neighbours: &Neighbours, mut each: impl FnMut(usize, usize, Vector3<f64>)) {
+    for (k, list) in neighbours.lists.iter().enumerate() {
+        for local in 0..list.start.len() - 1 {
+            let i = k * CHUNK + local;
+            for entry in list.start[local] as usize..list.start[local + 1] as usize {
+                if list.touching[entry] {
+                    let code = list.partner[entry];
+                    each(i, (code & INDEX_MASK) as usize, offset(grains, neighbours, i, code));
+                }
+            }
+        }
+    }
+}
+
+/// From grain i to the partner that a list's code names [m].
+pub(super) fn offset(grains: &Grains, neighbours: &Neighbours, i: usize, code: u32) -> Vector3<f64> {
+    let shift = Vector3::from(neighbours.shifts[(code >> INDEX_BITS) as usize]);
+    grains.position((code & INDEX_MASK) as usize) - grains.position(i) + shift
+}

@@ -1,0 +1,199 @@
+//! E_x: the field at a contact of everything but the colliders.
+//!
+//! Every evaluation of the field is asked for E at the contacts too, those that touch and those that may touch before the next one: places
+//! without charge, at which every method gives the field of all charges with all images. Less the colliders' own fields, and at a wall
+//! that is a conductor of the field less the grain's own image, it is E_x. A grounded wall that the field does not know mirrors
+//! the others' charges in its tangent plane at the contact, which doubles their normal field there.
+//!
+//! A contact that was not foreseen has until the next evaluation the mean of E at the two centres without the partner's field, or at a wall
+//! E at the centre without the own image.
+
+use super::around::Toucher;
+use super::pairs::Pair;
+use super::{Charging, Traders};
+use crate::field_stage::Extras;
+use crate::grains::Grains;
+use crate::neighbours::Neighbours;
+use crate::walls::{Touch, Walls};
+use amberfield_core::{Axis, Domain, Side, Vector3, WallCharging};
+
+/// How far before a wall its field is asked for, over the radius: a wall of facets may lie outside the field's curved domain.
+const BEFORE_WALL: f64 = 0.02;
+/// A wall this close to a face of the domain, over the radius, is the face.
+const SAME_FACE: f64 = 1e-6;
+
+/// A contact at which E is asked for.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Probe {
+    slot: Slot,
+    normal: Vector3<f64>,
+    /// The colliders' own part of E·n [V/m].
+    own: f64,
+    factor: f64,
+}
+
+#[derive(Clone, Copy, Debug)]
+enum Slot {
+    Pair { chunk: usize, entry: usize },
+    Wall([u32; 2]),
+}
+
+impl Charging {
+    /// Adds the charges of walls to what an evaluation takes.
+    pub(crate) fn add_facets(&self, extras: &mut Extras) {
+        for facet in self.facets.all() {
+            if let Some(place) = facet.place {
+                extras.push(place, facet.charge);
+            }
+        }
+    }
+
+    /// Adds the charges of walls and the places of contacts, those of pairs up to `margin` [m] apart included.
+    pub(crate) fn ask(
+        &mut self,
+        traders: Traders<'_>,
+        neighbours: &Neighbours,
+        walls: Option<&Walls>,
+        (charge, margin): (&[f64], f64),
+        extras: &mut Extras,
+    ) {
+        let Traders { domain, grains, .. } = traders;
+        self.add_facets(extras);
+        let mut probes = std::mem::take(&mut self.probes);
+        probes.clear();
+        let k = self.coulomb;
+        let of = |grain: usize| charge[grains.original[grain] as usize];
+        Self::pairs_within(traders, neighbours, margin, |pair, offset| {
+            let distance = offset.norm();
+            let normal = offset / distance;
+            let (a, b) = (grains.centre[pair.i][3], grains.centre[pair.j][3]);
+            let to_i = a - 0.5 * (a + b - distance);
+            let to_j = distance - to_i;
+            let own = k * (of(pair.i) / (to_i * to_i) - of(pair.j) / (to_j * to_j));
+            extras.push(inside(domain, grains.position(pair.i) + normal * to_i), 0.0);
+            let slot = Slot::Pair { chunk: pair.chunk, entry: pair.entry };
+            probes.push(Probe { slot, normal, own, factor: 1.0 });
+        });
+        for touch in walls.into_iter().flat_map(|walls| walls.touches(grains)) {
+            if traders.member(touch.grain).is_none() {
+                continue;
+            }
+            let Touch { grain, normal, distance, .. } = touch;
+            let before = BEFORE_WALL * grains.centre[grain][3];
+            let place = grains.position(grain) + normal * (distance - before);
+            let charge = of(grain);
+            let mut own = k * charge / (distance - before).powi(2);
+            let mut factor = 1.0;
+            if is_conductor(domain, grains, &touch) {
+                own += k * charge / (distance + before).powi(2);
+            } else if touch.charging == WallCharging::Grounded {
+                factor = 2.0;
+            }
+            if let Some((at, held)) = self.facet_of(traders, walls, &touch) {
+                let from = place - at;
+                own += k * held * from.dot(&normal) / from.norm().powi(3);
+            }
+            extras.push(inside(domain, place), 0.0);
+            probes.push(Probe { slot: Slot::Wall(touch.slot), normal, own, factor });
+        }
+        self.probes = probes;
+    }
+
+    /// Place and charge of the insulating facet that a contact touches, if it has been charged.
+    fn facet_of(
+        &self,
+        traders: Traders<'_>,
+        walls: Option<&Walls>,
+        touch: &Touch,
+    ) -> Option<(Vector3<f64>, f64)> {
+        let place = traders.grains.position(touch.grain) + touch.normal * touch.distance;
+        let facet = self.facets.known(touch.wall, walls?.surface(touch), place)?;
+        Some((facet.place?, facet.charge))
+    }
+
+    /// Takes E [V/m] at what was asked for.
+    pub(crate) fn take(
+        &mut self,
+        e: &[Vector3<f64>],
+        neighbours: &mut Neighbours,
+        mut walls: Option<&mut Walls>,
+        charge: &[f64],
+    ) {
+        let sources = e.len() - self.probes.len();
+        for (probe, e) in self.probes.iter().zip(&e[sources..]) {
+            let field = Some(probe.factor * (e.dot(&probe.normal) - probe.own));
+            match (probe.slot, walls.as_mut()) {
+                (Slot::Pair { chunk, entry }, _) => neighbours.lists[chunk].growth[entry].field = field,
+                (Slot::Wall(slot), Some(walls)) => walls.growth_mut(slot).field = field,
+                (Slot::Wall(_), None) => {}
+            }
+        }
+        self.evaluated.copy_from_slice(charge);
+        self.lag = 0.0;
+    }
+
+    /// E_x·n of a pair that was not foreseen [V/m].
+    pub(super) fn unforeseen(
+        &self,
+        traders: Traders<'_>,
+        neighbours: &Neighbours,
+        pair: Pair,
+        charge: &[f64],
+    ) -> f64 {
+        let grains = traders.grains;
+        let offset = pair.offset(grains, neighbours);
+        let distance2 = offset.norm_squared();
+        let sum = (traders.field)(pair.i) + (traders.field)(pair.j);
+        let [of_i, of_j] = [pair.i, pair.j].map(|grain| charge[grains.original[grain] as usize]);
+        0.5 * (sum.dot(&offset) / distance2.sqrt() + self.coulomb * (of_j - of_i) / distance2)
+    }
+
+    /// The same at a wall.
+    pub(super) fn unforeseen_at_wall(&self, traders: Traders<'_>, touch: &Touch, charge: &[f64]) -> f64 {
+        let field = (traders.field)(touch.grain).dot(&touch.normal);
+        if is_conductor(traders.domain, traders.grains, touch) {
+            let own = charge[traders.grains.original[touch.grain] as usize];
+            field - self.coulomb * own / (4.0 * touch.distance * touch.distance)
+        } else if touch.charging == WallCharging::Grounded {
+            2.0 * field
+        } else {
+            field
+        }
+    }
+
+    /// Change of E·n since the last evaluation at a distance `reach` [m] along `normal` from grain i, made by the grains that touch i
+    /// or its partner.
+    pub(super) fn gained_beside(
+        &self,
+        grains: &Grains,
+        i: usize,
+        partner: &Toucher,
+        normal: Vector3<f64>,
+        reach: f64,
+        charge: &[f64],
+    ) -> f64 {
+        let mut sum = 0.0;
+        self.around.beside(i, partner, |grain, offset| {
+            let from = normal * reach - offset;
+            sum += self.gained(grains, grain, charge) * from.dot(&normal) / from.norm().powi(3);
+        });
+        self.coulomb * sum
+    }
+}
+
+/// Whether the wall that is touched is a conducting face of the domain.
+fn is_conductor(domain: &Domain, grains: &Grains, touch: &Touch) -> bool {
+    let place = grains.position(touch.grain) + touch.normal * touch.distance;
+    let slack = SAME_FACE * grains.centre[touch.grain][3];
+    Axis::ALL.into_iter().any(|axis| {
+        let (at, along) = (place[axis.index()], touch.normal[axis.index()]);
+        let low = along < -1.0 + SAME_FACE && (at - domain.min()[axis.index()]).abs() < slack;
+        let high = along > 1.0 - SAME_FACE && (at - domain.max()[axis.index()]).abs() < slack;
+        (low && domain.face(axis, Side::Min).is_conductor())
+            || (high && domain.face(axis, Side::Max).is_conductor())
+    })
+}
+
+fn inside(domain: &Domain, place: Vector3<f64>) -> Vector3<f64> {
+    domain.wrap(place).sup(&domain.min()).inf(&domain.max())
+}

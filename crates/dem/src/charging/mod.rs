@@ -1,0 +1,213 @@
+//! Charge traded at contacts that grow.
+//!
+//! Every step follows the contact areas. What they grow by moves charge a few steps later for pairs of grains, at once at walls: the
+//! exponential update is exact for any growth, so that several steps' growth in one update is the same charge. Contacts are taken one after another, each
+//! with the charges that the ones before it left, first to last and then last to first in turn; that is what keeps networks of contacts bounded. The order
+//! follows the lists, which depend on the grains alone, and one thread takes it: results do not depend on their number, and the work is a small
+//! part of a step.
+//!
+//! The field of everything else at a contact, E_x, comes from the last evaluation of the field, see `contact_field`. Between two evaluations charges
+//! change: as long as no contact has relaxed by a few per cent since, that is left to the next evaluation, which is asked for when charges
+//! have changed by more than the tolerance allows; after that contacts see the present charges of the grains that touch theirs.
+
+mod around;
+mod contact_field;
+mod facets;
+mod growth;
+mod materials;
+mod pairs;
+mod walls;
+
+pub use facets::Facet;
+pub(crate) use growth::{Grown, Growth};
+pub(crate) use pairs::follow;
+
+use crate::chunks::CHUNK;
+use crate::grains::Grains;
+use crate::neighbours::Neighbours;
+use crate::state::{ChargingState, PairGrowth};
+use amberfield_core::constants::{VACUUM_PERMITTIVITY, coulomb_constant};
+use amberfield_core::{ChargeTransfer, Domain, Material, Particles, Vector3};
+use amberfield_laws::charge_transfer::Drive;
+use amberfield_laws::dielectric_breakdown;
+use around::Around;
+use contact_field::Probe;
+use facets::Facets;
+use materials::ChargingTable;
+use serde::{Deserialize, Serialize};
+
+/// Steps whose growth moves charge together.
+const EVERY: u64 = 10;
+/// Σ of the largest αΔA of every update since the last evaluation of the field from which on contacts see the charges of
+/// the grains that touch theirs, and at which the field is due.
+const LAG_SEEN: f64 = 0.02;
+const LAG_DUE: f64 = 0.1;
+/// Relative RMS change of the charges since the last evaluation at which the field is due, over the tolerance.
+const CHANGE_DUE: f64 = 2.0;
+
+/// What has moved.
+#[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
+pub struct Ledger {
+    /// Σ of the sizes of all charges moved [C].
+    pub moved: f64,
+    /// Charge given to each wall [C].
+    pub walls: Vec<f64>,
+}
+
+/// What a trade reads.
+#[derive(Clone, Copy)]
+pub(crate) struct Traders<'a> {
+    pub(crate) domain: &'a Domain,
+    pub(crate) grains: &'a Grains,
+    /// By the set-up's order.
+    pub(crate) member: &'a [bool],
+    /// E at the centre of a grain without its own field [V/m], sorted indices.
+    pub(crate) field: &'a dyn Fn(usize) -> Vector3<f64>,
+}
+
+impl Traders<'_> {
+    /// Index in the set-up's order, if the grain takes part.
+    fn member(&self, grain: usize) -> Option<usize> {
+        let original = self.grains.original[grain] as usize;
+        self.member[original].then_some(original)
+    }
+}
+
+/// The stage.
+#[derive(Debug)]
+pub(crate) struct Charging {
+    settings: ChargeTransfer,
+    permittivity: f64,
+    coulomb: f64,
+    tolerance: f64,
+    table: ChargingTable,
+    facets: Facets,
+    pub(crate) ledger: Ledger,
+    backwards: bool,
+    /// Σ of the largest αΔA of every update since the last evaluation.
+    lag: f64,
+    /// Charges at the last evaluation, by the set-up's order [C].
+    evaluated: Vec<f64>,
+    probes: Vec<Probe>,
+    around: Around,
+    /// Sorted indices of the grains whose charge changed in the last trade.
+    pub(crate) changed: Vec<u32>,
+}
+
+impl Charging {
+    pub(crate) fn new(
+        settings: ChargeTransfer,
+        (relative_permittivity, tolerance): (f64, f64),
+        materials: &[Material],
+        particles: &Particles,
+        walls: usize,
+    ) -> Self {
+        let permittivity = VACUUM_PERMITTIVITY * relative_permittivity;
+        let largest = particles.radius.iter().copied().fold(0.0, f64::max);
+        Self {
+            settings,
+            permittivity,
+            coulomb: coulomb_constant(relative_permittivity),
+            tolerance,
+            table: ChargingTable::new(materials, &settings, permittivity),
+            facets: Facets::new(largest),
+            ledger: Ledger { moved: 0.0, walls: vec![0.0; walls] },
+            backwards: false,
+            lag: 0.0,
+            evaluated: particles.charge.clone(),
+            probes: Vec::new(),
+            around: Around::default(),
+            changed: Vec::new(),
+        }
+    }
+
+    pub(crate) fn state(&self, particles: &Particles, neighbours: &Neighbours) -> ChargingState {
+        let mut pairs = Vec::new();
+        for (k, list) in neighbours.lists.iter().enumerate() {
+            let known = list.growth.iter().enumerate().filter(|(_, growth)| **growth != Growth::default());
+            pairs.extend(
+                known.map(|(entry, growth)| PairGrowth { slot: [k as u32, entry as u32], growth: *growth }),
+            );
+        }
+        ChargingState {
+            charge: particles.charge.clone(),
+            evaluated: self.evaluated.clone(),
+            pairs,
+            grown: neighbours.lists.iter().map(|list| list.grown.clone()).collect(),
+            facets: self.facets.all().to_vec(),
+            ledger: self.ledger.clone(),
+            backwards: self.backwards,
+            lag: self.lag,
+        }
+    }
+
+    /// Goes on from a state; `Err` says what does not fit.
+    pub(crate) fn restore(
+        &mut self,
+        state: &ChargingState,
+        neighbours: &mut Neighbours,
+    ) -> Result<(), String> {
+        for pair in &state.pairs {
+            let list = neighbours.lists.get_mut(pair.slot[0] as usize);
+            let growth = list.and_then(|list| list.growth.get_mut(pair.slot[1] as usize));
+            *growth.ok_or_else(|| format!("charging of unknown contact {:?}", pair.slot))? = pair.growth;
+        }
+        if state.ledger.walls.len() != self.ledger.walls.len()
+            || state.evaluated.len() != self.evaluated.len()
+        {
+            return Err("charging of other walls or grains".to_owned());
+        }
+        for (list, grown) in neighbours.lists.iter_mut().zip(&state.grown) {
+            list.grown.clone_from(grown);
+        }
+        self.evaluated.clone_from(&state.evaluated);
+        self.facets.restore(&state.facets);
+        self.ledger = state.ledger.clone();
+        (self.backwards, self.lag) = (state.backwards, state.lag);
+        Ok(())
+    }
+
+    /// Whether pairs trade in a step.
+    pub(crate) fn is_due(step: u64) -> bool {
+        step.is_multiple_of(EVERY)
+    }
+
+    /// Whether only growth beyond a contact's largest area counts.
+    pub(crate) fn beyond(&self) -> bool {
+        self.settings.beyond_previous_maximum
+    }
+
+    /// Whether charges have changed so much that the field is due.
+    pub(crate) fn wants_field(&self, charge: &[f64]) -> bool {
+        let (mut change2, mut size2) = (0.0, 0.0);
+        for (now, before) in charge.iter().zip(&self.evaluated) {
+            change2 += (now - before) * (now - before);
+            size2 += before * before;
+        }
+        let most = CHANGE_DUE * self.tolerance;
+        self.lag > LAG_DUE || change2 > most * most * size2
+    }
+
+    /// Charged facets of walls.
+    pub(crate) fn facets(&self) -> &[Facet] {
+        self.facets.all()
+    }
+
+    /// What is left of a transfer under the breakdown field, if there is one; `work` as in `PairCharging`.
+    fn allowed(&self, drive: Drive, work: f64, transfer: f64) -> f64 {
+        let Some(breakdown) = self.settings.breakdown_field_v_m else { return transfer };
+        let normal_field = (drive.drive - work) / self.permittivity;
+        dielectric_breakdown::bounded(transfer, normal_field, drive.decay / self.permittivity, breakdown)
+    }
+
+    /// Charge that a grain has gained since the last evaluation [C].
+    fn gained(&self, grains: &Grains, grain: usize, charge: &[f64]) -> f64 {
+        let original = grains.original[grain] as usize;
+        charge[original] - self.evaluated[original]
+    }
+}
+
+/// Sorted index of a listed grain.
+fn sorted(chunk: usize, local: u32) -> usize {
+    chunk * CHUNK + local as usize
+}

@@ -1,0 +1,66 @@
+//! Grain with wall.
+
+use super::around::{NOBODY, Toucher};
+use super::{Charging, LAG_SEEN, Traders};
+use crate::walls::{Touch, Walls};
+use amberfield_core::{Vector3, WallCharging};
+use amberfield_laws::charge_transfer::{Grain, with_grounded_wall, with_insulating_facet};
+
+impl Charging {
+    /// Moves what is due between grains and walls. `charge` is by the set-up's order [C].
+    pub(crate) fn trade_walls(&mut self, traders: Traders<'_>, walls: &mut Walls, charge: &mut [f64]) {
+        let mut grown: Vec<Touch> =
+            walls.touches(traders.grains).filter(|touch| touch.growth.due() > 0.0).collect();
+        if self.backwards {
+            grown.reverse();
+        }
+        let mut largest = 0.0_f64;
+        for touch in grown {
+            let due = walls.growth_mut(touch.slot).take_due();
+            largest = largest.max(self.trade_wall(traders, walls, &touch, due, charge));
+        }
+        self.lag += largest;
+    }
+
+    /// Returns αΔA.
+    fn trade_wall(
+        &mut self,
+        traders: Traders<'_>,
+        walls: &Walls,
+        touch: &Touch,
+        due: f64,
+        charge: &mut [f64],
+    ) -> f64 {
+        let grains = traders.grains;
+        let Some(a) = traders.member(touch.grain) else { return 0.0 };
+        let materials = self.table.get(grains.material[touch.grain], touch.material);
+        let place = grains.position(touch.grain) + touch.normal * touch.distance;
+        let wall = (touch.wall, touch.charging);
+        let facet = self.facets.at(traders.domain, wall, walls.surface(touch), place, -touch.normal);
+        let mut field = touch.growth.field.unwrap_or_else(|| self.unforeseen_at_wall(traders, touch, charge));
+        if self.lag > LAG_SEEN && self.around.is_of(grains) {
+            let nobody = Toucher { grain: NOBODY, offset: Vector3::zeros() };
+            let gained =
+                self.gained_beside(grains, touch.grain, &nobody, touch.normal, touch.distance, charge);
+            field += gained * if touch.charging == WallCharging::Grounded { 2.0 } else { 1.0 };
+        }
+        let grain = Grain { charge: charge[a], radius: grains.centre[touch.grain][3] };
+        let [area, held] = {
+            let f = &self.facets.all()[facet as usize];
+            [f.area_m2, f.charge]
+        };
+        let (permittivity, work) = (self.permittivity, materials.work);
+        let drive = match touch.charging {
+            WallCharging::Insulating => with_insulating_facet(permittivity, work, grain, [area, held], field),
+            _ => with_grounded_wall(permittivity, work, grain, field),
+        };
+        let growth = due * materials.area_factor;
+        let moved = self.allowed(drive, work, drive.transfer(growth));
+        charge[a] -= moved;
+        self.facets.get_mut(facet).charge += moved;
+        self.ledger.walls[touch.wall as usize] += moved;
+        self.ledger.moved += moved.abs();
+        self.changed.push(touch.grain as u32);
+        drive.decay * growth
+    }
+}

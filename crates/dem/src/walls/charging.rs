@@ -1,0 +1,102 @@
+//! Contacts with walls as charge transfer sees them.
+
+use super::{Shape, Walls};
+use crate::charging::Growth;
+use crate::chunks::CHUNK;
+use crate::grains::Grains;
+use crate::mesh_wall::MOST_CONTACTS;
+use amberfield_core::{Vector3, WallCharging};
+use amberfield_laws::contact_area;
+
+/// A touching contact of a grain with a wall that trades charge.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Touch {
+    /// Chunk, and contact in it.
+    pub(crate) slot: [u32; 2],
+    /// Sorted index.
+    pub(crate) grain: usize,
+    pub(crate) wall: u32,
+    pub(crate) material: u16,
+    pub(crate) charging: WallCharging,
+    triangle: u32,
+    /// From the grain to the wall.
+    pub(crate) normal: Vector3<f64>,
+    /// Centre of the grain from the wall [m].
+    pub(crate) distance: f64,
+    pub(crate) growth: Growth,
+}
+
+/// What is touched.
+#[derive(Clone, Copy, Debug)]
+pub(crate) enum Surface {
+    Plane { point: Vector3<f64>, normal: Vector3<f64> },
+    Triangle { number: u32, corners: [Vector3<f64>; 3] },
+}
+
+impl Walls {
+    /// Follows the areas of all contacts at a step.
+    pub(crate) fn follow(&mut self, grains: &Grains, step: u64, beyond: bool) {
+        for (k, chunk) in self.chunks.iter_mut().enumerate() {
+            for entry in &chunk.entries {
+                let radius = grains.centre[k * CHUNK + entry.local as usize][3];
+                let touching = entry.contacts as usize..(entry.contacts + entry.count) as usize;
+                for (contact, growth) in
+                    chunk.contacts[touching.clone()].iter().zip(&mut chunk.growth[touching])
+                {
+                    growth.follow(contact_area::hertz(radius, contact.overlap), step, beyond);
+                }
+            }
+        }
+    }
+
+    /// Touching contacts with walls that trade charge, in order.
+    pub(crate) fn touches<'a>(&'a self, grains: &'a Grains) -> impl DoubleEndedIterator<Item = Touch> + 'a {
+        self.chunks.iter().enumerate().flat_map(move |(k, chunk)| {
+            chunk.entries.iter().flat_map(move |entry| {
+                let solid = &self.solids[entry.wall as usize];
+                let trades = solid.charging != WallCharging::None;
+                let count = if trades { entry.count } else { 0 };
+                (entry.contacts..entry.contacts + count).map(move |number| {
+                    let contact = &chunk.contacts[number as usize];
+                    let grain = k * CHUNK + entry.local as usize;
+                    Touch {
+                        slot: [k as u32, number],
+                        grain,
+                        wall: entry.wall,
+                        material: solid.material,
+                        charging: solid.charging,
+                        triangle: contact.triangle,
+                        normal: contact.normal,
+                        distance: grains.centre[grain][3] - contact.overlap,
+                        growth: chunk.growth[number as usize],
+                    }
+                })
+            })
+        })
+    }
+
+    /// The charging of a contact.
+    pub(crate) fn growth_mut(&mut self, [chunk, contact]: [u32; 2]) -> &mut Growth {
+        &mut self.chunks[chunk as usize].growth[contact as usize]
+    }
+
+    /// What a contact touches.
+    pub(crate) fn surface(&self, touch: &Touch) -> Surface {
+        match &self.solids[touch.wall as usize].shape {
+            Shape::Plane { point, normal } => Surface::Plane { point: *point, normal: *normal },
+            Shape::Mesh(mesh) => {
+                Surface::Triangle { number: touch.triangle, corners: mesh.corners(touch.triangle) }
+            }
+        }
+    }
+}
+
+/// Moves charging along with contacts that were others before; those that are gone have nothing due.
+pub(super) fn renew(growth: &mut [Growth], from: &[Option<usize>]) {
+    let mut old = [Growth::default(); MOST_CONTACTS];
+    let count = growth.len().min(MOST_CONTACTS);
+    old[..count].copy_from_slice(&growth[..count]);
+    for (growth, from) in growth.iter_mut().zip(from) {
+        *growth = from.map_or_else(Growth::default, |from| old[from]);
+    }
+}
