@@ -3,7 +3,7 @@
 use crate::machine::Machine;
 use crate::sections::{coupling, dem, field, kernel, open, rates, scaling};
 use crate::store::Store;
-use amberfield_study::{Plot, Series, write_plot};
+use amberfield_study::{Plot, Scale, Series, write_plot};
 use anyhow::{Context as _, Result};
 use std::fmt;
 
@@ -47,7 +47,7 @@ pub(crate) fn plot(store: &Store, name: &str, title: &str, axes: [&str; 2], all:
     if series.is_empty() {
         return Ok(());
     }
-    let plot = Plot { title, x: axes[0], y: axes[1], series: &series };
+    let plot = Plot { title, x: axes[0], y: axes[1], scales: [Scale::Logarithmic; 2], series: &series };
     Ok(write_plot(&store.path(&format!("pictures/{name}.svg")), &plot)?)
 }
 

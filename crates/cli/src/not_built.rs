@@ -3,21 +3,10 @@
 use crate::failure::Failure;
 use amberfield_scene::Scene;
 
-/// Refuses a scene that asks for what is not built. Without motion nothing touches.
-pub(crate) fn refuse(scene: &Scene, motion: bool) -> Result<(), Failure> {
-    let field = scene.electric_field.as_ref();
-    let asked = [
-        (scene.gas, "coupled gas flow", "remove [gas]"),
-        (
-            motion && field.is_some_and(|field| field.enable_collision_charge_transfer),
-            "charge transfer on contact",
-            "set electric_field.enable_collision_charge_transfer = false",
-        ),
-    ];
-    let lines: Vec<String> = asked
-        .into_iter()
-        .filter(|(asked, _, _)| *asked)
-        .map(|(_, what, advice)| format!("this version has no {what}; {advice}"))
-        .collect();
-    if lines.is_empty() { Ok(()) } else { Err(Failure::bad_input(lines.join("\n"))) }
+/// Refuses a scene that asks for what is not built.
+pub(crate) fn refuse(scene: &Scene) -> Result<(), Failure> {
+    if scene.gas {
+        return Err(Failure::bad_input("this version has no coupled gas flow; remove [gas]"));
+    }
+    Ok(())
 }

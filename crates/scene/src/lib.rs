@@ -16,7 +16,7 @@ pub use scene::{
     SolverSettings, parse_scene, read_scene,
 };
 pub use write::{
-    Cell, FieldColumns, FieldReport, FieldReportSeconds, History, PvdSeries, read_checkpoint,
-    write_atomically, write_checkpoint, write_field_csv, write_json, write_particles_csv, write_text,
-    write_vtu,
+    Cell, FacetCell, FieldColumns, FieldReport, FieldReportSeconds, History, PvdSeries, read_checkpoint,
+    write_atomically, write_checkpoint, write_facets_vtu, write_field_csv, write_json, write_particles_csv,
+    write_text, write_vtu,
 };

@@ -21,4 +21,4 @@ pub use error::StudyError;
 #[cfg(feature = "plots")]
 pub use picture::{PictureScene, write_picture};
 #[cfg(feature = "plots")]
-pub use plot::{Plot, Series, write_plot};
+pub use plot::{Plot, Scale, Series, write_plot};

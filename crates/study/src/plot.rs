@@ -1,6 +1,7 @@
-//! Curves on logarithmic axes, by plotters.
+//! Curves, by plotters.
 
 use crate::error::StudyError;
+use plotters::coord::ranged1d::ValueFormatter;
 use plotters::prelude::*;
 use plotters::style::{FontStyle, register_font};
 use std::path::Path;
@@ -10,8 +11,17 @@ use std::path::Path;
 pub struct Series {
     /// Its line in the legend.
     pub name: String,
-    /// (x, y), both above zero; others are left out.
+    /// (x, y); what a logarithmic axis cannot show is left out.
     pub points: Vec<(f64, f64)>,
+}
+
+/// How an axis is divided.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Scale {
+    /// Evenly.
+    Linear,
+    /// By powers of ten; values above zero alone are shown.
+    Logarithmic,
 }
 
 /// Curves in one frame.
@@ -23,6 +33,8 @@ pub struct Plot<'a> {
     pub x: &'a str,
     /// Label of the y axis, with its unit in brackets.
     pub y: &'a str,
+    /// Of x and y.
+    pub scales: [Scale; 2],
     /// The curves.
     pub series: &'a [Series],
 }
@@ -39,7 +51,7 @@ const COLOURS: [RGBColor; 6] = [
     RGBColor(86, 180, 233),
 ];
 
-/// Writes a plot with two logarithmic axes as SVG; the same plot gives the same file.
+/// Writes a plot as SVG; the same plot gives the same file.
 ///
 /// # Errors
 /// A file that cannot be written; a plot without points.
@@ -52,17 +64,39 @@ pub fn write_plot(path: &Path, plot: &Plot<'_>) -> Result<(), StudyError> {
 fn draw(plot: &Plot<'_>, into: &mut String) -> Result<(), String> {
     // A second registration of the same font is refused; the first one stays.
     let _registered = register_font(FONT, FontStyle::Normal, notosans::REGULAR_TTF);
-    let (x, y) = (range(plot, |point| point.0)?, range(plot, |point| point.1)?);
-    let failed = |error: DrawingAreaErrorKind<std::io::Error>| error.to_string();
+    let (x, y) = (range(plot, 0)?, range(plot, 1)?);
     let area = SVGBackend::with_string(into, SIZE).into_drawing_area();
     area.fill(&WHITE).map_err(failed)?;
-    let mut chart = ChartBuilder::on(&area)
-        .caption(plot.title, (FONT, 18))
-        .margin(12)
-        .x_label_area_size(44)
-        .y_label_area_size(64)
-        .build_cartesian_2d((x.0..x.1).log_scale(), (y.0..y.1).log_scale())
-        .map_err(failed)?;
+    let mut builder = ChartBuilder::on(&area);
+    builder.caption(plot.title, (FONT, 18)).margin(12).x_label_area_size(44).y_label_area_size(72);
+    let (x, y) = (x.0..x.1, y.0..y.1);
+    match plot.scales {
+        [Scale::Linear, Scale::Linear] => curves(builder.build_cartesian_2d(x, y), plot)?,
+        [Scale::Linear, Scale::Logarithmic] => curves(builder.build_cartesian_2d(x, y.log_scale()), plot)?,
+        [Scale::Logarithmic, Scale::Linear] => curves(builder.build_cartesian_2d(x.log_scale(), y), plot)?,
+        [Scale::Logarithmic, Scale::Logarithmic] => {
+            curves(builder.build_cartesian_2d(x.log_scale(), y.log_scale()), plot)?;
+        }
+    }
+    area.present().map_err(failed)
+}
+
+type SvgError = DrawingAreaErrorKind<std::io::Error>;
+
+fn failed(error: SvgError) -> String {
+    error.to_string()
+}
+
+/// Draws the axes, the curves and their names.
+fn curves<'s, X, Y>(
+    chart: Result<ChartContext<'s, SVGBackend<'s>, Cartesian2d<X, Y>>, SvgError>,
+    plot: &Plot<'_>,
+) -> Result<(), String>
+where
+    X: Ranged<ValueType = f64> + ValueFormatter<f64>,
+    Y: Ranged<ValueType = f64> + ValueFormatter<f64>,
+{
+    let mut chart = chart.map_err(failed)?;
     let label = |value: &f64| number(*value);
     chart
         .configure_mesh()
@@ -76,7 +110,7 @@ fn draw(plot: &Plot<'_>, into: &mut String) -> Result<(), String> {
         .draw()
         .map_err(failed)?;
     for (series, colour) in plot.series.iter().zip(COLOURS.into_iter().cycle()) {
-        let points: Vec<_> = positive(series).collect();
+        let points: Vec<_> = shown(plot, series).collect();
         let style = colour.stroke_width(2);
         chart
             .draw_series(LineSeries::new(points.iter().copied(), style))
@@ -94,30 +128,45 @@ fn draw(plot: &Plot<'_>, into: &mut String) -> Result<(), String> {
         .border_style(RGBColor(200, 203, 210))
         .position(SeriesLabelPosition::UpperRight)
         .draw()
-        .map_err(failed)?;
-    area.present().map_err(failed)
+        .map_err(failed)
 }
 
-/// The points that logarithmic axes can show.
-fn positive(series: &Series) -> impl Iterator<Item = (f64, f64)> {
-    let shown = |point: &(f64, f64)| [point.0, point.1].iter().all(|value| value.is_finite() && *value > 0.0);
-    series.points.iter().copied().filter(shown)
+/// The points that the axes can show.
+fn shown<'p>(plot: &Plot<'_>, series: &'p Series) -> impl Iterator<Item = (f64, f64)> + use<'p> {
+    let positive = plot.scales.map(|scale| scale == Scale::Logarithmic);
+    series.points.iter().copied().filter(move |point| {
+        let values = [point.0, point.1].into_iter().zip(positive);
+        values.into_iter().all(|(value, positive)| value.is_finite() && (!positive || value > 0.0))
+    })
 }
 
-/// The range of a coordinate with a margin.
-fn range(plot: &Plot<'_>, of: impl Fn((f64, f64)) -> f64) -> Result<(f64, f64), String> {
-    let values = plot.series.iter().flat_map(positive).map(of);
-    let (low, high) =
-        values.fold((f64::INFINITY, 0.0_f64), |(low, high), value| (low.min(value), high.max(value)));
-    if low > high { Err("it has no points".to_owned()) } else { Ok((low / 1.4, high * 1.4)) }
+/// The range of x (0) or y (1) with a margin.
+fn range(plot: &Plot<'_>, axis: usize) -> Result<(f64, f64), String> {
+    let points = plot.series.iter().flat_map(|series| shown(plot, series));
+    let values = points.map(|point| if axis == 0 { point.0 } else { point.1 });
+    let all = (f64::INFINITY, f64::NEG_INFINITY);
+    let (low, high) = values.fold(all, |(low, high), value| (low.min(value), high.max(value)));
+    if low > high {
+        return Err("it has no points".to_owned());
+    }
+    Ok(match plot.scales[axis] {
+        Scale::Logarithmic => (low / 1.4, high * 1.4),
+        Scale::Linear => {
+            let margin = 0.05 * if high > low { high - low } else { high.abs().max(1.0) };
+            (low - margin, high + margin)
+        }
+    })
 }
 
 /// A tick's label: short, powers of ten as 1e-4.
 fn number(value: f64) -> String {
-    if (1e-2..1e4).contains(&value) {
+    if value == 0.0 || (1e-2..1e4).contains(&value.abs()) {
         format!("{}", (value * 1e6).round() / 1e6)
     } else {
-        format!("{value:e}")
+        // Ticks are round numbers: what is beyond four digits is round-off.
+        let text = format!("{value:.3e}");
+        let (digits, power) = text.split_once('e').unwrap_or((&text, "0"));
+        format!("{}e{power}", digits.trim_end_matches('0').trim_end_matches('.'))
     }
 }
 
@@ -132,7 +181,13 @@ mod tests {
     #[test]
     fn a_plot_names_its_axes_and_curves_and_repeats() {
         let series = plot(vec![(1e-4, 2000.0), (1e-2, 500.0), (0.0, 3.0)]);
-        let plot = Plot { title: "Cost and error", x: "error", y: "time per grain [ns]", series: &series };
+        let plot = Plot {
+            title: "Cost and error",
+            x: "error",
+            y: "time per grain [ns]",
+            scales: [Scale::Logarithmic; 2],
+            series: &series,
+        };
         let (mut first, mut second) = (String::new(), String::new());
         draw(&plot, &mut first).unwrap();
         draw(&plot, &mut second).unwrap();
@@ -145,7 +200,7 @@ mod tests {
     #[test]
     fn a_plot_without_points_is_refused() {
         let series = plot(vec![(0.0, 1.0)]);
-        let plot = Plot { title: "", x: "", y: "", series: &series };
+        let plot = Plot { title: "", x: "", y: "", scales: [Scale::Logarithmic; 2], series: &series };
         assert!(draw(&plot, &mut String::new()).is_err());
     }
 }

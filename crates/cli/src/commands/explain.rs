@@ -25,7 +25,7 @@ pub(crate) fn explain(options: &ExplainOptions) -> Result<(), Failure> {
     for warning in &scene.warnings {
         line(format_args!("warning: {warning}"));
     }
-    not_built::refuse(&scene, scene.time.is_some())?;
+    not_built::refuse(&scene)?;
     let solver = connect_solver(&mut scene)?;
     if scene.time.is_some() { explain_run(&scene, solver) } else { explain_field(&scene, solver) }
 }

@@ -18,7 +18,7 @@ use std::time::Instant;
 pub(crate) fn field(options: &FieldOptions) -> Result<(), Failure> {
     let out = out_file(options)?;
     let mut scene = read_scene(&options.scene, &overrides(options), Purpose::Field)?;
-    not_built::refuse(&scene, false)?;
+    not_built::refuse(&scene)?;
     for warning in &scene.warnings {
         tracing::warn!("{warning}");
     }

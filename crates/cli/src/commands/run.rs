@@ -4,7 +4,9 @@ use crate::arguments::{Common, RunOptions};
 use crate::failure::Failure;
 use crate::logging::Log;
 use crate::progress::Progress;
-use crate::run::{Clock, Ending, Existing, RunFolder, Saved, Session, connect_solver, scene_name, setup_of};
+use crate::run::{
+    Clock, Ending, Existing, RunFolder, Saved, Session, connect_solver, histogram, scene_name, setup_of,
+};
 use crate::{interrupt, not_built, plan_text, print};
 use amberfield_dem::Simulation;
 use amberfield_scene::{Purpose, read_checkpoint, read_scene, write_json, write_text};
@@ -23,7 +25,7 @@ pub(crate) fn run(options: &RunOptions, common: &Common, log: &Log) -> Result<()
     let out = out_folder(options)?;
     RunFolder::check(&out, existing, &options.scene)?;
     let mut scene = read_scene(&options.scene, &options.set, Purpose::Run)?;
-    not_built::refuse(&scene, true)?;
+    not_built::refuse(&scene)?;
     for warning in &scene.warnings {
         tracing::warn!("{warning}");
     }
@@ -113,6 +115,10 @@ fn finish(session: &Session<'_>, scene_path: &Path, first: u64, ending: Ending) 
     warn_about_limits(session, first);
     tell_intervals(simulation);
     draw(session, scene_path);
+    if simulation.ledger().is_some() {
+        histogram::plot(session.folder);
+    }
+    tell_charges(simulation);
     let seconds = session.begun.elapsed().as_secs_f64();
     #[expect(clippy::cast_precision_loss, reason = "a rate for the eye")]
     let rate = (simulation.step_index() - first) as f64 / seconds;
@@ -144,6 +150,17 @@ fn tell_intervals(simulation: &Simulation) {
             simulation.step_index(),
             intervals.error(),
             intervals.largest_error,
+        );
+    }
+}
+
+/// Says what charge transfer has moved.
+fn tell_charges(simulation: &Simulation) {
+    if let Some(ledger) = simulation.ledger() {
+        let walls: f64 = ledger.walls.iter().sum();
+        tracing::info!(
+            "charge transfer: {:.3e} C moved at contacts, {walls:.3e} C given to walls",
+            ledger.moved
         );
     }
 }

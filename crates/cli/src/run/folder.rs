@@ -1,5 +1,6 @@
 //! The run folder.
 
+use super::histogram;
 use crate::failure::Failure;
 use crate::machine;
 use std::fs;
@@ -7,12 +8,17 @@ use std::io::Write as _;
 use std::path::{Path, PathBuf};
 
 /// Everything that a run may write.
-const OUTPUTS: [&str; 9] = [
+const OUTPUTS: [&str; 14] = [
     "scene.toml",
     "log.jsonl",
     "history.csv",
     "particles",
     "particles.pvd",
+    "walls",
+    "walls.pvd",
+    histogram::FILE,
+    "charge_histogram.svg",
+    "charge_to_mass_histogram.svg",
     "checkpoints",
     "tuning.json",
     "summary.json",
@@ -93,6 +99,12 @@ impl RunFolder {
         Ok(Self { path: path.to_path_buf() })
     }
 
+    /// Makes a folder in the folder.
+    pub(crate) fn make(&self, name: &str) -> Result<(), Failure> {
+        let path = self.path.join(name);
+        fs::create_dir_all(&path).map_err(|error| Failure::bad_input(format!("{}: {error}", path.display())))
+    }
+
     /// A file of the folder.
     pub(crate) fn file(&self, name: &str) -> PathBuf {
         self.path.join(name)
@@ -126,7 +138,7 @@ pub(crate) fn is_stale(folder: &Path) -> bool {
 /// Removes what a process that went away left in its run folder: the mark and half-written files. Results stay.
 pub(crate) fn remove_leftovers(folder: &Path) -> std::io::Result<usize> {
     let mut removed = 0;
-    for place in [folder.to_path_buf(), folder.join("particles"), folder.join("checkpoints")] {
+    for place in ["", "particles", "walls", "checkpoints"].map(|name| folder.join(name)) {
         let Ok(entries) = fs::read_dir(place) else { continue };
         for entry in entries.flatten() {
             let name = entry.file_name();

@@ -1,10 +1,13 @@
 //! Rows of the history and files of the grains.
 
 use super::folder::RunFolder;
+use super::histogram::Histogram;
 use super::schedule::Schedule;
 use crate::failure::Failure;
-use amberfield_dem::{ElectricEnergy, Simulation};
-use amberfield_scene::{Cell, History, PvdSeries, Scene, write_particles_csv, write_vtu};
+use amberfield_dem::{ElectricEnergy, Facet, Simulation};
+use amberfield_scene::{
+    Cell, FacetCell, History, PvdSeries, Scene, write_facets_vtu, write_particles_csv, write_vtu,
+};
 
 /// What a run writes while it goes.
 #[derive(Debug)]
@@ -12,6 +15,10 @@ pub(crate) struct Record {
     history: History,
     columns: Columns,
     series: PvdSeries,
+    /// Charge on walls; `None` where no wall takes any.
+    walls: Option<PvdSeries>,
+    /// Charges of the grains; `None` where they stay as they are.
+    histogram: Option<Histogram>,
     last_row: Option<u64>,
     last_frame: Option<u64>,
 }
@@ -21,6 +28,8 @@ pub(crate) struct Record {
 struct Columns {
     gravity: bool,
     field: bool,
+    transfer: bool,
+    walls: bool,
     limited: bool,
     solver: bool,
     stages: Vec<&'static str>,
@@ -31,6 +40,8 @@ impl Columns {
         Self {
             gravity: scene.time.as_ref().is_some_and(|time| time.gravity_m_s2.norm() > 0.0),
             field: simulation.plan().has("field"),
+            transfer: simulation.ledger().is_some(),
+            walls: simulation.ledger().is_some_and(|ledger| !ledger.walls.is_empty()),
             limited: simulation.plan().has("field")
                 && scene.electric_field.as_ref().is_some_and(|field| field.limit_field_force),
             solver: simulation.plan().has("field") && scene.solver.is_some(),
@@ -43,6 +54,8 @@ impl Columns {
         names.extend(self.gravity.then_some("gravity_J"));
         names.extend(self.field.then_some("electric_J"));
         names.extend(self.field.then_some("net_charge_C"));
+        names.extend(self.transfer.then_some("contact_charge_C"));
+        names.extend(self.walls.then_some("wall_charge_C"));
         names.extend(self.limited.then_some("limited"));
         names.push("contacts");
         names.extend(self.solver.then_some("solver_iterations"));
@@ -69,7 +82,12 @@ impl Record {
         let columns = Columns::new(scene, simulation);
         let history = History::create(&folder.file("history.csv"), &columns.names())?;
         let series = PvdSeries::new(&folder.file("particles.pvd"));
-        Ok(Self { history, columns, series, last_row: None, last_frame: None })
+        let walls = columns.walls.then(|| PvdSeries::new(&folder.file("walls.pvd")));
+        if walls.is_some() {
+            folder.make("walls")?;
+        }
+        let histogram = columns.transfer.then(|| Histogram::create(folder)).transpose()?;
+        Ok(Self { history, columns, series, walls, histogram, last_row: None, last_frame: None })
     }
 
     /// Records of a run that goes on: what was written after its checkpoint, or beside the schedule, is removed.
@@ -87,12 +105,17 @@ impl Record {
         let is_kept =
             |name: &str| step_of(name).is_some_and(|step| step <= reached && schedule.frame_is_due(step));
         let series = PvdSeries::resume(&folder.file("particles.pvd"), is_kept);
-        let files = std::fs::read_dir(folder.file("particles")).into_iter().flatten().flatten();
+        let walls = columns.walls.then(|| PvdSeries::resume(&folder.file("walls.pvd"), is_kept));
+        let frame_is_due = |step| schedule.frame_is_due(step);
+        let histogram =
+            columns.transfer.then(|| Histogram::resume(folder, reached, frame_is_due)).transpose()?;
+        let files = |name: &str| std::fs::read_dir(folder.file(name)).into_iter().flatten().flatten();
+        let files = files("particles").chain(files("walls"));
         for file in files.filter(|file| !is_kept(&file.file_name().to_string_lossy())) {
             // A file that stays only takes room: the series does not name it.
             let _ = std::fs::remove_file(file.path());
         }
-        Ok(Self { history, columns, series, last_row: None, last_frame: None })
+        Ok(Self { history, columns, series, walls, histogram, last_row: None, last_frame: None })
     }
 
     /// Appends a row to the history, once per step.
@@ -113,6 +136,10 @@ impl Record {
         if self.columns.field {
             row.push(Cell::Number(energies.electric.unwrap_or_default()));
             row.push(Cell::Number(simulation.particles().net_charge()));
+        }
+        if let Some(ledger) = simulation.ledger() {
+            row.push(Cell::Number(ledger.moved));
+            row.extend(self.columns.walls.then(|| Cell::Number(ledger.walls.iter().sum())));
         }
         if self.columns.limited {
             row.push(Cell::Count(simulation.limited().unwrap_or_default().grains));
@@ -147,9 +174,23 @@ impl Record {
             let vectors: Vec<_> = forces.iter().map(|forces| ("electric_force_N", &forces[..])).collect();
             write_vtu(&folder.file(&file), &particles, &vectors)?;
             self.series.append(simulation.time_s(), &file)?;
+            if let Some(walls) = &mut self.walls {
+                let file = format!("walls/facets_{step:012}.vtu");
+                let facets: Vec<_> = simulation.facets().iter().map(facet_cell).collect();
+                write_facets_vtu(&folder.file(&file), &facets)?;
+                walls.append(simulation.time_s(), &file)?;
+            }
+        }
+        if let Some(histogram) = &mut self.histogram {
+            histogram.append(step, simulation.time_s(), &particles)?;
         }
         Ok(())
     }
+}
+
+fn facet_cell(facet: &Facet) -> FacetCell {
+    let Facet { wall, corners, area_m2, charge, .. } = *facet;
+    FacetCell { wall, corners, area_m2, charge_c: charge }
 }
 
 /// The step in a file's name.

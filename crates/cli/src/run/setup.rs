@@ -1,7 +1,7 @@
 //! Description to set-up of a simulation.
 
 use crate::failure::Failure;
-use amberfield_core::{Domain, FieldSettings, Vector3};
+use amberfield_core::{ChargeTransfer, Domain, FieldSettings, Vector3};
 use amberfield_dem::{FieldStageSetup, Setup};
 use amberfield_field::far::Connect;
 use amberfield_field::{Choice, ElectricField};
@@ -49,6 +49,7 @@ pub(crate) fn setup_of(
         member: members(scene),
         choice,
         solver,
+        transfer: transfer_of(scene),
         fallback: falls_back(scene),
     });
     Ok(Setup {
@@ -59,6 +60,18 @@ pub(crate) fn setup_of(
         time,
         field,
     })
+}
+
+/// Charge transfer on contact, if the scene asks for it.
+fn transfer_of(scene: &Scene) -> Option<ChargeTransfer> {
+    let field = scene.electric_field.as_ref().filter(|field| field.enable_collision_charge_transfer)?;
+    let plain = ChargeTransfer::new(field.charge_transfer_cutoff_m);
+    Some(scene.charge_transfer.as_ref().map_or(plain, |asked| ChargeTransfer {
+        beyond_previous_maximum: asked.beyond_previous_maximum,
+        breakdown_field_v_m: asked.breakdown_field_v_m,
+        stiffness_correction: asked.stiffness_correction.then_some(asked.velocity_ratio),
+        ..plain
+    }))
 }
 
 /// Whether the internal grid goes on when the field solver is lost.

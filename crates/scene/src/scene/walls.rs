@@ -80,7 +80,9 @@ fn read_wall(
             ));
         }
     };
-    Ok((Wall { name, shape, material, charging: charging.unwrap_or_default() }, patch))
+    // Meshes are conductors, primitive walls take no charge, unless asked.
+    let usual = if matches!(shape, WallShape::Mesh(_)) { WallCharging::Grounded } else { WallCharging::None };
+    Ok((Wall { name, shape, material, charging: charging.unwrap_or(usual) }, patch))
 }
 
 fn read_plane(table: &Table<'_>) -> Result<WallShape, SceneError> {

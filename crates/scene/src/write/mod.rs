@@ -14,4 +14,4 @@ pub use field_csv::{FieldColumns, FieldReport, FieldReportSeconds, write_field_c
 pub use history::{Cell, History};
 pub use particles_csv::write_particles_csv;
 pub use pvd::PvdSeries;
-pub use vtu::write_vtu;
+pub use vtu::{FacetCell, write_facets_vtu, write_vtu};

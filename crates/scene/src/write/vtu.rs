@@ -20,8 +20,9 @@ enum Values<'a> {
         from: i64,
         count: usize,
     },
-    /// The VTK cell type of a vertex, once per grain.
-    VertexType(usize),
+    /// VTK cell types.
+    CellTypes(Vec<u8>),
+    Integers(Vec<i64>),
 }
 
 impl Values<'_> {
@@ -32,7 +33,8 @@ impl Values<'_> {
             Self::Ids(_) => ("UInt64", 1),
             Self::Groups(_) => ("UInt16", 1),
             Self::Count { .. } => ("Int64", 1),
-            Self::VertexType(_) => ("UInt8", 1),
+            Self::CellTypes(_) => ("UInt8", 1),
+            Self::Integers(_) => ("Int64", 1),
         }
     }
 
@@ -43,7 +45,8 @@ impl Values<'_> {
             Self::Ids(values) => 8 * values.len(),
             Self::Groups(values) => 2 * values.len(),
             Self::Count { count, .. } => 8 * count,
-            Self::VertexType(count) => *count,
+            Self::CellTypes(types) => types.len(),
+            Self::Integers(values) => 8 * values.len(),
         }
     }
 
@@ -63,10 +66,21 @@ impl Values<'_> {
             Self::Count { from, count } => {
                 (0_i64..).take(*count).try_for_each(|value| writer.write_all(&(value + from).to_le_bytes()))
             }
-            Self::VertexType(count) => (0..*count).try_for_each(|_| writer.write_all(&[1])),
+            Self::CellTypes(types) => writer.write_all(types),
+            Self::Integers(values) => {
+                values.iter().try_for_each(|value| writer.write_all(&value.to_le_bytes()))
+            }
         }
     }
 }
+
+/// VTK's numbers of cell types.
+const VERTEX: u8 = 1;
+const TRIANGLE: u8 = 5;
+const QUAD: u8 = 9;
+
+/// An array with its name.
+type Named<'a> = (&'a str, Values<'a>);
 
 /// Writes grains: position, id, radius, charge, velocities, material, group, and further vectors by name, one per
 /// grain.
@@ -93,18 +107,77 @@ pub fn write_vtu(
     let cells = [
         ("connectivity", Values::Count { from: 0, count }),
         ("offsets", Values::Count { from: 1, count }),
-        ("types", Values::VertexType(count)),
+        ("types", Values::CellTypes(vec![VERTEX; count])),
     ];
+    let sections = [("PointData", &point_data[..]), ("Points", &points), ("Cells", &cells)];
+    write_sections(path, [count, count], &sections)
+}
+
+/// A facet of a wall.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct FacetCell {
+    /// Number of the wall.
+    pub wall: u32,
+    /// Corners in order [m]; the last is the third of a triangle.
+    pub corners: [Vector3<f64>; 4],
+    /// Area [m²].
+    pub area_m2: f64,
+    /// Charge [C].
+    pub charge_c: f64,
+}
+
+/// Writes charged facets of walls: triangles and quadrangles with their wall, charge and charge per area.
+///
+/// # Errors
+/// What the system says.
+pub fn write_facets_vtu(path: &Path, facets: &[FacetCell]) -> Result<(), SceneError> {
+    let corners = |facet: &FacetCell| if facet.corners[2] == facet.corners[3] { 3 } else { 4 };
+    let points: Vec<_> =
+        facets.iter().flat_map(|facet| facet.corners.into_iter().take(corners(facet))).collect();
+    let ends = facets.iter().scan(0_i64, |end, facet| {
+        *end += corners(facet) as i64;
+        Some(*end)
+    });
+    let types = facets.iter().map(|facet| if corners(facet) == 3 { TRIANGLE } else { QUAD });
+    let charges: Vec<f64> = facets.iter().map(|facet| facet.charge_c).collect();
+    let densities: Vec<f64> = facets.iter().map(|facet| facet.charge_c / facet.area_m2).collect();
+    let cell_data = [
+        ("wall", Values::Integers(facets.iter().map(|facet| i64::from(facet.wall)).collect())),
+        ("charge_C", Values::Numbers(&charges)),
+        ("charge_density_C_m2", Values::Numbers(&densities)),
+    ];
+    let cells = [
+        ("connectivity", Values::Count { from: 0, count: points.len() }),
+        ("offsets", Values::Integers(ends.collect())),
+        ("types", Values::CellTypes(types.collect())),
+    ];
+    let sections = [
+        ("CellData", &cell_data[..]),
+        ("Points", &[("points_m", Values::Vectors(&points))]),
+        ("Cells", &cells),
+    ];
+    write_sections(path, [points.len(), facets.len()], &sections)
+}
+
+/// Writes a grid with so many points and cells.
+fn write_sections(
+    path: &Path,
+    [points, cells]: [usize; 2],
+    sections: &[(&str, &[Named<'_>])],
+) -> Result<(), SceneError> {
     write_atomically(path, |writer| {
         writeln!(
             writer,
             "<?xml version=\"1.0\"?>\n<VTKFile type=\"UnstructuredGrid\" version=\"1.0\" byte_order=\"LittleEndian\" header_type=\"UInt64\">"
         )?;
-        writeln!(writer, "<UnstructuredGrid>\n<Piece NumberOfPoints=\"{count}\" NumberOfCells=\"{count}\">")?;
+        writeln!(
+            writer,
+            "<UnstructuredGrid>\n<Piece NumberOfPoints=\"{points}\" NumberOfCells=\"{cells}\">"
+        )?;
         let mut offset = 0;
-        for (section, arrays) in [("PointData", &point_data[..]), ("Points", &points), ("Cells", &cells)] {
+        for (section, arrays) in sections {
             writeln!(writer, "<{section}>")?;
-            for (name, values) in arrays {
+            for (name, values) in *arrays {
                 let (kind, components) = values.kind();
                 writeln!(
                     writer,
@@ -115,7 +188,7 @@ pub fn write_vtu(
             writeln!(writer, "</{section}>")?;
         }
         write!(writer, "</Piece>\n</UnstructuredGrid>\n<AppendedData encoding=\"raw\">\n_")?;
-        for (_, values) in point_data.iter().chain(&points).chain(&cells) {
+        for (_, values) in sections.iter().flat_map(|(_, arrays)| *arrays) {
             values.write(writer)?;
         }
         writeln!(writer, "\n</AppendedData>\n</VTKFile>")

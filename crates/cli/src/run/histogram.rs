@@ -1,0 +1,135 @@
+//! How charge is spread over the grains: `charge_histogram.csv`, and a plot of it at the end.
+
+use super::folder::RunFolder;
+use crate::failure::Failure;
+use amberfield_core::Particles;
+use amberfield_scene::{Cell, History};
+
+/// Equal bins between the smallest and the largest value of a frame.
+const BINS: usize = 40;
+/// The file.
+pub(crate) const FILE: &str = "charge_histogram.csv";
+/// Its columns: a bin of charges and a bin of charges over masses in each row.
+const COLUMNS: [&str; 8] = [
+    "step",
+    "time_s",
+    "charge_from_C",
+    "charge_to_C",
+    "grains_by_charge",
+    "charge_to_mass_from_C_kg",
+    "charge_to_mass_to_C_kg",
+    "grains_by_charge_to_mass",
+];
+
+/// The file, open.
+#[derive(Debug)]
+pub(crate) struct Histogram {
+    rows: History,
+}
+
+impl Histogram {
+    pub(crate) fn create(folder: &RunFolder) -> Result<Self, Failure> {
+        Ok(Self { rows: History::create(&folder.file(FILE), &COLUMNS.map(str::to_owned))? })
+    }
+
+    /// Goes on after a step; frames that are not due are removed.
+    pub(crate) fn resume(
+        folder: &RunFolder,
+        step: u64,
+        is_due: impl Fn(u64) -> bool,
+    ) -> Result<Self, Failure> {
+        Ok(Self { rows: History::resume(&folder.file(FILE), &COLUMNS.map(str::to_owned), step, is_due)? })
+    }
+
+    /// Appends a frame.
+    pub(crate) fn append(&mut self, step: u64, time_s: f64, particles: &Particles) -> Result<(), Failure> {
+        let per_mass: Vec<f64> =
+            particles.charge.iter().enumerate().map(|(i, charge)| charge / particles.mass(i)).collect();
+        let (charges, ratios) = (Bins::of(&particles.charge), Bins::of(&per_mass));
+        for bin in 0..BINS {
+            let mut row = vec![Cell::Count(step), Cell::Number(time_s)];
+            for bins in [&charges, &ratios] {
+                row.extend([bins.edge(bin), bins.edge(bin + 1)].map(Cell::Number));
+                row.push(Cell::Count(bins.counts[bin]));
+            }
+            self.rows.append(&row)?;
+        }
+        Ok(())
+    }
+}
+
+struct Bins {
+    low: f64,
+    width: f64,
+    counts: [u64; BINS],
+}
+
+impl Bins {
+    fn of(values: &[f64]) -> Self {
+        let low = values.iter().copied().fold(f64::INFINITY, f64::min);
+        let high = values.iter().copied().fold(f64::NEG_INFINITY, f64::max);
+        let (low, width) = if low < high { (low, (high - low) / BINS as f64) } else { (low.min(high), 0.0) };
+        let mut counts = [0; BINS];
+        for value in values {
+            let bin = if width > 0.0 { ((value - low) / width) as usize } else { 0 };
+            counts[bin.min(BINS - 1)] += 1;
+        }
+        Self { low: if low.is_finite() { low } else { 0.0 }, width, counts }
+    }
+
+    fn edge(&self, bin: usize) -> f64 {
+        self.low + self.width * bin as f64
+    }
+}
+
+/// Plots some of the frames; a plot that fails is a warning, the results stand.
+#[cfg(feature = "plots")]
+pub(crate) fn plot(folder: &RunFolder) {
+    use amberfield_study::{Plot, Scale, Series, write_plot};
+    /// Frames in a plot.
+    const CURVES: usize = 5;
+    let text = std::fs::read_to_string(folder.file(FILE)).unwrap_or_default();
+    let rows: Vec<Vec<f64>> = text
+        .lines()
+        .skip(1)
+        .map(|line| line.split(',').map(|cell| cell.parse().unwrap_or(f64::NAN)).collect())
+        .filter(|row: &Vec<f64>| row.len() == COLUMNS.len())
+        .collect();
+    let frames: Vec<&[Vec<f64>]> = rows.chunks(BINS).collect();
+    let last = frames.len().saturating_sub(1);
+    let mut shown: Vec<usize> = (0..CURVES).map(|n| last * n / (CURVES - 1)).collect();
+    shown.dedup();
+    for (name, first, x) in [
+        ("charge_histogram.svg", 2, "charge [C]"),
+        ("charge_to_mass_histogram.svg", 5, "charge over mass [C/kg]"),
+    ] {
+        let curve = |frame: usize| {
+            let rows = frames[frame];
+            let points = rows.iter().map(|row| (0.5 * (row[first] + row[first + 1]), row[first + 2]));
+            let name = format!("t = {:.4} s", rows[0][1]);
+            // All grains alike are no curve.
+            let alike = rows[0][first] == rows[0][first + 1];
+            Series { name, points: if alike { Vec::new() } else { points.collect() } }
+        };
+        let series: Vec<Series> =
+            shown.iter().filter(|_| !frames.is_empty()).map(|&frame| curve(frame)).collect();
+        let series: Vec<Series> = series.into_iter().filter(|series| !series.points.is_empty()).collect();
+        if series.is_empty() {
+            continue;
+        }
+        let plot = Plot {
+            title: "Charge of the grains",
+            x,
+            y: "grains in a bin",
+            scales: [Scale::Linear; 2],
+            series: &series,
+        };
+        if let Err(error) = write_plot(&folder.file(name), &plot) {
+            tracing::warn!("no plot: {error}");
+        }
+    }
+}
+
+/// Without the feature there is no plot.
+#[cfg(not(feature = "plots"))]
+pub(crate) fn plot(_: &RunFolder) {}
