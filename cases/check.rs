@@ -7,6 +7,8 @@ mod support;
 mod capacitor;
 #[path = "charged-ball/check.rs"]
 mod charged_ball;
+#[path = "charging-on-a-wall/check.rs"]
+mod charging_on_a_wall;
 #[path = "coupled-settling-bed/check.rs"]
 mod coupled_settling_bed;
 #[path = "electrode-channel/check.rs"]
@@ -23,5 +25,9 @@ mod impact;
 mod madelung;
 #[path = "settling-charged-bed/check.rs"]
 mod settling_charged_bed;
+#[path = "stiffness-collapse/check.rs"]
+mod stiffness_collapse;
 #[path = "two-grains/check.rs"]
 mod two_grains;
+#[path = "two-materials/check.rs"]
+mod two_materials;

@@ -14,6 +14,21 @@ pub(crate) fn full_size() -> bool {
     std::env::var("AMBERFIELD_CASES").is_ok_and(|size| size == "full")
 }
 
+/// A curve of a case's plot.
+pub(crate) use amberfield_study::Series as Curve;
+
+/// Draws curves into the case's folder at full size, and beside what was built at smoke size.
+pub(crate) fn plot(case: &str, name: &str, [x, y]: [&str; 2], logarithmic: bool, curves: Vec<Curve>) {
+    use amberfield_study::{Plot, Scale, write_plot};
+    let root = Path::new(env!("CARGO_MANIFEST_DIR")).join("../..");
+    let folder = if full_size() { root.join("cases") } else { root.join("target/case-plots") }.join(case);
+    fs::create_dir_all(&folder).expect("a folder");
+    let scales = [if logarithmic { Scale::Logarithmic } else { Scale::Linear }; 2];
+    let title = format!("{case}: {name}");
+    let plot = Plot { title: &title, x, y, scales, series: &curves };
+    write_plot(&folder.join(format!("{name}.svg")), &plot).expect("a plot");
+}
+
 /// A copy of a case's folder that may be changed and run.
 pub(crate) struct Case {
     folder: TempDir,
@@ -109,14 +124,29 @@ impl Run<'_> {
 
     /// The last particles CSV.
     pub(crate) fn last_particles(&self) -> Table {
+        Table::read(self.particle_files().last().expect("a particles CSV"))
+    }
+
+    /// All particles CSVs with their times [s].
+    pub(crate) fn frames(&self) -> Vec<(f64, Table)> {
+        let summary = fs::read_to_string(self.path("summary.json")).expect("a summary");
+        let (_, step) = summary.split_once("\"step_s\": ").expect("a step");
+        let step: f64 = step.split([',', '\n']).next().expect("a number").trim().parse().expect("a number");
+        let number = |path: &Path| {
+            let name = path.file_stem().expect("a name").to_string_lossy().into_owned();
+            name.rsplit('_').next().expect("a step").parse::<f64>().expect("a step")
+        };
+        self.particle_files().iter().map(|path| (step * number(path), Table::read(path))).collect()
+    }
+
+    fn particle_files(&self) -> Vec<PathBuf> {
         let folder = self.path("particles");
         let files = fs::read_dir(&folder).unwrap_or_else(|error| panic!("{}: {error}", folder.display()));
-        let last = files
-            .map(|entry| entry.expect("an entry").path())
-            .filter(|path| path.extension().is_some_and(|ending| ending == "csv"))
-            .max()
-            .expect("a particles CSV");
-        Table::read(&last)
+        let paths = files.map(|entry| entry.expect("an entry").path());
+        let mut paths: Vec<PathBuf> =
+            paths.filter(|path| path.extension().is_some_and(|ending| ending == "csv")).collect();
+        paths.sort();
+        paths
     }
 }
 

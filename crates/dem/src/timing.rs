@@ -15,7 +15,7 @@ pub(crate) enum Stage {
 
 /// Names as in `history.csv`'s `wall_s_<stage>`.
 pub(crate) const STAGE_NAMES: [&str; 6] =
-    ["integrate", "neighbours", "contacts", "walls", "charge transfer", "field"];
+    ["integrate", "neighbours", "contacts", "walls", "charging", "field"];
 
 /// A stopwatch that results never depend on.
 #[derive(Debug, Default)]

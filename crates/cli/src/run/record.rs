@@ -4,6 +4,7 @@ use super::folder::RunFolder;
 use super::histogram::Histogram;
 use super::schedule::Schedule;
 use crate::failure::Failure;
+use amberfield_core::WallCharging;
 use amberfield_dem::{ElectricEnergy, Facet, Simulation};
 use amberfield_scene::{
     Cell, FacetCell, History, PvdSeries, Scene, write_facets_vtu, write_particles_csv, write_vtu,
@@ -41,7 +42,8 @@ impl Columns {
             gravity: scene.time.as_ref().is_some_and(|time| time.gravity_m_s2.norm() > 0.0),
             field: simulation.plan().has("field"),
             transfer: simulation.ledger().is_some(),
-            walls: simulation.ledger().is_some_and(|ledger| !ledger.walls.is_empty()),
+            walls: simulation.ledger().is_some()
+                && scene.walls.iter().any(|wall| wall.charging != WallCharging::None),
             limited: simulation.plan().has("field")
                 && scene.electric_field.as_ref().is_some_and(|field| field.limit_field_force),
             solver: simulation.plan().has("field") && scene.solver.is_some(),

@@ -44,7 +44,7 @@ pub(super) fn plan(
     entry(periodic, "periodic images", "an axis is periodic".to_owned(), "no axis is periodic");
     entry(
         transfer.is_some(),
-        "charge transfer",
+        "charging",
         "enable_collision_charge_transfer: charge moves where contacts grow".to_owned(),
         "no enable_collision_charge_transfer",
     );
