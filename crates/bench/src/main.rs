@@ -51,6 +51,7 @@ enum Section {
     Scaling,
     Rates,
     Coupling,
+    Charging,
 }
 
 /// What a section needs to know.
@@ -98,6 +99,7 @@ fn run(arguments: &Arguments) -> Result<()> {
             Section::Scaling => sections::scaling::measure(&context)?,
             Section::Rates => sections::rates::measure(&context, root)?,
             Section::Coupling => sections::coupling::measure(&context, root)?,
+            Section::Charging => sections::charging::measure(&context)?,
         }
     }
     // A run without peers keeps what an earlier one said of them.

@@ -40,6 +40,8 @@ pub struct Plot<'a> {
 }
 
 const SIZE: (u32, u32) = (720, 460);
+/// Beside the width of an axis.
+const ROUND_OFF: f64 = 1e-9;
 const FONT: &str = "Noto Sans";
 /// Told apart by people with any colour vision (Okabe and Ito, Color Universal Design, 2008).
 const COLOURS: [RGBColor; 6] = [
@@ -97,15 +99,20 @@ where
     Y: Ranged<ValueType = f64> + ValueFormatter<f64>,
 {
     let mut chart = chart.map_err(failed)?;
-    let label = |value: &f64| number(*value);
+    let widths = [0, 1].map(|axis| range(plot, axis).map_or(0.0, |(low, high)| high - low));
+    let label = |value: &f64, axis: usize| {
+        // A tick at zero comes with round-off.
+        let linear = plot.scales[axis] == Scale::Linear;
+        number(if linear && value.abs() < ROUND_OFF * widths[axis] { 0.0 } else { *value })
+    };
     chart
         .configure_mesh()
         .x_desc(plot.x)
         .y_desc(plot.y)
         .label_style((FONT, 13))
         .axis_desc_style((FONT, 14))
-        .x_label_formatter(&label)
-        .y_label_formatter(&label)
+        .x_label_formatter(&|value| label(value, 0))
+        .y_label_formatter(&|value| label(value, 1))
         .light_line_style(WHITE)
         .draw()
         .map_err(failed)?;
@@ -126,9 +133,40 @@ where
         .label_font((FONT, 13))
         .background_style(WHITE.mix(0.85))
         .border_style(RGBColor(200, 203, 210))
-        .position(SeriesLabelPosition::UpperRight)
+        .position(emptiest_corner(plot))
         .draw()
         .map_err(failed)
+}
+
+/// Where the names of the curves hide the fewest points.
+fn emptiest_corner(plot: &Plot<'_>) -> SeriesLabelPosition {
+    /// Share of the frame that they take.
+    const SHARE: f64 = 0.4;
+    let place = |value: f64, axis: usize| {
+        let (low, high) = range(plot, axis).unwrap_or((0.0, 1.0));
+        match plot.scales[axis] {
+            Scale::Linear => (value - low) / (high - low),
+            Scale::Logarithmic => (value / low).ln() / (high / low).ln(),
+        }
+    };
+    let points: Vec<[f64; 2]> = plot
+        .series
+        .iter()
+        .flat_map(|series| shown(plot, series))
+        .map(|(x, y)| [place(x, 0), place(y, 1)])
+        .collect();
+    let hidden = |[right, upper]: [bool; 2]| {
+        let near = |share: f64, far: bool| if far { share > 1.0 - SHARE } else { share < SHARE };
+        points.iter().filter(|[x, y]| near(*x, right) && near(*y, upper)).count()
+    };
+    let corners = [
+        ([true, true], SeriesLabelPosition::UpperRight),
+        ([false, true], SeriesLabelPosition::UpperLeft),
+        ([true, false], SeriesLabelPosition::LowerRight),
+        ([false, false], SeriesLabelPosition::LowerLeft),
+    ];
+    let best = corners.into_iter().min_by_key(|(corner, _)| hidden(*corner));
+    best.map_or(SeriesLabelPosition::UpperRight, |(_, position)| position)
 }
 
 /// The points that the axes can show.

@@ -1,5 +1,6 @@
 //! What is measured: one section, one file, with its rows and its part of the page.
 
+pub(crate) mod charging;
 pub(crate) mod coupling;
 pub(crate) mod dem;
 pub(crate) mod field;
