@@ -7,6 +7,8 @@ mod support;
 mod capacitor;
 #[path = "charged-ball/check.rs"]
 mod charged_ball;
+#[path = "charging-gas/check.rs"]
+mod charging_gas;
 #[path = "charging-on-a-wall/check.rs"]
 mod charging_on_a_wall;
 #[path = "coupled-settling-bed/check.rs"]

@@ -64,12 +64,14 @@ fn moved(material: Material, settings: ChargeTransfer, steps_a_contact: f64) -> 
     let left = ball(1, [-RADIUS - 0.5 * gap, 0.0, 0.0], [0.5 * SPEED, 0.0, 0.0], CHARGE);
     let right = ball(2, [RADIUS + 0.5 * gap, 0.0, 0.0], [-0.5 * SPEED, 0.0, 0.0], -CHARGE);
     let mut simulation =
-        Simulation::new(transfer(setup(vec![left, right], material, step), settings)).unwrap();
+        Simulation::new(transfer(setup(vec![left, right], material, step), settings)).expect("a good scene");
     run(&mut simulation, (3.0 * steps_a_contact) as u64);
     assert_eq!(simulation.contacts(), 0, "they have parted");
     let charge = simulation.particles().charge;
     assert!((charge[0] + charge[1]).abs() < ROUND_OFF * CHARGE);
-    assert!((simulation.ledger().unwrap().moved - (CHARGE - charge[0])).abs() < ROUND_OFF * CHARGE);
+    assert!(
+        (simulation.ledger().expect("a good scene").moved - (CHARGE - charge[0])).abs() < ROUND_OFF * CHARGE
+    );
     CHARGE - charge[0]
 }
 
@@ -121,18 +123,18 @@ fn bounces(wall: Wall, domain: Domain, work: [f64; 2], count: usize) -> (Vec<f64
     scene.materials.push(wall_material);
     scene.time.gravity_m_s2 = Vector3::new(0.0, 0.0, -gravity);
     scene = Setup { walls: vec![wall], domain, ..scene };
-    let mut simulation = Simulation::new(transfer(scene, ChargeTransfer::new(CUTOFF))).unwrap();
+    let mut simulation = Simulation::new(transfer(scene, ChargeTransfer::new(CUTOFF))).expect("a good scene");
     let mut charges = Vec::new();
     let mut touching = false;
     while charges.len() < count {
-        simulation.step().unwrap();
+        simulation.step().expect("a good scene");
         let now = simulation.contacts() > 0;
         if touching && !now {
             charges.push(simulation.particles().charge[0]);
         }
         touching = now;
     }
-    let ledger = simulation.ledger().unwrap();
+    let ledger = simulation.ledger().expect("a good scene");
     let held: f64 = simulation.facets().iter().map(|facet| facet.charge).sum();
     assert!((ledger.walls[0] + charges[charges.len() - 1]).abs() < ROUND_OFF * ledger.moved);
     assert!((ledger.walls[0] - held).abs() < ROUND_OFF * ledger.moved);
@@ -152,7 +154,8 @@ fn bounces_on_a_grounded_wall_approach_the_steady_charge() {
     let open = || domain(1.0, Boundary::Open);
     // The wall as a face of the field's domain: the grain's own image comes with the field.
     let faces = [[Boundary::Open; 2], [Boundary::Open; 2], [Boundary::Grounded, Boundary::Open]];
-    let face = || Domain::new(Vector3::new(-1.0, -1.0, 0.0), Vector3::repeat(1.0), faces).unwrap();
+    let face =
+        || Domain::new(Vector3::new(-1.0, -1.0, 0.0), Vector3::repeat(1.0), faces).expect("a good scene");
     for (name, wall, domain) in
         [("plane", plane(), open()), ("mesh", mesh(), open()), ("face", plane(), face())]
     {
@@ -188,7 +191,7 @@ fn breakdown_field_ends_the_charging() {
     let mut scene = setup(vec![start], solid(1e5, 1.0), 1e-8);
     scene.materials.push(Material { work_function_ev: Some(4.5 - 1.0), ..solid(1e5, 1.0) });
     scene.walls = vec![Wall { material: amberfield_core::MaterialId(1), ..wall }];
-    let mut simulation = Simulation::new(transfer(scene, settings)).unwrap();
+    let mut simulation = Simulation::new(transfer(scene, settings)).expect("a good scene");
     run(&mut simulation, 10_000);
     let charge = simulation.particles().charge[0];
     let field = charge / (2.0 * std::f64::consts::PI * 8.854_187_812_8e-12 * RADIUS * RADIUS);
@@ -216,7 +219,7 @@ fn shaken(seed: u64, work: f64, settings: ChargeTransfer, friction: f64) -> Setu
     }
     let mut scene = setup(grains, Material { friction, ..solid(1e6, 0.8) }, 1e-7);
     scene.materials.push(Material { work_function_ev: Some(4.5 + work), ..solid(1e6, 0.8) });
-    scene.domain = Domain::new(-corner, corner, faces).unwrap();
+    scene.domain = Domain::new(-corner, corner, faces).expect("a good scene");
     scene.walls = vec![
         wall(Vector3::y(), WallCharging::Grounded),
         wall(-Vector3::y(), WallCharging::Insulating),
@@ -243,10 +246,10 @@ proptest! {
             stiffness_correction: None,
             cutoff_m: CUTOFF,
         };
-        let mut simulation = Simulation::new(shaken(seed, work, settings, friction)).unwrap();
+        let mut simulation = Simulation::new(shaken(seed, work, settings, friction)).expect("a good scene");
         let before = simulation.particles().net_charge();
         run(&mut simulation, 10_000);
-        let ledger = simulation.ledger().unwrap().clone();
+        let ledger = simulation.ledger().expect("a good scene").clone();
         let after = simulation.particles().net_charge() + ledger.walls.iter().sum::<f64>();
         prop_assert!(ledger.moved > 0.0 && ledger.walls[3] == 0.0);
         prop_assert!((after - before).abs() < ROUND_OFF * ledger.moved, "{before:e} {after:e} {ledger:?}");
@@ -257,19 +260,20 @@ proptest! {
 fn resumed_run_and_any_number_of_threads_are_bit_for_bit_the_same() {
     let settings = ChargeTransfer { beyond_previous_maximum: true, ..ChargeTransfer::new(CUTOFF) };
     let scene = || shaken(3, 0.5, settings, 0.3);
-    let mut whole = Simulation::new(scene()).unwrap();
+    let mut whole = Simulation::new(scene()).expect("a good scene");
     run(&mut whole, 1503);
-    let text = bincode::serde::encode_to_vec(whole.state(), bincode::config::standard()).unwrap();
+    let text =
+        bincode::serde::encode_to_vec(whole.state(), bincode::config::standard()).expect("a good scene");
     let (state, _): (State, usize) =
-        bincode::serde::decode_from_slice(&text, bincode::config::standard()).unwrap();
-    let mut resumed = Simulation::resume(scene(), state).unwrap();
+        bincode::serde::decode_from_slice(&text, bincode::config::standard()).expect("a good scene");
+    let mut resumed = Simulation::resume(scene(), state).expect("a good scene");
     run(&mut whole, 700);
     run(&mut resumed, 700);
     assert_eq!(whole.state(), resumed.state());
-    assert!(whole.ledger().unwrap().moved > 0.0);
-    let pool = rayon::ThreadPoolBuilder::new().num_threads(3).build().unwrap();
+    assert!(whole.ledger().expect("a good scene").moved > 0.0);
+    let pool = rayon::ThreadPoolBuilder::new().num_threads(3).build().expect("a good scene");
     let threads = pool.install(|| {
-        let mut threads = Simulation::new(scene()).unwrap();
+        let mut threads = Simulation::new(scene()).expect("a good scene");
         run(&mut threads, 2203);
         threads.state()
     });

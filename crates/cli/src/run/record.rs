@@ -60,6 +60,7 @@ impl Columns {
         names.extend(self.walls.then_some("wall_charge_C"));
         names.extend(self.limited.then_some("limited"));
         names.push("contacts");
+        names.extend(self.transfer.then_some("collisions"));
         names.extend(self.solver.then_some("solver_iterations"));
         names.push("wall_s");
         let stages = self.stages.iter().map(|stage| format!("wall_s_{stage}"));
@@ -147,6 +148,7 @@ impl Record {
             row.push(Cell::Count(simulation.limited().unwrap_or_default().grains));
         }
         row.push(Cell::Count(simulation.contacts() as u64));
+        row.extend(simulation.ledger().map(|ledger| Cell::Count(ledger.collisions)));
         row.extend(self.columns.solver.then(|| Cell::Count(simulation.solver_iterations())));
         row.push(Cell::Number(clock.wall_s));
         row.extend(clock.stages.iter().map(|seconds| Cell::Number(*seconds)));

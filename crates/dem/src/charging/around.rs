@@ -50,11 +50,6 @@ impl Around {
         });
     }
 
-    /// Whether it has been built for so many grains.
-    pub(super) fn is_of(&self, grains: &Grains) -> bool {
-        self.start.len() == grains.len() + 2
-    }
-
     pub(super) fn of(&self, grain: usize) -> &[Toucher] {
         &self.touchers[self.start[grain] as usize..self.start[grain + 1] as usize]
     }

@@ -121,10 +121,10 @@ impl Charging {
     ) {
         let sources = e.len() - self.probes.len();
         for (probe, e) in self.probes.iter().zip(&e[sources..]) {
-            let field = Some(probe.factor * (e.dot(&probe.normal) - probe.own));
+            let field = probe.factor * (e.dot(&probe.normal) - probe.own);
             match (probe.slot, walls.as_mut()) {
-                (Slot::Pair { chunk, entry }, _) => neighbours.lists[chunk].growth[entry].field = field,
-                (Slot::Wall(slot), Some(walls)) => walls.growth_mut(slot).field = field,
+                (Slot::Pair { chunk, entry }, _) => neighbours.lists[chunk].growth[entry].foresee(field),
+                (Slot::Wall(slot), Some(walls)) => walls.growth_mut(slot).foresee(field),
                 (Slot::Wall(_), None) => {}
             }
         }

@@ -9,18 +9,24 @@ pub(crate) struct Growth {
     area: f64,
     /// Growth that has not moved charge yet [m²].
     due: f64,
-    /// E_x·n at the last evaluation of the field [V/m]; `None`: the contact was not foreseen there.
-    pub(crate) field: Option<f64>,
-    /// Step at which it touched last.
-    step: u64,
+    /// E_x·n at the last evaluation of the field [V/m], if it is `foreseen`.
+    field: f64,
+    /// Step at which it touched last, its lower bits.
+    step: u32,
+    foreseen: bool,
 }
 
 impl Growth {
     /// Takes the area [m²] at a step; of what grows, only what exceeds the largest area so far counts if `beyond`. Whether
-    /// this is the first growth that is due.
+    /// the contact begins, and whether this is the first growth that is due.
     #[inline(always)]
-    pub(crate) fn follow(&mut self, area: f64, step: u64, beyond: bool) -> bool {
-        let touched = step <= self.step + 1;
+    pub(crate) fn follow(&mut self, area: f64, step: u64, beyond: bool) -> [bool; 2] {
+        #[expect(
+            clippy::cast_possible_truncation,
+            reason = "two steps in a row differ by one in the lower bits too"
+        )]
+        let now = step as u32;
+        let touched = now.wrapping_sub(self.step) <= 1;
         let before = if touched { self.area } else { 0.0 };
         let first = self.due == 0.0;
         // What touches at the start has its area from before the run.
@@ -28,13 +34,23 @@ impl Growth {
             self.due += (area - before).max(0.0);
         }
         self.area = if beyond { area.max(before) } else { area };
-        self.step = step;
-        first && self.due > 0.0
+        self.step = now;
+        [before == 0.0 && area > 0.0, first && self.due > 0.0]
     }
 
     /// The same for the partner's list (sign −1), whose normal points the other way.
     pub(crate) fn seen_from(self, sign: f64) -> Self {
-        Self { field: self.field.map(|field| sign * field), ..self }
+        Self { field: sign * self.field, ..self }
+    }
+
+    /// E_x·n at the last evaluation of the field [V/m]; `None`: the contact was not foreseen there.
+    pub(crate) fn field(&self) -> Option<f64> {
+        self.foreseen.then_some(self.field)
+    }
+
+    /// Takes E_x·n [V/m] of an evaluation.
+    pub(crate) fn foresee(&mut self, field: f64) {
+        (self.field, self.foreseen) = (field, true);
     }
 
     /// Growth that has not moved charge yet [m²].
@@ -79,11 +95,11 @@ mod tests {
     #[test]
     fn separated_contact_begins_anew() {
         let mut growth = Growth::default();
-        assert!(growth.follow(2.0, 5, true));
-        assert!(!growth.follow(3.0, 6, true));
+        assert_eq!(growth.follow(2.0, 5, true), [true, true]);
+        assert_eq!(growth.follow(3.0, 6, true), [false, false]);
         assert_eq!(growth.take_due(), 3.0);
         // It did not touch in steps 7 to 9.
-        assert!(growth.follow(1.0, 10, true));
+        assert_eq!(growth.follow(1.0, 10, true), [true, true]);
         assert_eq!(growth.due(), 1.0);
     }
 }

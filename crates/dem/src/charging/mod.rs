@@ -50,6 +50,8 @@ const CHANGE_DUE: f64 = 2.0;
 pub struct Ledger {
     /// Σ of the sizes of all charges moved [C].
     pub moved: f64,
+    /// Contacts that began, of grains and with walls.
+    pub collisions: u64,
     /// Charge given to each wall [C].
     pub walls: Vec<f64>,
 }
@@ -90,6 +92,8 @@ pub(crate) struct Charging {
     evaluated: Vec<f64>,
     probes: Vec<Probe>,
     around: Around,
+    /// Whether it is that of the present positions.
+    around_is_built: bool,
     /// Sorted indices of the grains whose charge changed in the last trade.
     pub(crate) changed: Vec<u32>,
 }
@@ -111,12 +115,13 @@ impl Charging {
             tolerance,
             table: ChargingTable::new(materials, &settings, permittivity),
             facets: Facets::new(largest),
-            ledger: Ledger { moved: 0.0, walls: vec![0.0; walls] },
+            ledger: Ledger { walls: vec![0.0; walls], ..Ledger::default() },
             backwards: false,
             lag: 0.0,
             evaluated: particles.charge.clone(),
             probes: Vec::new(),
             around: Around::default(),
+            around_is_built: false,
             changed: Vec::new(),
         }
     }

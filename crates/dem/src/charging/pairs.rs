@@ -12,10 +12,11 @@ use amberfield_laws::contact_area;
 use rayon::prelude::*;
 use std::f64::consts::PI;
 
-/// Follows the areas of all touching pairs at a step.
-pub(crate) fn follow(grains: &Grains, neighbours: &mut Neighbours, step: u64, beyond: bool) {
+/// Follows the areas of all touching pairs at a step; how many begin.
+pub(crate) fn follow(grains: &Grains, neighbours: &mut Neighbours, step: u64, beyond: bool) -> u64 {
     let shifts = &neighbours.shifts;
     let each = |(k, list): (usize, &mut ChunkList)| {
+        let mut begun = 0_u64;
         let ChunkList { hits, contacts, spring, growth, grown, partner, .. } = list;
         for &Hit { entry, local, .. } in &hits[..*contacts] {
             let at = entry as usize;
@@ -31,15 +32,18 @@ pub(crate) fn follow(grains: &Grains, neighbours: &mut Neighbours, step: u64, be
                     contact_area::hertz(a[3] * b[3] / (a[3] + b[3]), a[3] + b[3] - distance2.sqrt())
                 }
             };
-            if growth[at].follow(area, step, beyond) {
+            let [begins, is_due] = growth[at].follow(area, step, beyond);
+            begun += u64::from(begins);
+            if is_due {
                 grown.push(Grown { entry, local });
             }
         }
+        begun
     };
     if is_parallel(grains.len()) {
-        neighbours.lists.par_iter_mut().enumerate().for_each(each);
+        neighbours.lists.par_iter_mut().enumerate().map(each).sum()
     } else {
-        neighbours.lists.iter_mut().enumerate().for_each(each);
+        neighbours.lists.iter_mut().enumerate().map(each).sum()
     }
 }
 
@@ -74,14 +78,12 @@ impl Charging {
         neighbours: &mut Neighbours,
         charge: &mut [f64],
     ) {
-        let largest = self.largest_relaxation(traders.grains, neighbours);
-        if largest == 0.0 {
+        if neighbours.lists.iter().all(|list| list.grown.is_empty()) {
             return;
         }
-        self.lag += largest;
-        if self.lag > LAG_SEEN {
-            self.around.build(traders.grains, neighbours);
-        }
+        // Grains have moved since.
+        self.around_is_built = false;
+        let mut largest = 0.0_f64;
         let chunks = neighbours.lists.len();
         for k in 0..chunks {
             let k = if self.backwards { chunks - 1 - k } else { k };
@@ -91,14 +93,16 @@ impl Charging {
                 let n = if self.backwards { count - 1 - n } else { n };
                 let pair = Pair::new(neighbours, k, grown[n]);
                 let due = neighbours.lists[k].growth[pair.entry].take_due();
-                self.trade_pair(traders, neighbours, pair, due, charge);
+                largest = largest.max(self.trade_pair(traders, neighbours, pair, due, charge));
             }
             grown.clear();
             neighbours.lists[k].grown = grown;
         }
         self.backwards = !self.backwards;
+        self.lag += largest;
     }
 
+    /// Returns αΔA.
     fn trade_pair(
         &mut self,
         traders: Traders<'_>,
@@ -106,47 +110,38 @@ impl Charging {
         pair: Pair,
         due: f64,
         charge: &mut [f64],
-    ) {
+    ) -> f64 {
         let Pair { i, j, .. } = pair;
-        let (Some(a), Some(b)) = (traders.member(i), traders.member(j)) else { return };
+        let (Some(a), Some(b)) = (traders.member(i), traders.member(j)) else { return 0.0 };
         let grains = traders.grains;
         let materials = self.table.get(grains.material[i], grains.material[j]);
-        let seen = self.lag > LAG_SEEN;
-        let known = neighbours.lists[pair.chunk].growth[pair.entry].field;
-        let mut field = known.unwrap_or_else(|| self.unforeseen(traders, neighbours, pair, charge));
-        if seen {
-            let offset = pair.offset(grains, neighbours);
-            let reach =
-                grains.centre[i][3] - 0.5 * (grains.centre[i][3] + grains.centre[j][3] - offset.norm());
-            let partner = Toucher { grain: j, offset };
-            field += self.gained_beside(grains, i, &partner, offset.normalize(), reach, charge);
-        }
+        let growth = due * materials.area_factor;
         let of = |grain: usize, original: usize| Grain {
             charge: charge[original],
             radius: grains.centre[grain][3],
         };
-        let drive = between_grains(self.permittivity, materials.work, [of(i, a), of(j, b)], field);
-        let moved = self.allowed(drive, materials.work, drive.transfer(due * materials.area_factor));
+        let known = neighbours.lists[pair.chunk].growth[pair.entry].field();
+        let field = known.unwrap_or_else(|| self.unforeseen(traders, neighbours, pair, charge));
+        let colliders = [of(i, a), of(j, b)];
+        let mut drive = between_grains(self.permittivity, materials.work, colliders, field);
+        if self.lag + drive.decay * growth > LAG_SEEN {
+            if !self.around_is_built {
+                self.around.build(grains, neighbours);
+                self.around_is_built = true;
+            }
+            let offset = pair.offset(grains, neighbours);
+            let [one, other] = colliders.map(|grain| grain.radius);
+            let reach = one - 0.5 * (one + other - offset.norm());
+            let partner = Toucher { grain: j, offset };
+            let gained = self.gained_beside(grains, i, &partner, offset.normalize(), reach, charge);
+            drive.drive += self.permittivity * gained;
+        }
+        let moved = self.allowed(drive, materials.work, drive.transfer(growth));
         charge[a] -= moved;
         charge[b] += moved;
         self.ledger.moved += moved.abs();
         self.changed.extend([i as u32, j as u32]);
-    }
-
-    /// Largest αΔA of what is due.
-    fn largest_relaxation(&self, grains: &Grains, neighbours: &Neighbours) -> f64 {
-        let mut largest = 0.0_f64;
-        for (k, list) in neighbours.lists.iter().enumerate() {
-            for grown in &list.grown {
-                let due = list.growth[grown.entry as usize].due();
-                let (i, j) =
-                    (sorted(k, grown.local), (list.partner[grown.entry as usize] & INDEX_MASK) as usize);
-                let factor = self.table.get(grains.material[i], grains.material[j]).area_factor;
-                let [per_i, per_j] = [i, j].map(|grain| grains.centre[grain][3].powi(-2));
-                largest = largest.max(due * factor * (per_i + per_j) / (4.0 * PI));
-            }
-        }
-        largest
+        drive.decay * growth
     }
 
     /// Every listed pair of members that touches or is nearer than `margin` [m].

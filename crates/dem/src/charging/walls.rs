@@ -37,8 +37,9 @@ impl Charging {
         let place = grains.position(touch.grain) + touch.normal * touch.distance;
         let wall = (touch.wall, touch.charging);
         let facet = self.facets.at(traders.domain, wall, walls.surface(touch), place, -touch.normal);
-        let mut field = touch.growth.field.unwrap_or_else(|| self.unforeseen_at_wall(traders, touch, charge));
-        if self.lag > LAG_SEEN && self.around.is_of(grains) {
+        let mut field =
+            touch.growth.field().unwrap_or_else(|| self.unforeseen_at_wall(traders, touch, charge));
+        if self.lag > LAG_SEEN && self.around_is_built {
             let nobody = Toucher { grain: NOBODY, offset: Vector3::zeros() };
             let gained =
                 self.gained_beside(grains, touch.grain, &nobody, touch.normal, touch.distance, charge);

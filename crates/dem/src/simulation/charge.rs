@@ -17,11 +17,13 @@ const FORESIGHT: f64 = 2.0;
 impl Simulation {
     /// Follows the contact areas of a step of length `step` [s], 0 for the start; moves what is due.
     pub(super) fn charge_contacts(&mut self, step: f64) {
-        let Some(charging) = &self.charging else { return };
-        follow(&self.grains, &mut self.neighbours, self.step_index, charging.beyond());
+        let Some(charging) = &mut self.charging else { return };
+        let (step_index, beyond) = (self.step_index, charging.beyond());
+        let mut begun = follow(&self.grains, &mut self.neighbours, step_index, beyond);
         if let Some(walls) = &mut self.walls {
-            walls.follow(&self.grains, self.step_index, charging.beyond());
+            begun += walls.follow(&self.grains, step_index, beyond);
         }
+        charging.ledger.collisions += begun;
         if step > 0.0 {
             if Charging::is_due(self.step_index) {
                 self.trade(Trade::Pairs);
@@ -235,7 +237,7 @@ mod tests {
         assert!(pairs.len() > 90);
         let count = run.grains.len();
         for (k, grown, i, j) in pairs {
-            let found = run.neighbours.lists[k].growth[grown.entry as usize].field.expect("it touches");
+            let found = run.neighbours.lists[k].growth[grown.entry as usize].field().expect("it touches");
             let others = (0..count).filter(|&source| source != i && source != j);
             let term = |source: usize| grain_of(&run, source).charge * seen(&run, source, i, j);
             let exact: f64 = others.clone().map(term).sum();
@@ -260,7 +262,7 @@ mod tests {
         let &(k, grown, i, j) =
             pairs.iter().find(|(_, _, i, j)| [*i, *j].contains(&beside) && sees(*i, *j)).unwrap();
         let growth = run.neighbours.lists[k].growth[grown.entry as usize];
-        assert_eq!(growth.field, Some(0.0));
+        assert_eq!(growth.field(), Some(0.0));
         let decay =
             between_grains(VACUUM_PERMITTIVITY, 0.0, [grain_of(&run, i), grain_of(&run, j)], 0.0).decay;
         force(&mut run, k, grown, 1e3 / decay);
@@ -291,7 +293,7 @@ mod tests {
     /// Driving terms of all contacts at the present charges, and the largest charge.
     fn driving(run: &Simulation, cutoff_m: f64, works: &[f64]) -> (f64, f64) {
         let term = |(k, grown, i, j): (usize, Grown, usize, usize)| {
-            let field = run.neighbours.lists[k].growth[grown.entry as usize].field.expect("it touches");
+            let field = run.neighbours.lists[k].growth[grown.entry as usize].field().expect("it touches");
             let work = work(run, cutoff_m, works, i, j);
             between_grains(VACUUM_PERMITTIVITY, work, [grain_of(run, i), grain_of(run, j)], field)
                 .drive
@@ -371,7 +373,7 @@ mod tests {
             let drives: Vec<f64> = pairs
                 .iter()
                 .map(|&(k, grown, i, j)| {
-                    let field = run.neighbours.lists[k].growth[grown.entry as usize].field.unwrap();
+                    let field = run.neighbours.lists[k].growth[grown.entry as usize].field().unwrap();
                     let pair = [grain_of(&run, i), grain_of(&run, j)];
                     let drive =
                         between_grains(VACUUM_PERMITTIVITY, work(&run, 5e-7, &works, i, j), pair, field);

@@ -34,8 +34,9 @@ pub(crate) enum Surface {
 }
 
 impl Walls {
-    /// Follows the areas of all contacts at a step.
-    pub(crate) fn follow(&mut self, grains: &Grains, step: u64, beyond: bool) {
+    /// Follows the areas of all contacts at a step; how many begin.
+    pub(crate) fn follow(&mut self, grains: &Grains, step: u64, beyond: bool) -> u64 {
+        let mut begun = 0;
         for (k, chunk) in self.chunks.iter_mut().enumerate() {
             for entry in &chunk.entries {
                 let radius = grains.centre[k * CHUNK + entry.local as usize][3];
@@ -43,10 +44,13 @@ impl Walls {
                 for (contact, growth) in
                     chunk.contacts[touching.clone()].iter().zip(&mut chunk.growth[touching])
                 {
-                    growth.follow(contact_area::hertz(radius, contact.overlap), step, beyond);
+                    let [begins, _] =
+                        growth.follow(contact_area::hertz(radius, contact.overlap), step, beyond);
+                    begun += u64::from(begins);
                 }
             }
         }
+        begun
     }
 
     /// Touching contacts with walls that trade charge, in order.
