@@ -244,9 +244,8 @@ fn a_solver_that_dies_or_hangs_before_it_says_a_word_is_missed() {
 }
 
 #[test]
-fn a_solver_refuses_a_run_of_another_version() {
+fn a_solver_refuses_a_run_of_a_later_version() {
     let scene = FoamBox::grounded();
-    // As if the DEM process had been built from a later source.
     let solver = concat!(env!("CARGO_MANIFEST_DIR"), "/../openfoam-solver/build/electricFieldFoam");
     let script = format!("echo 1000 > /dev/shm/$4/protocol\nexec '{solver}' \"$@\"");
     let output = stand_in(&scene, &script).output().unwrap();

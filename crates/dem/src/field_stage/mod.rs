@@ -8,8 +8,9 @@
 //!   little about grains that are elsewhere by now;
 //! * at the latest after 0.2/ω_p.
 //!
-//! A number of steps is kept as it is. All depends on the grains only, never on a clock.
+//! A number of steps is kept as it is. All depends on the grains only.
 
+mod charging;
 mod forecast;
 mod interval;
 mod members;
@@ -27,7 +28,7 @@ use crate::field_crate::{FieldValues, Wanted};
 use crate::grains::Grains;
 use crate::setup::FieldStageSetup;
 use crate::state::FieldState;
-use amberfield_core::constants::{VACUUM_PERMITTIVITY, coulomb_constant};
+use amberfield_core::constants::coulomb_constant;
 use amberfield_core::{CouplingInterval, Domain, FieldSettings, ForceLimit, Particles, Vector3};
 use amberfield_laws::{force_limit, time_step_limits};
 use members::Members;
@@ -38,7 +39,6 @@ use source::Source;
 const MOST_TRAVEL: f64 = 0.5;
 /// What a grain may gain in speed within a step, when it is guessed whether the field will be due.
 const FASTER: f64 = 4.0;
-
 /// The potential costs little on top of E, and spares the energy an evaluation of its own.
 const WANTED: Wanted = Wanted { potential: true, components: false };
 
@@ -100,7 +100,7 @@ impl FieldStage {
         let position: Vec<_> = members().map(|i| domain.wrap(particles.position[i])).collect();
         let mut charge: Vec<_> = members().map(|i| particles.charge[i]).collect();
         if charge.iter().all(|charge| *charge == 0.0) {
-            stand_in(&mut charge);
+            charging::stand_in(&mut charge);
         }
         let source = Source::new(domain, setup, (&position, &charge), state)?;
         let mut stage = Self {
@@ -149,11 +149,6 @@ impl FieldStage {
             plasma_limit: self.plasma_limit,
             limited: self.limited,
         }
-    }
-
-    /// Permittivity of the medium [F/m].
-    pub(crate) fn permittivity(&self) -> f64 {
-        VACUUM_PERMITTIVITY * self.settings.relative_permittivity
     }
 
     /// Evaluations so far and the error made between them.
@@ -223,26 +218,6 @@ impl FieldStage {
         let floor =
             coulomb_constant(self.settings.relative_permittivity) * q2.sqrt() * density.powf(2.0 / 3.0);
         e2.sqrt().max(floor)
-    }
-
-    /// E at the last evaluation at what was beside the grains [V/m].
-    pub(crate) fn beside(&self) -> &[Vector3<f64>] {
-        &self.values.e[self.members.index.len()..]
-    }
-
-    /// E at a grain now, on its line [V/m].
-    pub(crate) fn at(&self, grain: usize) -> Vector3<f64> {
-        self.forecast.at(grain, self.control.age as f64)
-    }
-
-    /// Takes a grain's new charge [C].
-    pub(crate) fn recharge(&mut self, grain: usize, charge: f64) {
-        self.forecast.recharge(grain, charge);
-    }
-
-    /// Whether E is evaluated as often as its error asks.
-    pub(crate) fn is_automatic(&self) -> bool {
-        self.settings.coupling_interval == CouplingInterval::Auto
     }
 
     /// Adds the electric force of this step to `total` [N], for the list's `skin` [m] and the `step` [s].
@@ -349,13 +324,6 @@ impl FieldStage {
         let (external, centre) = (self.settings.external_field_v_m, domain.centre());
         let terms = position.iter().zip(charge).zip(&self.values.potential);
         0.5 * terms.map(|((x, q), v)| q * (v - external.dot(&(x - centre)))).sum::<f64>()
-    }
-}
-
-/// Charges for which the field chooses its parameters where there are none yet: of both signs, none in all.
-fn stand_in(charge: &mut [f64]) {
-    for pair in charge.chunks_exact_mut(2) {
-        pair.copy_from_slice(&[1e-15, -1e-15]);
     }
 }
 

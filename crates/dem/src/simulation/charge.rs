@@ -137,7 +137,7 @@ mod tests {
         };
         let setup = Setup {
             domain: Domain::new(Vector3::repeat(-1.0), Vector3::repeat(1.0), [[Boundary::Open; 2]; 3])
-                .unwrap(),
+                .expect("a good scene"),
             materials: work_functions.iter().map(material).collect(),
             particles: (0..places.len()).map(grain).collect(),
             walls: Vec::new(),
@@ -152,7 +152,7 @@ mod tests {
             },
             field: Some(field),
         };
-        Simulation::new(setup).unwrap()
+        Simulation::new(setup).expect("a good scene")
     }
 
     /// Face-centred cubic: twelve touching grains around each one inside.
@@ -232,7 +232,7 @@ mod tests {
         for (n, charge) in run.particles.charge.iter_mut().enumerate() {
             *charge = 1e-14 * (n as f64 * 0.7).sin();
         }
-        run.evaluate_field().unwrap();
+        run.evaluate_field().expect("a good scene");
         let pairs = touching(&run);
         assert!(pairs.len() > 90);
         let count = run.grains.len();
@@ -250,7 +250,7 @@ mod tests {
     fn charges_of_touching_grains_are_seen_before_the_next_evaluation() {
         let places = close_packed(2);
         let mut run = packed(&places, &work_functions(places.len(), 1), 5e-7);
-        run.evaluate_field().unwrap();
+        run.evaluate_field().expect("a good scene");
         let pairs = touching(&run);
         // One grain is charged by hand: a contact of a neighbour of its sees it once contacts relax.
         let (_, _, charged, beside) = pairs[0];
@@ -259,8 +259,10 @@ mod tests {
             ![i, j].contains(&charged)
                 && seen(&run, charged, i, j).abs() > 1e-2 * coulomb_constant(1.0) / (RADIUS * RADIUS)
         };
-        let &(k, grown, i, j) =
-            pairs.iter().find(|(_, _, i, j)| [*i, *j].contains(&beside) && sees(*i, *j)).unwrap();
+        let &(k, grown, i, j) = pairs
+            .iter()
+            .find(|(_, _, i, j)| [*i, *j].contains(&beside) && sees(*i, *j))
+            .expect("a good scene");
         let growth = run.neighbours.lists[k].growth[grown.entry as usize];
         assert_eq!(growth.field(), Some(0.0));
         let decay =
@@ -321,7 +323,7 @@ mod tests {
         }
         let scale = 1e-9;
         let response = (&of_charge * &moves) * scale;
-        let transfers = response.svd(true, true).solve(&rest, 1e-10).unwrap();
+        let transfers = response.svd(true, true).solve(&rest, 1e-10).expect("a good scene");
         (moves * transfers * scale).amax()
     }
 
@@ -332,7 +334,7 @@ mod tests {
             {
                 let works = work_functions(places.len(), 7);
                 let mut run = packed(&places, &works, cutoff_m);
-                run.evaluate_field().unwrap();
+                run.evaluate_field().expect("a good scene");
                 let pairs = touching(&run);
                 let (start, _) = driving(&run, cutoff_m, &works);
                 let steady = steady(&run, cutoff_m, &works);
@@ -344,7 +346,7 @@ mod tests {
                         force(&mut run, k, grown, relaxation / decay);
                     }
                     run.trade(Trade::Pairs);
-                    run.evaluate_field().unwrap();
+                    run.evaluate_field().expect("a good scene");
                     let (norm, largest) = driving(&run, cutoff_m, &works);
                     let case = format!(
                         "{name}, αΔA {relaxation:e}, sweep {sweep}: {norm:e} after {last:e}, start {start:e}"
@@ -353,7 +355,7 @@ mod tests {
                     assert!(norm <= before.max(PLATEAU * start), "{case}");
                     assert!(largest <= 1.5 * steady, "{case}, charge {largest:e}, steady {steady:e}");
                     let net: f64 = run.particles.charge.iter().sum();
-                    assert!(net.abs() < 1e-13 * run.ledger().unwrap().moved, "{case}");
+                    assert!(net.abs() < 1e-13 * run.ledger().expect("a good scene").moved, "{case}");
                     (before, last) = (last, norm);
                 }
                 assert!(relaxation < 0.1 || last < PLATEAU * start, "{name} {relaxation:e} ends at {last:e}");
@@ -366,14 +368,15 @@ mod tests {
         let places = close_packed(2);
         let works = work_functions(places.len(), 7);
         let mut run = packed(&places, &works, 5e-7);
-        run.evaluate_field().unwrap();
+        run.evaluate_field().expect("a good scene");
         let pairs = touching(&run);
         let (start, _) = driving(&run, 5e-7, &works);
         for _ in 0..10 {
             let drives: Vec<f64> = pairs
                 .iter()
                 .map(|&(k, grown, i, j)| {
-                    let field = run.neighbours.lists[k].growth[grown.entry as usize].field().unwrap();
+                    let field =
+                        run.neighbours.lists[k].growth[grown.entry as usize].field().expect("a good scene");
                     let pair = [grain_of(&run, i), grain_of(&run, j)];
                     let drive =
                         between_grains(VACUUM_PERMITTIVITY, work(&run, 5e-7, &works, i, j), pair, field);
@@ -385,7 +388,7 @@ mod tests {
                 run.particles.charge[run.grains.original[i] as usize] -= moved;
                 run.particles.charge[run.grains.original[j] as usize] += moved;
             }
-            run.evaluate_field().unwrap();
+            run.evaluate_field().expect("a good scene");
         }
         let (norm, _) = driving(&run, 5e-7, &works);
         assert!(norm > 1e3 * start, "{norm:e} {start:e}");

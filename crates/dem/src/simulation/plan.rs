@@ -42,38 +42,49 @@ pub(super) fn plan(
     );
     entry(features.rotation(), "rotation", "friction can turn grains".to_owned(), "nothing can turn a grain");
     entry(periodic, "periodic images", "an axis is periodic".to_owned(), "no axis is periodic");
-    entry(
-        transfer.is_some(),
-        "charging",
-        "enable_collision_charge_transfer: charge moves where contacts grow".to_owned(),
-        "no enable_collision_charge_transfer",
-    );
-    if let Some(transfer) = transfer {
-        entry(
-            transfer.beyond_previous_maximum,
-            "largest contact areas",
-            "beyond_previous_maximum: only what grows beyond moves charge".to_owned(),
-            "no beyond_previous_maximum",
-        );
-        let breakdown = transfer.breakdown_field_v_m;
-        let limit = format!("breakdown_field_V_m = {:e}", breakdown.unwrap_or_default());
-        entry(breakdown.is_some(), "dielectric breakdown", limit, "no breakdown_field_V_m");
-        entry(
-            transfer.stiffness_correction.is_some(),
-            "contact-area correction",
-            "stiffness_correction: areas scaled towards young_real_Pa".to_owned(),
-            "no stiffness_correction",
-        );
-    }
+    plan_charging(&mut plan, transfer);
     let reason = if field_asked {
         "every charge in the particle group is zero and nothing makes one"
     } else {
         "no [electric_field]"
     };
     let charged = if transfer.is_some() { "charges, or what makes them" } else { "charged grains" };
-    entry(field.is_some(), "field", charged.to_owned(), reason);
+    if field.is_some() {
+        plan.build("field", charged)
+    } else {
+        plan.leave_out("field", reason)
+    }
     if let Some(field) = field {
         plan.extend(field);
     }
     plan
+}
+
+/// Charge transfer and its refinements.
+fn plan_charging(plan: &mut Plan, transfer: Option<&ChargeTransfer>) {
+    let mut entry = |there: bool, stage: &str, yes: String, no: &str| {
+        if there { plan.build(stage, yes) } else { plan.leave_out(stage, no) }
+    };
+    entry(
+        transfer.is_some(),
+        "charging",
+        "enable_collision_charge_transfer: charge moves where contacts grow".to_owned(),
+        "no enable_collision_charge_transfer",
+    );
+    let Some(transfer) = transfer else { return };
+    entry(
+        transfer.beyond_previous_maximum,
+        "largest contact areas",
+        "beyond_previous_maximum: only what grows beyond moves charge".to_owned(),
+        "no beyond_previous_maximum",
+    );
+    let breakdown = transfer.breakdown_field_v_m;
+    let limit = format!("breakdown_field_V_m = {:e}", breakdown.unwrap_or_default());
+    entry(breakdown.is_some(), "dielectric breakdown", limit, "no breakdown_field_V_m");
+    entry(
+        transfer.stiffness_correction.is_some(),
+        "contact-area correction",
+        "stiffness_correction: areas scaled towards young_real_Pa".to_owned(),
+        "no stiffness_correction",
+    );
 }

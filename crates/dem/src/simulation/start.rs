@@ -114,10 +114,9 @@ impl Simulation {
         let features = Features { charging: transfer.is_some(), ..table.features() };
         let (level, level_radius) = levels_of(particles.radius.iter().copied());
         let shifts = shifts(&domain);
-        let wall_count = walls.len();
+        let (wall_count, asked_for) = (walls.len(), field.is_some());
         let walls =
             if walls.is_empty() { None } else { Some(Walls::new(&walls, shifts, features.charging)?) };
-        let asked = field.is_some();
         let charging = field.as_ref().zip(transfer).map(|(field, transfer)| {
             let of_field = (field.settings.relative_permittivity, field.settings.tolerance);
             Charging::new(transfer, of_field, &materials, &particles, wall_count)
@@ -140,7 +139,7 @@ impl Simulation {
             periodic,
             wall_count,
             neighbours.level_count(),
-            asked,
+            asked_for,
             transfer.as_ref(),
             field.as_ref().map(|f| f.source.field.plan()),
         );

@@ -1,0 +1,39 @@
+//! What charge transfer and the guards ask of the field, and tell it.
+
+use super::FieldStage;
+use amberfield_core::constants::VACUUM_PERMITTIVITY;
+use amberfield_core::{CouplingInterval, Vector3};
+
+impl FieldStage {
+    /// Permittivity of the medium [F/m].
+    pub(crate) fn permittivity(&self) -> f64 {
+        VACUUM_PERMITTIVITY * self.settings.relative_permittivity
+    }
+
+    /// E at the last evaluation at what was beside the grains [V/m].
+    pub(crate) fn beside(&self) -> &[Vector3<f64>] {
+        &self.values.e[self.members.index.len()..]
+    }
+
+    /// E at a grain now, on its line [V/m].
+    pub(crate) fn at(&self, grain: usize) -> Vector3<f64> {
+        self.forecast.at(grain, self.control.age as f64)
+    }
+
+    /// Takes a grain's new charge [C].
+    pub(crate) fn recharge(&mut self, grain: usize, charge: f64) {
+        self.forecast.recharge(grain, charge);
+    }
+
+    /// Whether E is evaluated as often as its error asks.
+    pub(crate) fn is_automatic(&self) -> bool {
+        self.settings.coupling_interval == CouplingInterval::Auto
+    }
+}
+
+/// Charges for which the field chooses its parameters where there are none yet: of both signs, none in all.
+pub(super) fn stand_in(charge: &mut [f64]) {
+    for pair in charge.chunks_exact_mut(2) {
+        pair.copy_from_slice(&[1e-15, -1e-15]);
+    }
+}
