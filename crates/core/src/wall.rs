@@ -52,4 +52,7 @@ pub struct Wall {
     pub material: MaterialId,
     /// What it does with charge.
     pub charging: WallCharging,
+    /// Whether it is a boundary of the electric field too: a patch of a field solver's mesh. Faces of the domain are known by
+    /// their place.
+    pub bounds_field: bool,
 }

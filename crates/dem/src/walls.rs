@@ -30,6 +30,7 @@ struct Solid {
     name: String,
     material: u16,
     charging: WallCharging,
+    bounds_field: bool,
     shape: Shape,
 }
 
@@ -112,8 +113,9 @@ impl Walls {
                     Shape::Mesh(Box::new(mesh))
                 }
             };
-            let (name, material, charging) = (wall.name.clone(), wall.material.0, wall.charging);
-            solids.push(Solid { name, material, charging, shape });
+            let Wall { charging, bounds_field, .. } = *wall;
+            let (name, material) = (wall.name.clone(), wall.material.0);
+            solids.push(Solid { name, material, charging, bounds_field, shape });
         }
         Ok(Self { solids, shifts, charge, chunks: Vec::new() })
     }

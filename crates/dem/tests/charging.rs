@@ -181,6 +181,18 @@ fn insulating_wall_keeps_what_it_gets_and_pushes_back() {
 }
 
 #[test]
+fn own_image_in_an_insulating_face_moves_no_charge() {
+    let wall = || Wall { charging: WallCharging::Insulating, ..floor() };
+    let insulating = Boundary::Insulating { normal_field_v_m: 0.0 };
+    let faces = [[Boundary::Open; 2], [Boundary::Open; 2], [insulating, Boundary::Open]];
+    let face = Domain::new(Vector3::new(-1.0, -1.0, 0.0), Vector3::repeat(1.0), faces).expect("a good scene");
+    let (alone, _) = bounces(wall(), domain(1.0, Boundary::Open), [5.0, 4.0], 1);
+    let (before_face, _) = bounces(wall(), face, [5.0, 4.0], 1);
+    // Nothing has been charged yet but what this bounce moves: the facet's image counts a little.
+    assert!((before_face[0] / alone[0] - 1.0).abs() < 1e-2, "{before_face:?} {alone:?}");
+}
+
+#[test]
 fn breakdown_field_ends_the_charging() {
     // Steady charge of 1 eV: 1 eV/(eδ) = 2 MV/m at the contact, which 0.2 MV/m cuts to 10 %.
     let limit = 2e5;

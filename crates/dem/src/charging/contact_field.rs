@@ -2,7 +2,7 @@
 //!
 //! Every evaluation of the field is asked for E at the contacts too, those that touch and those that may touch before the next one: places
 //! without charge, at which every method gives the field of all charges with all images. Less the colliders' own fields, and at a wall
-//! that is a conductor of the field less the grain's own image, it is E_x. A grounded wall that the field does not know mirrors
+//! that bounds the field less the grain's own image, it is E_x. A grounded wall that the field does not know mirrors
 //! the others' charges in its tangent plane at the contact, which doubles their normal field there.
 //!
 //! A contact that was not foreseen has until the next evaluation the mean of E at the two centres without the partner's field, or at a wall
@@ -82,13 +82,12 @@ impl Charging {
             let before = BEFORE_WALL * grains.centre[grain][3];
             let place = grains.position(grain) + normal * (distance - before);
             let charge = of(grain);
-            let mut own = k * charge / (distance - before).powi(2);
-            let mut factor = 1.0;
-            if is_conductor(domain, grains, &touch) {
-                own += k * charge / (distance + before).powi(2);
-            } else if touch.charging == WallCharging::Grounded {
-                factor = 2.0;
-            }
+            // The image makes E·n of the same sign before a conductor, of the other before an insulator.
+            let image = image_sign(domain, grains, &touch);
+            let mut own =
+                k * charge / (distance - before).powi(2) + image * k * charge / (distance + before).powi(2);
+            let mirrored = touch.charging == WallCharging::Grounded && image == 0.0;
+            let factor = if mirrored { 2.0 } else { 1.0 };
             if let Some((at, held)) = self.facet_of(traders, walls, &touch) {
                 let from = place - at;
                 own += k * held * from.dot(&normal) / from.norm().powi(3);
@@ -151,14 +150,11 @@ impl Charging {
     /// The same at a wall.
     pub(super) fn unforeseen_at_wall(&self, traders: Traders<'_>, touch: &Touch, charge: &[f64]) -> f64 {
         let field = (traders.field)(touch.grain).dot(&touch.normal);
-        if is_conductor(traders.domain, traders.grains, touch) {
-            let own = charge[traders.grains.original[touch.grain] as usize];
-            field - self.coulomb * own / (4.0 * touch.distance * touch.distance)
-        } else if touch.charging == WallCharging::Grounded {
-            2.0 * field
-        } else {
-            field
-        }
+        let own = charge[traders.grains.original[touch.grain] as usize];
+        let image = image_sign(traders.domain, traders.grains, touch);
+        let mirrored = touch.charging == WallCharging::Grounded && image == 0.0;
+        let others = field - image * self.coulomb * own / (4.0 * touch.distance * touch.distance);
+        if mirrored { 2.0 * others } else { others }
     }
 
     /// Change of E·n since the last evaluation at a distance `reach` [m] along `normal` from grain i, made by the grains that touch i
@@ -181,17 +177,29 @@ impl Charging {
     }
 }
 
-/// Whether the wall that is touched is a conducting face of the domain.
-fn is_conductor(domain: &Domain, grains: &Grains, touch: &Touch) -> bool {
+/// What a field with the touched wall for a boundary makes of the grain's own image: 1 for a conductor, −1 for an insulator, 0 where
+/// the field does not know the wall.
+fn image_sign(domain: &Domain, grains: &Grains, touch: &Touch) -> f64 {
+    if touch.bounds_field {
+        return if touch.charging == WallCharging::Insulating { -1.0 } else { 1.0 };
+    }
     let place = grains.position(touch.grain) + touch.normal * touch.distance;
     let slack = SAME_FACE * grains.centre[touch.grain][3];
-    Axis::ALL.into_iter().any(|axis| {
-        let (at, along) = (place[axis.index()], touch.normal[axis.index()]);
-        let low = along < -1.0 + SAME_FACE && (at - domain.min()[axis.index()]).abs() < slack;
-        let high = along > 1.0 - SAME_FACE && (at - domain.max()[axis.index()]).abs() < slack;
-        (low && domain.face(axis, Side::Min).is_conductor())
-            || (high && domain.face(axis, Side::Max).is_conductor())
-    })
+    let of_face = |axis: Axis, side: Side| {
+        let (corner, out) = match side {
+            Side::Min => (domain.min(), -1.0),
+            Side::Max => (domain.max(), 1.0),
+        };
+        let axis_index = axis.index();
+        let is_it = out * touch.normal[axis_index] > 1.0 - SAME_FACE
+            && (place[axis_index] - corner[axis_index]).abs() < slack;
+        match domain.face(axis, side) {
+            face if is_it && face.is_conductor() => 1.0,
+            face if is_it && face.is_insulating() => -1.0,
+            _ => 0.0,
+        }
+    };
+    Axis::ALL.into_iter().flat_map(|axis| [Side::Min, Side::Max].map(|side| of_face(axis, side))).sum()
 }
 
 fn inside(domain: &Domain, place: Vector3<f64>) -> Vector3<f64> {

@@ -293,6 +293,7 @@ mod tests {
                 shape: floor,
                 material: MaterialId(0),
                 charging: WallCharging::None,
+                bounds_field: false,
             }],
             time: TimeSettings {
                 step: Step::Seconds(1e-6),

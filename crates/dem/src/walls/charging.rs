@@ -18,6 +18,7 @@ pub(crate) struct Touch {
     pub(crate) wall: u32,
     pub(crate) material: u16,
     pub(crate) charging: WallCharging,
+    pub(crate) bounds_field: bool,
     triangle: u32,
     /// From the grain to the wall.
     pub(crate) normal: Vector3<f64>,
@@ -69,6 +70,7 @@ impl Walls {
                         wall: entry.wall,
                         material: solid.material,
                         charging: solid.charging,
+                        bounds_field: solid.bounds_field,
                         triangle: contact.triangle,
                         normal: contact.normal,
                         distance: grains.centre[grain][3] - contact.overlap,

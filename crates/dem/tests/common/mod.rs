@@ -70,7 +70,13 @@ pub(crate) fn setup(grains: Vec<Grain>, material: Material, step_s: f64) -> Setu
 }
 
 pub(crate) fn wall(shape: WallShape) -> Wall {
-    Wall { name: "wall".into(), shape, material: MaterialId(0), charging: WallCharging::None }
+    Wall {
+        name: "wall".into(),
+        shape,
+        material: MaterialId(0),
+        charging: WallCharging::None,
+        bounds_field: false,
+    }
 }
 
 /// z = 0, grains above.

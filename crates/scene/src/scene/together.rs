@@ -165,6 +165,9 @@ fn warn(scene: &mut Scene) {
     if scene.solver.is_none() && scene.wall_patches.iter().any(Option::is_some) {
         scene.warnings.push("walls.patch has no effect without [solver]".to_owned());
     }
+    if scene.solver.is_none() {
+        scene.walls.iter_mut().for_each(|wall| wall.bounds_field = false);
+    }
     let far_tolerance = scene.electric_field.as_ref().is_some_and(|field| field.far_tolerance.is_some());
     if scene.solver.is_none() && far_tolerance {
         scene.warnings.push("electric_field.far_tolerance has no effect without [solver]: the internal grid is solved exactly".to_owned());
@@ -176,7 +179,7 @@ fn warn(scene: &mut Scene) {
         for wall in &scene.walls {
             if matches!(wall.shape, WallShape::Mesh(_)) && wall.charging == WallCharging::Grounded {
                 scene.warnings.push(format!(
-                    "{}: on the internal grid the field sees this grounded surface only through images near it, not in the far field",
+                    "{}: the internal grid does not know this grounded surface; it takes charge, but does not bound the field",
                     wall.name
                 ));
             }

@@ -82,7 +82,8 @@ fn read_wall(
     };
     // Meshes are conductors, primitive walls take no charge, unless asked.
     let usual = if matches!(shape, WallShape::Mesh(_)) { WallCharging::Grounded } else { WallCharging::None };
-    Ok((Wall { name, shape, material, charging: charging.unwrap_or(usual) }, patch))
+    let bounds_field = patch.is_some();
+    Ok((Wall { name, shape, material, charging: charging.unwrap_or(usual), bounds_field }, patch))
 }
 
 fn read_plane(table: &Table<'_>) -> Result<WallShape, SceneError> {
