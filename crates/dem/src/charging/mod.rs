@@ -37,7 +37,7 @@ use materials::ChargingTable;
 use serde::{Deserialize, Serialize};
 
 /// Steps whose growth moves charge together.
-const EVERY: u64 = 10;
+const EVERY: u64 = 20;
 /// Σ of the largest αΔA of every update since the last evaluation of the field from which on contacts see the charges of
 /// the grains that touch theirs, and at which the field is due.
 const LAG_SEEN: f64 = 0.02;
