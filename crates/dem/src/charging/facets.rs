@@ -11,6 +11,8 @@ use std::collections::BTreeMap;
 
 /// Distance of a facet's point charge from the facet, over its width.
 const BEFORE: f64 = 0.25;
+/// Facets whose charges act this close to each other, over their width, are one.
+const SAME: f64 = 0.1;
 
 /// A facet that has been charged.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
@@ -50,6 +52,7 @@ impl Facets {
         &mut self.facets[number as usize]
     }
 
+    /// As they were; what is one with another is found again by its place.
     pub(super) fn restore(&mut self, facets: &[Facet]) {
         self.facets = facets.to_vec();
         self.numbers = facets.iter().enumerate().map(|(n, facet)| (facet.key, n as u32)).collect();
@@ -73,6 +76,12 @@ impl Facets {
         let centre = if c == d { (a + b + c) / 3.0 } else { 0.25 * (a + b + c + d) };
         let acts = domain.wrap(centre + inward * (BEFORE * area.sqrt()));
         let acts = acts.sup(&domain.min()).inf(&domain.max());
+        // A cell that crosses a period is one with its image.
+        let same = |facet: &Facet| facet.place.is_some_and(|place| (place - acts).norm() < SAME * self.width);
+        if let Some(known) = self.facets.iter().position(|facet| facet.wall == wall && same(facet)) {
+            self.numbers.insert((wall, key), known as u32);
+            return known as u32;
+        }
         let place = (charging == WallCharging::Insulating).then_some(acts);
         let number = self.facets.len() as u32;
         self.facets.push(Facet { wall, corners, area_m2: area, charge: 0.0, place, key: (wall, key) });
@@ -167,6 +176,21 @@ mod tests {
         let whole: f64 = facets.all().iter().map(|facet| facet.area_m2).sum();
         assert!((whole - 6.0).abs() < 1e-12);
         assert!(facets.all().iter().all(|facet| facet.place.is_some_and(|place| place.z > 0.0)));
+    }
+
+    #[test]
+    fn cell_across_a_period_is_one_with_its_image() {
+        let faces = [[Boundary::Periodic; 2], [Boundary::Open; 2], [Boundary::Open; 2]];
+        let domain = Domain::new(Vector3::repeat(-1.5), Vector3::repeat(1.5), faces).unwrap();
+        let mut facets = Facets::new(0.5);
+        let surface = Surface::Plane { point: Vector3::zeros(), normal: Vector3::z() };
+        let mut at = |x: f64| {
+            let place = Vector3::new(x, 0.7, 0.0);
+            facets.at(&domain, (0, WallCharging::Insulating), surface, place, Vector3::z())
+        };
+        // Cells from −2 to −1 and from 1 to 2 are the same.
+        assert_eq!(at(1.4), at(-1.4));
+        assert_ne!(at(0.1), at(1.4));
     }
 
     #[test]

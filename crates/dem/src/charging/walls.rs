@@ -2,17 +2,27 @@
 
 use super::around::{NOBODY, Toucher};
 use super::{Charging, LAG_SEEN, Traders};
+use crate::neighbours::Neighbours;
 use crate::walls::{Touch, Walls};
 use amberfield_core::{Vector3, WallCharging};
 use amberfield_laws::charge_transfer::{Grain, with_grounded_wall, with_insulating_facet};
 
 impl Charging {
     /// Moves what is due between grains and walls. `charge` is by the set-up's order [C].
-    pub(crate) fn trade_walls(&mut self, traders: Traders<'_>, walls: &mut Walls, charge: &mut [f64]) {
+    pub(crate) fn trade_walls(
+        &mut self,
+        traders: Traders<'_>,
+        neighbours: &Neighbours,
+        walls: &mut Walls,
+        charge: &mut [f64],
+    ) {
         let mut grown: Vec<Touch> =
             walls.touches(traders.grains).filter(|touch| touch.growth.due() > 0.0).collect();
         if self.backwards {
             grown.reverse();
+        }
+        if self.lag > LAG_SEEN && !grown.is_empty() {
+            self.around.build(traders.grains, neighbours);
         }
         let mut largest = 0.0_f64;
         for touch in grown {
@@ -39,7 +49,7 @@ impl Charging {
         let facet = self.facets.at(traders.domain, wall, walls.surface(touch), place, -touch.normal);
         let mut field =
             touch.growth.field().unwrap_or_else(|| self.unforeseen_at_wall(traders, touch, charge));
-        if self.lag > LAG_SEEN && self.around_is_built {
+        if self.lag > LAG_SEEN {
             let nobody = Toucher { grain: NOBODY, offset: Vector3::zeros() };
             let gained =
                 self.gained_beside(grains, touch.grain, &nobody, touch.normal, touch.distance, charge);

@@ -51,7 +51,7 @@ impl Simulation {
             Traders { domain: &self.domain, grains: &self.grains, member: &field.member, field: &at };
         match (who, &mut self.walls) {
             (Trade::Pairs, _) => charging.trade_pairs(traders, &mut self.neighbours, charge),
-            (Trade::Walls, Some(walls)) => charging.trade_walls(traders, walls, charge),
+            (Trade::Walls, Some(walls)) => charging.trade_walls(traders, &self.neighbours, walls, charge),
             (Trade::Walls, None) => {}
         }
         for &grain in &charging.changed {
