@@ -35,6 +35,11 @@ impl Plan {
         self.left_out.push(PlanEntry { stage: stage.into(), reason: reason.into() });
     }
 
+    /// Adds a stage that is built for one reason or left out for another.
+    pub fn decide(&mut self, is_built: bool, stage: &str, built_for: impl Into<String>, left_out_for: &str) {
+        if is_built { self.build(stage, built_for) } else { self.leave_out(stage, left_out_for) }
+    }
+
     /// The stages that run, in order.
     #[must_use]
     pub fn stages(&self) -> &[PlanEntry] {

@@ -71,7 +71,7 @@ impl FieldSide {
     pub fn open(run: &str, rank: u32, ranks: u32) -> Result<Self, CouplingError> {
         let deadline = Instant::now() + OPENING;
         let root = if run.is_empty() { RunRoot::open_waiting(deadline)? } else { RunRoot::open(run)? };
-        root.check_version()?;
+        root.check_version().map_err(of_dem)?;
         let link = Link::new(&root, SideOf::Field { rank }, ranks, deadline)?;
         Ok(Self {
             link,

@@ -1,7 +1,6 @@
 //! The folder of a run in shared memory, and everything else there that bears the run's name.
 
 use crate::CouplingError;
-use crate::link::SideOf;
 use amberfield_wire::{PROTOCOL_VERSION, WireError};
 use rustix::fs::Mode;
 use std::path::{Path, PathBuf};
@@ -39,16 +38,11 @@ impl RunRoot {
             match rustix::fs::mkdir(root.path(), Mode::RWXU) {
                 Ok(()) => {
                     let version = std::fs::write(root.path().join(PROTOCOL), PROTOCOL_VERSION.to_string());
-                    version.map_err(|error| no_room(0, &error))?;
+                    version.map_err(|error| cannot_make(&root, &error))?;
                     return Ok(root);
                 }
                 Err(rustix::io::Errno::EXIST) => run = run.wrapping_add(1),
-                Err(error) => {
-                    return Err(CouplingError::SharedMemory(format!(
-                        "cannot make {}: {error}",
-                        root.path().display()
-                    )));
-                }
+                Err(error) => return Err(cannot_make(&root, &error)),
             }
         }
     }
@@ -99,15 +93,9 @@ impl RunRoot {
     }
 
     /// Refuses a DEM process of another version, before anything of it is read.
-    pub(crate) fn check_version(&self) -> Result<(), CouplingError> {
+    pub(crate) fn check_version(&self) -> Result<(), WireError> {
         let text = std::fs::read_to_string(self.path().join(PROTOCOL)).unwrap_or_default();
-        match text.trim().parse().unwrap_or(0) {
-            PROTOCOL_VERSION => Ok(()),
-            theirs => Err(CouplingError::Wire {
-                peer: SideOf::Field { rank: 0 }.peer(),
-                error: WireError::Version { theirs, ours: PROTOCOL_VERSION },
-            }),
-        }
+        amberfield_wire::check_version(text.trim().parse().unwrap_or(0))
     }
 
     /// Says that the run waits for a solver which somebody else starts, or no longer does.
@@ -150,6 +138,10 @@ impl Drop for RunRoot {
             remove(&self.name);
         }
     }
+}
+
+fn cannot_make(root: &RunRoot, why: &dyn std::fmt::Display) -> CouplingError {
+    CouplingError::SharedMemory(format!("cannot make {}: {why}", root.path().display()))
 }
 
 fn name_of(run: u64) -> String {

@@ -55,6 +55,26 @@ pub(crate) struct ChunkList {
     pub(crate) contacts: usize,
 }
 
+/// A listed pair.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Listed {
+    /// Chunk whose list holds it, and entry there.
+    pub(crate) chunk: usize,
+    pub(crate) entry: usize,
+    /// Sorted indices.
+    pub(crate) i: usize,
+    pub(crate) j: usize,
+    code: u32,
+}
+
+impl Listed {
+    /// From the centre of i to that of j, or to its image [m].
+    pub(crate) fn offset(&self, grains: &Grains, shifts: &[[f64; 3]; 32]) -> Vector3<f64> {
+        let shift = Vector3::from(shifts[(self.code >> INDEX_BITS) as usize]);
+        grains.position(self.j) - grains.position(self.i) + shift
+    }
+}
+
 /// Where a grain finds what another chunk does to it.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Inbound {
@@ -157,23 +177,17 @@ impl Neighbours {
 
     /// Histories of the touching pairs, with indices of the set-up's order.
     pub(crate) fn histories(&self, grains: &Grains) -> Vec<PairHistory> {
-        let mut out = Vec::new();
-        for (k, list) in self.lists.iter().enumerate() {
-            for local in 0..list.start.len() - 1 {
-                for entry in list.start[local] as usize..list.start[local + 1] as usize {
-                    if list.touching[entry] {
-                        out.push(PairHistory {
-                            i: (k * CHUNK + local) as u32,
-                            entry: entry as u32 - list.start[local],
-                            partner: grains.original[(list.partner[entry] & INDEX_MASK) as usize],
-                            spring: list.spring.get(entry).copied().unwrap_or_default(),
-                            rolling: list.rolling.get(entry).copied().unwrap_or_default(),
-                        });
-                    }
-                }
+        let history = |pair: Listed| {
+            let (list, entry) = (&self.lists[pair.chunk], pair.entry);
+            PairHistory {
+                i: pair.i as u32,
+                entry: entry as u32 - list.start[pair.i % CHUNK],
+                partner: grains.original[pair.j],
+                spring: list.spring.get(entry).copied().unwrap_or_default(),
+                rolling: list.rolling.get(entry).copied().unwrap_or_default(),
             }
-        }
-        out
+        };
+        self.touching().map(history).collect()
     }
 
     /// Puts saved histories back; `Err` names the first that finds no entry.
@@ -200,14 +214,19 @@ impl Neighbours {
         Ok(())
     }
 
-    /// All listed pairs, sorted indices.
-    pub(crate) fn pairs(&self) -> impl Iterator<Item = (usize, usize)> + '_ {
+    /// All listed pairs.
+    pub(crate) fn pairs(&self) -> impl Iterator<Item = Listed> + '_ {
         self.lists.iter().enumerate().flat_map(|(k, list)| {
-            (0..list.start.len() - 1).flat_map(move |local| {
-                let range = list.start[local] as usize..list.start[local + 1] as usize;
-                list.partner[range].iter().map(move |code| (k * CHUNK + local, (code & INDEX_MASK) as usize))
+            (0..list.start.len() as u32 - 1).flat_map(move |local| {
+                let range = list.start[local as usize]..list.start[local as usize + 1];
+                range.map(move |entry| list.listed(k, local, entry))
             })
         })
+    }
+
+    /// Touching pairs.
+    pub(crate) fn touching(&self) -> impl Iterator<Item = Listed> + '_ {
+        self.pairs().filter(|pair| self.lists[pair.chunk].touching[pair.entry])
     }
 
     /// Number of touching pairs.
@@ -217,6 +236,14 @@ impl Neighbours {
 }
 
 impl ChunkList {
+    /// A pair of this list, which is chunk k's.
+    #[inline(always)]
+    pub(crate) fn listed(&self, k: usize, local: u32, entry: u32) -> Listed {
+        let code = self.partner[entry as usize];
+        let (i, j) = (k * CHUNK + local as usize, (code & INDEX_MASK) as usize);
+        Listed { chunk: k, entry: entry as usize, i, j, code }
+    }
+
     fn fill(&mut self, k: usize, cells: &Cells, grains: &Grains, features: Features) {
         self.start.clear();
         self.partner.clear();

@@ -256,7 +256,7 @@ impl Simulation {
             &self.particles,
             &field.member,
             field.permittivity(),
-            self.neighbours.pairs(),
+            self.neighbours.pairs().map(|pair| (pair.i, pair.j)),
         );
         Some(ElectricLimits { pair, wall_image, plasma: field.plasma_limit })
     }

@@ -1,6 +1,6 @@
 //! The complete state of a run, for checkpoints.
 
-use crate::charging::{Facet, Grown, Growth, Ledger};
+use crate::charging::{Facets, Grown, Growth, Ledger};
 use crate::field_crate::Choice;
 use crate::field_crate::far::FarState;
 use amberfield_core::Vector3;
@@ -58,7 +58,7 @@ pub(crate) struct ChargingState {
     pub(crate) pairs: Vec<PairGrowth>,
     /// By chunk, the pairs whose growth is due, in the order in which they began to grow.
     pub(crate) grown: Vec<Vec<Grown>>,
-    pub(crate) facets: Vec<Facet>,
+    pub(crate) facets: Facets,
     pub(crate) ledger: Ledger,
     pub(crate) backwards: bool,
     pub(crate) lag: f64,

@@ -142,8 +142,9 @@ where
 fn emptiest_corner(plot: &Plot<'_>) -> SeriesLabelPosition {
     /// Share of the frame that they take.
     const SHARE: f64 = 0.4;
+    let ranges = [0, 1].map(|axis| range(plot, axis).unwrap_or((0.0, 1.0)));
     let place = |value: f64, axis: usize| {
-        let (low, high) = range(plot, axis).unwrap_or((0.0, 1.0));
+        let (low, high) = ranges[axis];
         match plot.scales[axis] {
             Scale::Linear => (value - low) / (high - low),
             Scale::Logarithmic => (value / low).ln() / (high / low).ln(),

@@ -158,13 +158,23 @@ impl Header {
     /// # Errors
     /// Another version, another run, an unknown kind.
     pub fn check(&self, run: u64) -> Result<MessageKind, WireError> {
-        if self.version != PROTOCOL_VERSION {
-            return Err(WireError::Version { theirs: self.version, ours: PROTOCOL_VERSION });
-        }
+        check_version(self.version)?;
         if self.run != run {
             return Err(WireError::Run { theirs: self.run, ours: run });
         }
         MessageKind::of(self.kind)
+    }
+}
+
+/// Refuses a peer of another version.
+///
+/// # Errors
+/// Another version than [`PROTOCOL_VERSION`].
+pub fn check_version(theirs: u32) -> Result<(), WireError> {
+    if theirs == PROTOCOL_VERSION {
+        Ok(())
+    } else {
+        Err(WireError::Version { theirs, ours: PROTOCOL_VERSION })
     }
 }
 

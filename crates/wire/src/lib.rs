@@ -9,5 +9,5 @@ mod header;
 mod sections;
 
 pub use error::WireError;
-pub use header::{Block64, Header, MessageKind, PROTOCOL_VERSION, Section, SectionEntry};
+pub use header::{Block64, Header, MessageKind, PROTOCOL_VERSION, Section, SectionEntry, check_version};
 pub use sections::{Element, Layout, Sections};

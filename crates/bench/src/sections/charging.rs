@@ -47,38 +47,36 @@ pub(crate) fn measure(context: &Context) -> Result<()> {
 fn compare(bed: &Setup, steps: usize, threads: usize) -> Result<(Row, Row)> {
     let grains = bed.particles.len();
     let mut runs = [run(bed, false)?, run(bed, true)?];
-    let of_field = |run: &Simulation| {
-        let stages = run.stage_seconds().into_iter();
-        stages.filter(|(name, _)| *name == "field").map(|(_, s)| s).sum::<f64>()
-    };
     let mut seconds = [Vec::new(), Vec::new()];
     for round in 0..=ROUNDS {
         for (run, seconds) in runs.iter_mut().zip(&mut seconds) {
-            let (start, field) = (Instant::now(), of_field(run));
+            let (start, field) = (Instant::now(), seconds_of(run, "field"));
             for _ in 0..steps {
                 run.step()?;
             }
             // The first round warms up.
             if round > 0 {
-                seconds.push(start.elapsed().as_secs_f64() - (of_field(run) - field));
+                seconds.push(start.elapsed().as_secs_f64() - (seconds_of(run, "field") - field));
             }
         }
     }
     let per = 1e9 / (steps * grains) as f64;
-    let row = |charging: bool, seconds: &mut Vec<f64>, run: &Simulation| {
-        let stage = run.stage_seconds().into_iter().find(|(name, _)| *name == "charging");
-        Row {
-            charging,
-            grains,
-            threads,
-            contacts_per_grain: run.contacts() as f64 / grains as f64,
-            ns_per_grain_step: median(seconds) * per,
-            ns_of_charging: stage.map_or(0.0, |(_, s)| s * per / (ROUNDS + 1) as f64),
-        }
+    let row = |charging: bool, seconds: &mut Vec<f64>, run: &Simulation| Row {
+        charging,
+        grains,
+        threads,
+        contacts_per_grain: run.contacts() as f64 / grains as f64,
+        ns_per_grain_step: median(seconds) * per,
+        ns_of_charging: seconds_of(run, "charging") * per / (ROUNDS + 1) as f64,
     };
     let [without, with] = &runs;
     let [of_without, of_with] = &mut seconds;
     Ok((row(false, of_without, without), row(true, of_with, with)))
+}
+
+/// Seconds of a stage so far; 0 if it is not built.
+fn seconds_of(run: &Simulation, stage: &str) -> f64 {
+    run.stage_seconds().into_iter().filter(|(name, _)| *name == stage).map(|(_, seconds)| seconds).sum()
 }
 
 /// A bed of two work functions.

@@ -9,6 +9,8 @@ use amberfield_scene::{Cell, History};
 const BINS: usize = 40;
 /// The file.
 pub(crate) const FILE: &str = "charge_histogram.csv";
+/// The plots of charge, and of charge over mass.
+pub(crate) const PLOTS: [&str; 2] = ["charge_histogram.svg", "charge_to_mass_histogram.svg"];
 /// Its columns: a bin of charges and a bin of charges over masses in each row.
 const COLUMNS: [&str; 8] = [
     "step",
@@ -96,24 +98,20 @@ pub(crate) fn plot(folder: &RunFolder) {
         .filter(|row: &Vec<f64>| row.len() == COLUMNS.len())
         .collect();
     let frames: Vec<&[Vec<f64>]> = rows.chunks(BINS).collect();
-    let last = frames.len().saturating_sub(1);
+    let Some(last) = frames.len().checked_sub(1) else { return };
     let mut shown: Vec<usize> = (0..CURVES).map(|n| last * n / (CURVES - 1)).collect();
     shown.dedup();
-    for (name, first, x) in [
-        ("charge_histogram.svg", 2, "charge [C]"),
-        ("charge_to_mass_histogram.svg", 5, "charge over mass [C/kg]"),
-    ] {
+    let axes = [(2, "charge [C]"), (5, "charge over mass [C/kg]")];
+    for (name, (first, x)) in PLOTS.into_iter().zip(axes) {
         let curve = |frame: usize| {
             let rows = frames[frame];
             let points = rows.iter().map(|row| (0.5 * (row[first] + row[first + 1]), row[first + 2]));
             let name = format!("t = {:.4} s", rows[0][1]);
-            // All grains alike are no curve.
-            let alike = rows[0][first] == rows[0][first + 1];
-            Series { name, points: if alike { Vec::new() } else { points.collect() } }
+            Series { name, points: points.collect() }
         };
-        let series: Vec<Series> =
-            shown.iter().filter(|_| !frames.is_empty()).map(|&frame| curve(frame)).collect();
-        let series: Vec<Series> = series.into_iter().filter(|series| !series.points.is_empty()).collect();
+        // All grains alike are no curve.
+        let differ = |frame: &usize| frames[*frame][0][first] != frames[*frame][0][first + 1];
+        let series: Vec<Series> = shown.iter().copied().filter(differ).map(curve).collect();
         if series.is_empty() {
             continue;
         }

@@ -1,9 +1,7 @@
 //! Which grains touch which, while charges change so fast that contacts must see each other's.
 
-use crate::cells::{INDEX_BITS, INDEX_MASK};
-use crate::chunks::CHUNK;
 use crate::grains::Grains;
-use crate::neighbours::Neighbours;
+use crate::neighbours::{Listed, Neighbours};
 use amberfield_core::Vector3;
 
 /// Two places closer than this, over their distance from the grain, are the same grain's.
@@ -31,23 +29,33 @@ impl Around {
     pub(super) fn build(&mut self, grains: &Grains, neighbours: &Neighbours) {
         self.start.clear();
         self.start.resize(grains.len() + 2, 0);
-        each_touching(grains, neighbours, |i, j, _| {
+        for Listed { i, j, .. } in neighbours.touching() {
             self.start[i + 2] += 1;
             self.start[j + 2] += 1;
-        });
+        }
         for i in 2..self.start.len() {
             self.start[i] += self.start[i - 1];
         }
         let nobody = Toucher { grain: 0, offset: Vector3::zeros() };
         self.touchers.clear();
         self.touchers.resize(self.start[grains.len() + 1] as usize, nobody);
-        each_touching(grains, neighbours, |i, j, offset| {
+        for pair in neighbours.touching() {
+            let (i, j, offset) = (pair.i, pair.j, pair.offset(grains, &neighbours.shifts));
             for (a, b, offset) in [(i, j, offset), (j, i, -offset)] {
                 let slot = &mut self.start[a + 1];
                 self.touchers[*slot as usize] = Toucher { grain: b, offset };
                 *slot += 1;
             }
-        });
+        }
+    }
+
+    /// Grains have moved: what touches is to be found again.
+    pub(super) fn forget(&mut self) {
+        self.start.clear();
+    }
+
+    pub(super) fn is_known(&self) -> bool {
+        !self.start.is_empty()
     }
 
     pub(super) fn of(&self, grain: usize) -> &[Toucher] {
@@ -75,24 +83,4 @@ impl Around {
             }
         }
     }
-}
-
-fn each_touching(grains: &Grains, neighbours: &Neighbours, mut each: impl FnMut(usize, usize, Vector3<f64>)) {
-    for (k, list) in neighbours.lists.iter().enumerate() {
-        for local in 0..list.start.len() - 1 {
-            let i = k * CHUNK + local;
-            for entry in list.start[local] as usize..list.start[local + 1] as usize {
-                if list.touching[entry] {
-                    let code = list.partner[entry];
-                    each(i, (code & INDEX_MASK) as usize, offset(grains, neighbours, i, code));
-                }
-            }
-        }
-    }
-}
-
-/// From grain i to the partner that a list's code names [m].
-pub(super) fn offset(grains: &Grains, neighbours: &Neighbours, i: usize, code: u32) -> Vector3<f64> {
-    let shift = Vector3::from(neighbours.shifts[(code >> INDEX_BITS) as usize]);
-    grains.position((code & INDEX_MASK) as usize) - grains.position(i) + shift
 }

@@ -9,11 +9,10 @@
 //! E at the centre without the own image.
 
 use super::around::Toucher;
-use super::pairs::Pair;
-use super::{Charging, Traders};
+use super::{Charging, Traders, inside};
 use crate::field_stage::Extras;
 use crate::grains::Grains;
-use crate::neighbours::Neighbours;
+use crate::neighbours::{Listed, Neighbours};
 use crate::walls::{Touch, Walls};
 use amberfield_core::{Axis, Domain, Side, Vector3, WallCharging};
 
@@ -83,11 +82,9 @@ impl Charging {
             let place = grains.position(grain) + normal * (distance - before);
             let charge = of(grain);
             // The image makes E·n of the same sign before a conductor, of the other before an insulator.
-            let image = image_sign(domain, grains, &touch);
+            let Mirror { image, factor } = mirror(domain, grains, &touch);
             let mut own =
                 k * charge / (distance - before).powi(2) + image * k * charge / (distance + before).powi(2);
-            let mirrored = touch.charging == WallCharging::Grounded && image == 0.0;
-            let factor = if mirrored { 2.0 } else { 1.0 };
             if let Some((at, held)) = self.facet_of(traders, walls, &touch) {
                 let from = place - at;
                 own += k * held * from.dot(&normal) / from.norm().powi(3);
@@ -105,8 +102,7 @@ impl Charging {
         walls: Option<&Walls>,
         touch: &Touch,
     ) -> Option<(Vector3<f64>, f64)> {
-        let place = traders.grains.position(touch.grain) + touch.normal * touch.distance;
-        let facet = self.facets.known(touch.wall, walls?.surface(touch), place)?;
+        let facet = self.facets.known(touch.wall, walls?.surface(touch), touch.place(traders.grains))?;
         Some((facet.place?, facet.charge))
     }
 
@@ -136,25 +132,23 @@ impl Charging {
         &self,
         traders: Traders<'_>,
         neighbours: &Neighbours,
-        pair: Pair,
+        pair: Listed,
         charge: &[f64],
     ) -> f64 {
         let grains = traders.grains;
-        let offset = pair.offset(grains, neighbours);
+        let offset = pair.offset(grains, &neighbours.shifts);
         let distance2 = offset.norm_squared();
-        let sum = (traders.field)(pair.i) + (traders.field)(pair.j);
+        let sum = traders.field.at(pair.i) + traders.field.at(pair.j);
         let [of_i, of_j] = [pair.i, pair.j].map(|grain| charge[grains.original[grain] as usize]);
         0.5 * (sum.dot(&offset) / distance2.sqrt() + self.coulomb * (of_j - of_i) / distance2)
     }
 
     /// The same at a wall.
     pub(super) fn unforeseen_at_wall(&self, traders: Traders<'_>, touch: &Touch, charge: &[f64]) -> f64 {
-        let field = (traders.field)(touch.grain).dot(&touch.normal);
+        let field = traders.field.at(touch.grain).dot(&touch.normal);
         let own = charge[traders.grains.original[touch.grain] as usize];
-        let image = image_sign(traders.domain, traders.grains, touch);
-        let mirrored = touch.charging == WallCharging::Grounded && image == 0.0;
-        let others = field - image * self.coulomb * own / (4.0 * touch.distance * touch.distance);
-        if mirrored { 2.0 * others } else { others }
+        let Mirror { image, factor } = mirror(traders.domain, traders.grains, touch);
+        factor * (field - image * self.coulomb * own / (4.0 * touch.distance * touch.distance))
     }
 
     /// Change of E·n since the last evaluation at a distance `reach` [m] along `normal` from grain i, made by the grains that touch i
@@ -171,10 +165,26 @@ impl Charging {
         let mut sum = 0.0;
         self.around.beside(i, partner, |grain, offset| {
             let from = normal * reach - offset;
-            sum += self.gained(grains, grain, charge) * from.dot(&normal) / from.norm().powi(3);
+            let original = grains.original[grain] as usize;
+            let gained = charge[original] - self.evaluated[original];
+            sum += gained * from.dot(&normal) / from.norm().powi(3);
         });
         self.coulomb * sum
     }
+}
+
+/// What a wall does to the field of a grain and of the others at their contact.
+struct Mirror {
+    /// Sign of E·n of the grain's own image in the field, as of [`image_sign`].
+    image: f64,
+    /// What the others' E·n is multiplied by: a grounded wall that the field does not know doubles it.
+    factor: f64,
+}
+
+fn mirror(domain: &Domain, grains: &Grains, touch: &Touch) -> Mirror {
+    let image = image_sign(domain, grains, touch);
+    let unknown_conductor = touch.charging == WallCharging::Grounded && image == 0.0;
+    Mirror { image, factor: if unknown_conductor { 2.0 } else { 1.0 } }
 }
 
 /// What a field with the touched wall for a boundary makes of the grain's own image: 1 for a conductor, −1 for an insulator, 0 where
@@ -183,7 +193,7 @@ fn image_sign(domain: &Domain, grains: &Grains, touch: &Touch) -> f64 {
     if touch.bounds_field {
         return if touch.charging == WallCharging::Insulating { -1.0 } else { 1.0 };
     }
-    let place = grains.position(touch.grain) + touch.normal * touch.distance;
+    let place = touch.place(grains);
     let slack = SAME_FACE * grains.centre[touch.grain][3];
     let of_face = |axis: Axis, side: Side| {
         let (corner, out) = match side {
@@ -200,8 +210,4 @@ fn image_sign(domain: &Domain, grains: &Grains, touch: &Touch) -> f64 {
         }
     };
     Axis::ALL.into_iter().flat_map(|axis| [Side::Min, Side::Max].map(|side| of_face(axis, side))).sum()
-}
-
-fn inside(domain: &Domain, place: Vector3<f64>) -> Vector3<f64> {
-    domain.wrap(place).sup(&domain.min()).inf(&domain.max())
 }

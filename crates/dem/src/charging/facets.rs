@@ -4,6 +4,7 @@
 //! little before the facet, towards the grains: a facet is as wide as a grain, and is seen from a radius away at least. Those of grounded
 //! walls book what flowed off there.
 
+use super::inside;
 use crate::walls::Surface;
 use amberfield_core::{Domain, Vector3, WallCharging};
 use serde::{Deserialize, Serialize};
@@ -27,12 +28,11 @@ pub struct Facet {
     pub charge: f64,
     /// Where its charge acts [m]; `None` where it has flowed off.
     pub(super) place: Option<Vector3<f64>>,
-    key: (u32, [i64; 2]),
 }
 
 /// All facets.
-#[derive(Debug, Default)]
-pub(super) struct Facets {
+#[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
+pub(crate) struct Facets {
     width: f64,
     facets: Vec<Facet>,
     numbers: BTreeMap<(u32, [i64; 2]), u32>,
@@ -48,14 +48,12 @@ impl Facets {
         &self.facets
     }
 
-    pub(super) fn get_mut(&mut self, number: u32) -> &mut Facet {
-        &mut self.facets[number as usize]
+    pub(super) fn get(&self, number: u32) -> &Facet {
+        &self.facets[number as usize]
     }
 
-    /// As they were; what is one with another is found again by its place.
-    pub(super) fn restore(&mut self, facets: &[Facet]) {
-        self.facets = facets.to_vec();
-        self.numbers = facets.iter().enumerate().map(|(n, facet)| (facet.key, n as u32)).collect();
+    pub(super) fn get_mut(&mut self, number: u32) -> &mut Facet {
+        &mut self.facets[number as usize]
     }
 
     /// The facet of a wall at a place on it [m]; `inward` points from the wall to the grain.
@@ -74,8 +72,7 @@ impl Facets {
         let [a, b, c, d] = corners;
         let area = 0.5 * ((b - a).cross(&(c - a)).norm() + (c - a).cross(&(d - a)).norm());
         let centre = if c == d { (a + b + c) / 3.0 } else { 0.25 * (a + b + c + d) };
-        let acts = domain.wrap(centre + inward * (BEFORE * area.sqrt()));
-        let acts = acts.sup(&domain.min()).inf(&domain.max());
+        let acts = inside(domain, centre + inward * (BEFORE * area.sqrt()));
         // A cell that crosses a period is one with its image.
         let same = |facet: &Facet| facet.place.is_some_and(|place| (place - acts).norm() < SAME * self.width);
         if let Some(known) = self.facets.iter().position(|facet| facet.wall == wall && same(facet)) {
@@ -84,7 +81,7 @@ impl Facets {
         }
         let place = (charging == WallCharging::Insulating).then_some(acts);
         let number = self.facets.len() as u32;
-        self.facets.push(Facet { wall, corners, area_m2: area, charge: 0.0, place, key: (wall, key) });
+        self.facets.push(Facet { wall, corners, area_m2: area, charge: 0.0, place });
         self.numbers.insert((wall, key), number);
         number
     }
@@ -92,7 +89,7 @@ impl Facets {
     /// The same, if it has been charged.
     pub(super) fn known(&self, wall: u32, surface: Surface, place: Vector3<f64>) -> Option<&Facet> {
         let (key, _) = self.parted(surface, place);
-        self.numbers.get(&(wall, key)).map(|&number| &self.facets[number as usize])
+        self.numbers.get(&(wall, key)).map(|&number| self.get(number))
     }
 
     fn parted(&self, surface: Surface, place: Vector3<f64>) -> ([i64; 2], [Vector3<f64>; 4]) {

@@ -19,20 +19,21 @@ mod pairs;
 mod walls;
 
 pub use facets::Facet;
+pub(crate) use facets::Facets;
 pub(crate) use growth::{Grown, Growth};
 pub(crate) use pairs::follow;
 
-use crate::chunks::CHUNK;
+use crate::field_stage::FieldStage;
 use crate::grains::Grains;
 use crate::neighbours::Neighbours;
 use crate::state::{ChargingState, PairGrowth};
+use crate::walls::Touch;
 use amberfield_core::constants::{VACUUM_PERMITTIVITY, coulomb_constant};
 use amberfield_core::{ChargeTransfer, Domain, Material, Particles, Vector3};
 use amberfield_laws::charge_transfer::Drive;
 use amberfield_laws::dielectric_breakdown;
 use around::Around;
 use contact_field::Probe;
-use facets::Facets;
 use materials::ChargingTable;
 use serde::{Deserialize, Serialize};
 
@@ -61,17 +62,14 @@ pub struct Ledger {
 pub(crate) struct Traders<'a> {
     pub(crate) domain: &'a Domain,
     pub(crate) grains: &'a Grains,
-    /// By the set-up's order.
-    pub(crate) member: &'a [bool],
-    /// E at the centre of a grain without its own field [V/m], sorted indices.
-    pub(crate) field: &'a dyn Fn(usize) -> Vector3<f64>,
+    pub(crate) field: &'a FieldStage,
 }
 
 impl Traders<'_> {
     /// Index in the set-up's order, if the grain takes part.
     fn member(&self, grain: usize) -> Option<usize> {
         let original = self.grains.original[grain] as usize;
-        self.member[original].then_some(original)
+        self.field.member[original].then_some(original)
     }
 }
 
@@ -92,8 +90,8 @@ pub(crate) struct Charging {
     evaluated: Vec<f64>,
     probes: Vec<Probe>,
     around: Around,
-    /// Whether it is that of the present positions.
-    around_is_built: bool,
+    /// Contacts with walls in the making of a trade.
+    touches: Vec<Touch>,
     /// Sorted indices of the grains whose charge changed in the last trade.
     pub(crate) changed: Vec<u32>,
 }
@@ -121,7 +119,7 @@ impl Charging {
             evaluated: particles.charge.clone(),
             probes: Vec::new(),
             around: Around::default(),
-            around_is_built: false,
+            touches: Vec::new(),
             changed: Vec::new(),
         }
     }
@@ -139,7 +137,7 @@ impl Charging {
             evaluated: self.evaluated.clone(),
             pairs,
             grown: neighbours.lists.iter().map(|list| list.grown.clone()).collect(),
-            facets: self.facets.all().to_vec(),
+            facets: self.facets.clone(),
             ledger: self.ledger.clone(),
             backwards: self.backwards,
             lag: self.lag,
@@ -166,7 +164,7 @@ impl Charging {
             list.grown.clone_from(grown);
         }
         self.evaluated.clone_from(&state.evaluated);
-        self.facets.restore(&state.facets);
+        self.facets = state.facets.clone();
         self.ledger = state.ledger.clone();
         (self.backwards, self.lag) = (state.backwards, state.lag);
         Ok(())
@@ -204,15 +202,9 @@ impl Charging {
         let normal_field = (drive.drive - work) / self.permittivity;
         dielectric_breakdown::bounded(transfer, normal_field, drive.decay / self.permittivity, breakdown)
     }
-
-    /// Charge that a grain has gained since the last evaluation [C].
-    fn gained(&self, grains: &Grains, grain: usize, charge: &[f64]) -> f64 {
-        let original = grains.original[grain] as usize;
-        charge[original] - self.evaluated[original]
-    }
 }
 
-/// Sorted index of a listed grain.
-fn sorted(chunk: usize, local: u32) -> usize {
-    chunk * CHUNK + local as usize
+/// The place in the domain: wrapped, and on the near side of a face that rounding has passed.
+fn inside(domain: &Domain, place: Vector3<f64>) -> Vector3<f64> {
+    domain.wrap(place).sup(&domain.min()).inf(&domain.max())
 }

@@ -16,8 +16,9 @@ impl Charging {
         walls: &mut Walls,
         charge: &mut [f64],
     ) {
-        let mut grown: Vec<Touch> =
-            walls.touches(traders.grains).filter(|touch| touch.growth.due() > 0.0).collect();
+        let mut grown = std::mem::take(&mut self.touches);
+        grown.clear();
+        grown.extend(walls.touches(traders.grains).filter(|touch| touch.growth.due() > 0.0));
         if self.backwards {
             grown.reverse();
         }
@@ -25,11 +26,12 @@ impl Charging {
             self.around.build(traders.grains, neighbours);
         }
         let mut largest = 0.0_f64;
-        for touch in grown {
+        for touch in &grown {
             let due = walls.growth_mut(touch.slot).take_due();
-            largest = largest.max(self.trade_wall(traders, walls, &touch, due, charge));
+            largest = largest.max(self.trade_wall(traders, walls, touch, due, charge));
         }
         self.lag += largest;
+        self.touches = grown;
     }
 
     /// Returns αΔA.
@@ -44,9 +46,9 @@ impl Charging {
         let grains = traders.grains;
         let Some(a) = traders.member(touch.grain) else { return 0.0 };
         let materials = self.table.get(grains.material[touch.grain], touch.material);
-        let place = grains.position(touch.grain) + touch.normal * touch.distance;
         let wall = (touch.wall, touch.charging);
-        let facet = self.facets.at(traders.domain, wall, walls.surface(touch), place, -touch.normal);
+        let (surface, place) = (walls.surface(touch), touch.place(grains));
+        let number = self.facets.at(traders.domain, wall, surface, place, -touch.normal);
         let mut field =
             touch.growth.field().unwrap_or_else(|| self.unforeseen_at_wall(traders, touch, charge));
         if self.lag > LAG_SEEN {
@@ -56,19 +58,18 @@ impl Charging {
             field += gained * if touch.charging == WallCharging::Grounded { 2.0 } else { 1.0 };
         }
         let grain = Grain { charge: charge[a], radius: grains.centre[touch.grain][3] };
-        let [area, held] = {
-            let f = &self.facets.all()[facet as usize];
-            [f.area_m2, f.charge]
-        };
+        let facet = self.facets.get(number);
         let (permittivity, work) = (self.permittivity, materials.work);
         let drive = match touch.charging {
-            WallCharging::Insulating => with_insulating_facet(permittivity, work, grain, [area, held], field),
+            WallCharging::Insulating => {
+                with_insulating_facet(permittivity, work, grain, [facet.area_m2, facet.charge], field)
+            }
             _ => with_grounded_wall(permittivity, work, grain, field),
         };
         let growth = due * materials.area_factor;
         let moved = self.allowed(drive, work, drive.transfer(growth));
         charge[a] -= moved;
-        self.facets.get_mut(facet).charge += moved;
+        self.facets.get_mut(number).charge += moved;
         self.ledger.walls[touch.wall as usize] += moved;
         self.ledger.moved += moved.abs();
         self.changed.push(touch.grain as u32);

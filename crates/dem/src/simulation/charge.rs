@@ -46,9 +46,7 @@ impl Simulation {
         let (Some(charging), Some(field)) = (&mut self.charging, &mut self.field) else { return };
         charging.changed.clear();
         let charge = &mut self.particles.charge;
-        let at = |grain| field.at(grain);
-        let traders =
-            Traders { domain: &self.domain, grains: &self.grains, member: &field.member, field: &at };
+        let traders = Traders { domain: &self.domain, grains: &self.grains, field };
         match (who, &mut self.walls) {
             (Trade::Pairs, _) => charging.trade_pairs(traders, &mut self.neighbours, charge),
             (Trade::Walls, Some(walls)) => charging.trade_walls(traders, &self.neighbours, walls, charge),
@@ -64,10 +62,7 @@ impl Simulation {
     pub(super) fn ask_at_contacts(&mut self) {
         let (Some(charging), Some(field)) = (&mut self.charging, &self.field) else { return };
         self.extras.clear();
-        // Nothing is known before the first evaluation; nothing asks for it then.
-        let at = |grain| field.at(grain);
-        let traders =
-            Traders { domain: &self.domain, grains: &self.grains, member: &field.member, field: &at };
+        let traders = Traders { domain: &self.domain, grains: &self.grains, field };
         let steps = FORESIGHT * field.intervals().steps_now as f64;
         let margin = (2.0 * self.speed * self.step_s * steps).min(self.skin);
         let charge = &self.particles.charge;
@@ -91,6 +86,8 @@ impl Simulation {
 mod tests {
     use super::*;
     use crate::charging::Grown;
+    use crate::chunks::CHUNK;
+    use crate::neighbours::Listed;
     use crate::setup::{FieldStageSetup, Setup};
     use amberfield_core::constants::{VACUUM_PERMITTIVITY, coulomb_constant};
     use amberfield_core::{
@@ -188,18 +185,11 @@ mod tests {
 
     /// Touching pairs: chunk, entry, sorted indices.
     fn touching(run: &Simulation) -> Vec<(usize, Grown, usize, usize)> {
-        let mut pairs = Vec::new();
-        for (k, list) in run.neighbours.lists.iter().enumerate() {
-            for local in 0..list.start.len() - 1 {
-                for entry in list.start[local]..list.start[local + 1] {
-                    if list.touching[entry as usize] {
-                        let j = (list.partner[entry as usize] & crate::cells::INDEX_MASK) as usize;
-                        pairs.push((k, Grown { entry, local: local as u32 }, local, j));
-                    }
-                }
-            }
-        }
-        pairs
+        let listed = |pair: Listed| {
+            let grown = Grown { entry: pair.entry as u32, local: (pair.i % CHUNK) as u32 };
+            (pair.chunk, grown, pair.i, pair.j)
+        };
+        run.neighbours.touching().map(listed).collect()
     }
 
     fn grain_of(run: &Simulation, i: usize) -> charge_transfer::Grain {

@@ -14,34 +14,36 @@ pub(super) fn plan(
     field: Option<Plan>,
 ) -> Plan {
     let mut plan = Plan::new();
-    let mut entry = |there: bool, stage: &str, yes: String, no: &str| {
-        if there { plan.build(stage, yes) } else { plan.leave_out(stage, no) }
-    };
-    entry(true, "integrate", "velocity Verlet, every step".to_owned(), "");
+    plan.decide(true, "integrate", "velocity Verlet, every step".to_owned(), "");
     let grids = format!("linked cells on {levels} level(s) of size, Verlet lists rebuilt by displacement");
-    entry(true, "neighbours", grids, "");
-    entry(true, "contacts", "Hertz contacts of grains".to_owned(), "");
-    entry(walls > 0, "walls", format!("{walls} wall(s)"), "no wall");
-    entry(
+    plan.decide(true, "neighbours", grids, "");
+    plan.decide(true, "contacts", "Hertz contacts of grains".to_owned(), "");
+    plan.decide(walls > 0, "walls", format!("{walls} wall(s)"), "no wall");
+    plan.decide(
         features.damping,
         "contact damping",
         "a restitution is below 1".to_owned(),
         "every restitution is 1",
     );
-    entry(
+    plan.decide(
         features.friction,
         "tangential history",
         "a pair of materials has friction".to_owned(),
         "no pair of materials has friction",
     );
-    entry(
+    plan.decide(
         features.rolling,
         "rolling history",
         "a pair of materials has rolling friction".to_owned(),
         "no pair of materials has rolling friction",
     );
-    entry(features.rotation(), "rotation", "friction can turn grains".to_owned(), "nothing can turn a grain");
-    entry(periodic, "periodic images", "an axis is periodic".to_owned(), "no axis is periodic");
+    plan.decide(
+        features.rotation(),
+        "rotation",
+        "friction can turn grains".to_owned(),
+        "nothing can turn a grain",
+    );
+    plan.decide(periodic, "periodic images", "an axis is periodic".to_owned(), "no axis is periodic");
     plan_charging(&mut plan, transfer);
     let reason = if field_asked {
         "every charge in the particle group is zero and nothing makes one"
@@ -62,17 +64,14 @@ pub(super) fn plan(
 
 /// Charge transfer and its refinements.
 fn plan_charging(plan: &mut Plan, transfer: Option<&ChargeTransfer>) {
-    let mut entry = |there: bool, stage: &str, yes: String, no: &str| {
-        if there { plan.build(stage, yes) } else { plan.leave_out(stage, no) }
-    };
-    entry(
+    plan.decide(
         transfer.is_some(),
         "charging",
         "enable_collision_charge_transfer: charge moves where contacts grow".to_owned(),
         "no enable_collision_charge_transfer",
     );
     let Some(transfer) = transfer else { return };
-    entry(
+    plan.decide(
         transfer.beyond_previous_maximum,
         "largest contact areas",
         "beyond_previous_maximum: only what grows beyond moves charge".to_owned(),
@@ -80,8 +79,8 @@ fn plan_charging(plan: &mut Plan, transfer: Option<&ChargeTransfer>) {
     );
     let breakdown = transfer.breakdown_field_v_m;
     let limit = format!("breakdown_field_V_m = {:e}", breakdown.unwrap_or_default());
-    entry(breakdown.is_some(), "dielectric breakdown", limit, "no breakdown_field_V_m");
-    entry(
+    plan.decide(breakdown.is_some(), "dielectric breakdown", limit, "no breakdown_field_V_m");
+    plan.decide(
         transfer.stiffness_correction.is_some(),
         "contact-area correction",
         "stiffness_correction: areas scaled towards young_real_Pa".to_owned(),

@@ -27,6 +27,13 @@ pub(crate) struct Touch {
     pub(crate) growth: Growth,
 }
 
+impl Touch {
+    /// Where the wall is touched [m].
+    pub(crate) fn place(&self, grains: &Grains) -> Vector3<f64> {
+        grains.position(self.grain) + self.normal * self.distance
+    }
+}
+
 /// What is touched.
 #[derive(Clone, Copy, Debug)]
 pub(crate) enum Surface {

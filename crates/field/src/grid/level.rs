@@ -30,6 +30,19 @@ pub(crate) struct GridParameters {
     pub cloud: Cloud,
 }
 
+/// Calls a method that is compiled for each order of the window with that of this grid.
+macro_rules! by_order {
+    ($grid:ident.$method:ident($($argument:expr),*)) => {
+        match $grid.order {
+            4 => $grid.$method::<4>($($argument),*),
+            5 => $grid.$method::<5>($($argument),*),
+            6 => $grid.$method::<6>($($argument),*),
+            7 => $grid.$method::<7>($($argument),*),
+            _ => $grid.$method::<8>($($argument),*),
+        }
+    };
+}
+
 /// Field of the clouds around the charges, with the box's own faces.
 #[derive(Debug)]
 pub(crate) struct GridLevel {
@@ -86,13 +99,7 @@ impl GridLevel {
     /// Computes the clouds' potential at the nodes (4πε = 1). Positions lie inside the domain.
     pub(crate) fn solve(&mut self, positions: &[Vector3<f64>], charges: &[f64]) {
         self.nodes.values.fill(0.0);
-        match self.order {
-            4 => self.spread::<4>(positions, charges),
-            5 => self.spread::<5>(positions, charges),
-            6 => self.spread::<6>(positions, charges),
-            7 => self.spread::<7>(positions, charges),
-            _ => self.spread::<8>(positions, charges),
-        }
+        by_order!(self.spread(positions, charges));
         self.nodes.fold(&self.axes);
         self.solver.solve(&self.axes, &mut self.nodes);
         self.nodes.unfold(&self.axes);
@@ -100,24 +107,12 @@ impl GridLevel {
 
     /// E and potential of the clouds (4πε = 1) at the given positions, after [`Self::solve`].
     pub(crate) fn gather(&self, positions: &[Vector3<f64>], field: &mut [(Vector3<f64>, f64)]) {
-        match self.order {
-            4 => self.gather_order::<4>(positions, field),
-            5 => self.gather_order::<5>(positions, field),
-            6 => self.gather_order::<6>(positions, field),
-            7 => self.gather_order::<7>(positions, field),
-            _ => self.gather_order::<8>(positions, field),
-        }
+        by_order!(self.gather_order(positions, field));
     }
 
     /// Potential alone (density, of a grid that has one) at the given positions, after [`Self::solve`].
     pub(crate) fn gather_values(&self, positions: &[Vector3<f64>], values: &mut [f64]) {
-        match self.order {
-            4 => self.gather_values_of_order::<4>(positions, values),
-            5 => self.gather_values_of_order::<5>(positions, values),
-            6 => self.gather_values_of_order::<6>(positions, values),
-            7 => self.gather_values_of_order::<7>(positions, values),
-            _ => self.gather_values_of_order::<8>(positions, values),
-        }
+        by_order!(self.gather_values_of_order(positions, values));
     }
 
     /// Slabs write their own planes and the beginning of the next slab's: even slabs first, then odd ones, so
