@@ -244,6 +244,16 @@ impl Domain {
         }
         point
     }
+
+    /// The shortest of a difference and its periodic copies.
+    #[must_use]
+    pub fn shortest(&self, mut difference: Vector3<f64>) -> Vector3<f64> {
+        for axis in Axis::ALL.into_iter().filter(|&axis| self.is_periodic(axis)).map(Axis::index) {
+            let length = self.max[axis] - self.min[axis];
+            difference[axis] -= length * (difference[axis] / length).round();
+        }
+        difference
+    }
 }
 
 #[cfg(test)]
@@ -272,6 +282,13 @@ mod tests {
         let domain = unit([[Boundary::Periodic; 2]; 3]).unwrap();
         let wrapped = domain.wrap(Vector3::new(-1e-20, 2.5, 1.0));
         assert!(wrapped.iter().all(|&c| (0.0..1.0).contains(&c)), "{wrapped:?}");
+    }
+
+    #[test]
+    fn differences_are_shortened_along_periodic_axes_only() {
+        let open = [Boundary::Open; 2];
+        let domain = unit([[Boundary::Periodic; 2], open, open]).unwrap();
+        assert_eq!(domain.shortest(Vector3::new(0.75, 0.75, -2.0)), Vector3::new(-0.25, 0.75, -2.0));
     }
 
     #[test]

@@ -4,8 +4,10 @@
 use crate::contact_law::{Contact, History, respond};
 use crate::material_pairs::PairConstants;
 use amberfield_core::Vector3;
+use amberfield_laws::contact_area;
 use nalgebra::SimdValue;
 use simba::simd::WideF64x4;
+use std::f64::consts::PI;
 
 /// Contacts in a batch.
 pub(crate) const BATCH: usize = WideF64x4::LANES;
@@ -84,6 +86,16 @@ impl Batch {
             force: none,
             torque: [none; 2],
         }
+    }
+
+    /// Area of a contact [m²], after [`Self::respond`].
+    #[inline(always)]
+    pub(crate) fn area<const FRICTION: bool>(&self, lane: usize) -> f64 {
+        if FRICTION {
+            return PI * self.contact_radius[lane] * self.contact_radius[lane];
+        }
+        let (a, b) = (self.radius[0][lane], self.radius[1][lane]);
+        contact_area::hertz(a * b / (a + b), a + b - self.offset.get(lane).norm())
     }
 
     /// Forces and torques of every contact; springs advance by `step` [s].

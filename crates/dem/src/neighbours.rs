@@ -43,8 +43,12 @@ pub(crate) struct ChunkList {
     pub(crate) rolling: Vec<[f64; 3]>,
     /// Charging of the entries; empty without charge transfer.
     pub(crate) growth: Vec<Growth>,
-    /// Entries whose growth is due, in the order in which they began to grow.
+    /// E_x·n of the entries at the last evaluation of the field [V/m], of those that were foreseen there; empty likewise.
+    pub(crate) foreseen: Vec<Option<f64>>,
+    /// Entries whose growth is due, in the making of a trade.
     pub(crate) grown: Vec<Grown>,
+    /// Contacts that began in the last evaluation, counted with charge transfer only.
+    pub(crate) begun: u64,
     /// Scratch of the step.
     pub(crate) hits: Vec<Hit>,
     /// What this chunk does to other chunks.
@@ -262,6 +266,8 @@ impl ChunkList {
         self.rolling.resize(if features.rolling { entries } else { 0 }, [0.0; 3]);
         self.growth.clear();
         self.growth.resize(if features.charging { entries } else { 0 }, Growth::default());
+        self.foreseen.clear();
+        self.foreseen.resize(self.growth.len(), None);
         self.grown.clear();
         self.grown.reserve(self.growth.len());
         self.hits.resize(entries + 1, Hit::default());
@@ -303,7 +309,8 @@ impl ChunkList {
                         self.rolling[entry] = list.rolling[old].map(|c| sign * c);
                     }
                     if features.charging {
-                        self.growth[entry] = list.growth[old].seen_from(sign);
+                        self.growth[entry] = list.growth[old];
+                        self.foreseen[entry] = list.foreseen[old].map(|field| sign * field);
                     }
                 }
             }

@@ -1,6 +1,7 @@
 //! Forces of touching grains on each other, chunk by chunk.
 
 use crate::cells::{INDEX_BITS, INDEX_MASK};
+use crate::charging::Follow;
 use crate::chunks::{CHUNK, chunk_count, for_each_chunk, is_parallel};
 use crate::contact_batch::{BATCH, Batch};
 use crate::grains::Grains;
@@ -14,21 +15,24 @@ struct Scene<'a> {
     shifts: &'a [[f64; 3]; 32],
     table: &'a PairTable,
     step: f64,
+    follow: Option<Follow>,
 }
 
 /// Computes the forces and torques that chunks make on their own grains into `force` and `torque`
-/// (overwritten), and on others into the outboxes. `step` [s] advances the springs.
+/// (overwritten), and on others into the outboxes. `step` [s] advances the springs; contact areas are followed if anyone
+/// wants to know them.
 pub(crate) fn pair_forces(
     grains: &Grains,
     neighbours: &mut Neighbours,
     table: &PairTable,
-    periodic: bool,
     step: f64,
+    follow: Option<Follow>,
     force: &mut [Vector3<f64>],
     torque: &mut [Vector3<f64>],
 ) {
     let features = neighbours.features;
-    let scene = Scene { grains, shifts: &neighbours.shifts, table, step };
+    let scene = Scene { grains, shifts: &neighbours.shifts, table, step, follow };
+    let periodic = neighbours.shifts.iter().flatten().any(|shift| *shift != 0.0);
     let lists = &mut neighbours.lists;
     macro_rules! run {
         ($f:literal, $r:literal, $d:literal, $p:literal) => {
@@ -166,7 +170,7 @@ fn chunk<const FRICTION: bool, const ROLLING: bool, const DAMPING: bool, const P
     torque.fill(Vector3::zeros());
     list.filled.fill(false);
     let found = find_hits::<PERIODIC>(scene, first, list);
-    list.contacts = found;
+    (list.contacts, list.begun) = (found, 0);
     let mut batch = Batch::new(*scene.table.get(0, 0));
     for start in (0..found).step_by(BATCH) {
         let size = BATCH.min(found - start);
@@ -177,6 +181,9 @@ fn chunk<const FRICTION: bool, const ROLLING: bool, const DAMPING: bool, const P
         }
         batch.respond::<FRICTION, ROLLING, DAMPING>(scene.step);
         for lane in 0..size {
+            if let Some(follow) = scene.follow {
+                follow.pair(list, list.hits[start + lane].entry, batch.area::<FRICTION>(lane));
+            }
             write::<FRICTION, ROLLING>(list, start + lane, first, &batch, lane, force, torque);
         }
     }

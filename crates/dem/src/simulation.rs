@@ -98,12 +98,13 @@ impl Simulation {
     /// Contact, wall and field forces at the present positions, into `new_force` and `new_torque`; pushes
     /// across chunks wait in the outboxes.
     fn forces(&mut self, step: f64) -> Result<(), DemError> {
+        let follow = self.charging.as_ref().map(|charging| charging.follow(self.step_index));
         pair_forces(
             &self.grains,
             &mut self.neighbours,
             &self.table,
-            self.periodic,
             step,
+            follow,
             &mut self.new_force,
             &mut self.new_torque,
         );

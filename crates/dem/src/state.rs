@@ -1,6 +1,6 @@
 //! The complete state of a run, for checkpoints.
 
-use crate::charging::{Facets, Grown, Growth, Ledger};
+use crate::charging::{Facets, Ledger, Memory};
 use crate::field_crate::Choice;
 use crate::field_crate::far::FarState;
 use amberfield_core::Vector3;
@@ -38,7 +38,7 @@ pub(crate) struct WallHistory {
     pub(crate) spring: [f64; 4],
     /// Rolling torque [N·m].
     pub(crate) rolling: [f64; 3],
-    pub(crate) growth: Growth,
+    pub(crate) charging: Memory,
 }
 
 /// Charging of a listed pair.
@@ -46,7 +46,7 @@ pub(crate) struct WallHistory {
 pub(crate) struct PairGrowth {
     /// Chunk whose list holds the pair, and entry in it.
     pub(crate) slot: [u32; 2],
-    pub(crate) growth: Growth,
+    pub(crate) memory: Memory,
 }
 
 /// State of charge transfer.
@@ -56,8 +56,6 @@ pub(crate) struct ChargingState {
     pub(crate) charge: Vec<f64>,
     pub(crate) evaluated: Vec<f64>,
     pub(crate) pairs: Vec<PairGrowth>,
-    /// By chunk, the pairs whose growth is due, in the order in which they began to grow.
-    pub(crate) grown: Vec<Vec<Grown>>,
     pub(crate) facets: Facets,
     pub(crate) ledger: Ledger,
     pub(crate) backwards: bool,

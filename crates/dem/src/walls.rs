@@ -5,7 +5,7 @@ mod near;
 
 pub(crate) use charging::{Surface, Touch};
 
-use crate::charging::Growth;
+use crate::charging::Memory;
 use crate::chunks::{CHUNK, chunk_count, for_each_chunk, is_parallel};
 use crate::contact_law::{Contact, History, respond};
 use crate::error::DemError;
@@ -64,7 +64,7 @@ pub(crate) struct ChunkWalls {
     triangles: Vec<(u32, u32)>,
     contacts: Vec<WallContact>,
     /// Charging of the contacts; empty without charge transfer.
-    growth: Vec<Growth>,
+    charging: Vec<Memory>,
     scratch: Vec<Candidate>,
 }
 
@@ -152,7 +152,7 @@ impl Walls {
                         triangle: contact.triangle,
                         spring: contact.spring,
                         rolling: contact.rolling,
-                        growth: chunk.growth.get(number).copied().unwrap_or_default(),
+                        charging: chunk.charging.get(number).copied().unwrap_or_default(),
                     }
                 }));
             }
@@ -280,7 +280,7 @@ impl ChunkWalls {
         force: &mut [Vector3<f64>],
         torque: &mut [Vector3<f64>],
     ) {
-        let Self { entries, triangles, contacts, growth, scratch } = self;
+        let Self { entries, triangles, contacts, charging: memory, scratch } = self;
         for entry in entries {
             let local = entry.local as usize;
             let i = k * CHUNK + local;
@@ -303,8 +303,8 @@ impl ChunkWalls {
             };
             let kept = &mut contacts[entry.contacts as usize..];
             let from = renew(kept, entry.count as usize, &found[..count]);
-            if !growth.is_empty() {
-                charging::renew(&mut growth[entry.contacts as usize..], &from[..count]);
+            if !memory.is_empty() {
+                charging::renew(&mut memory[entry.contacts as usize..], &from[..count]);
             }
             entry.count = count as u32;
             let pair = table.get(grains.material[i], solid.material);

@@ -82,7 +82,7 @@ fn steady_step_allocates_nothing() {
 #[cfg(feature = "field")]
 mod charged {
     use super::*;
-    use amberfield_core::{FieldSettings, Tuning};
+    use amberfield_core::{ChargeTransfer, FieldSettings, Tuning};
     use amberfield_dem::FieldStageSetup;
 
     fn with_field(mut scene: Setup, charge: f64) -> Setup {
@@ -100,6 +100,19 @@ mod charged {
             assert!(silent >= 180, "{silent}");
             let intervals = simulation.intervals().expect("a field");
             assert!(intervals.evaluations > 10, "{intervals:?}");
+        });
+    }
+
+    #[test]
+    fn steady_step_with_charge_transfer_allocates_nothing() {
+        alone(|| {
+            let mut scene = with_field(bed(Boundary::Grounded), 1e-12);
+            scene.materials[0].work_function_ev = Some(4.5);
+            let field = scene.field.as_mut().expect("a field");
+            field.transfer = Some(ChargeTransfer::new(5e-7));
+            let (silent, simulation) = silent_steps(scene);
+            assert!(silent >= 180, "{silent}");
+            assert!(simulation.ledger().expect("charging").moved > 0.0);
         });
     }
 

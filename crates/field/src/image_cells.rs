@@ -48,7 +48,7 @@ pub(crate) struct ImageCells<T> {
 }
 
 impl<T: Copy + Default> ImageCells<T> {
-    /// Collects and sorts the images within `radius` [m] of the positions' bounding box.
+    /// Collects and sorts the charges, zeros left out, and the images within `radius` [m] of the positions' bounding box.
     pub(crate) fn build(
         &mut self,
         lattice: &ImageLattice,
@@ -60,7 +60,8 @@ impl<T: Copy + Default> ImageCells<T> {
         self.radius = radius;
         self.staging.clear();
         if let Some(target) = BoundingBox::around(positions) {
-            for (index, (position, &charge)) in positions.iter().zip(charges).enumerate() {
+            let all = positions.iter().zip(charges).enumerate();
+            for (index, (position, &charge)) in all.filter(|(_, (_, charge))| **charge != 0.0) {
                 lattice.for_each_near(position, &target, radius, |image| {
                     #[expect(clippy::cast_possible_truncation, reason = "fewer than 2³² particles")]
                     let real = if image.is_real { index as u32 } else { IMAGE };

@@ -90,6 +90,40 @@ fn plates_without_charge_have_the_closed_field_in_every_method() {
 }
 
 #[test]
+fn places_without_charge_see_the_field_and_change_nothing() {
+    let (mut positions, mut charges) = cloud();
+    charges.iter_mut().for_each(|charge| *charge += 1e-15);
+    let count = positions.len();
+    // Twice the same place, next to a charge; and one that is far from all.
+    positions.extend([positions[7] + Vector3::repeat(1e-3 * EXTENT); 2]);
+    positions.push(Vector3::repeat(0.05 * EXTENT));
+    charges.extend([0.0; 3]);
+    for faces in [[Boundary::Grounded; 2], [Boundary::Open; 2]] {
+        let domain = domain([faces; 3]);
+        let exact = evaluate(&domain, &settings(Method::Direct), &positions, &charges).unwrap();
+        for method in [Method::Direct, Method::P3m] {
+            // Parameters are chosen for the charges.
+            let (of_charges, settings) = (&positions[..count], settings(method));
+            let mut field = ElectricField::new(&domain, &settings, of_charges, &charges[..count]).unwrap();
+            let mut e_of = |count: usize| {
+                let mut values = FieldValues::default();
+                field
+                    .evaluate(&positions[..count], &charges[..count], Wanted::default(), &mut values)
+                    .unwrap();
+                values.e
+            };
+            let (with, without) = (e_of(count + 3), e_of(count));
+            let error = |e: &[Vector3<f64>], exact: &[Vector3<f64>]| {
+                ErrorNorms::new(e, exact, amberfield_oracle::rms(exact)).relative_rms
+            };
+            assert!(error(&with[..count], &without) < 1e-6, "{method} {faces:?}");
+            assert!(error(&with[count..], &exact.e[count..]) < TOLERANCE, "{method} {faces:?}");
+            assert_eq!(with[count], with[count + 1], "{method} {faces:?}");
+        }
+    }
+}
+
+#[test]
 fn the_external_field_is_added_once_by_every_method() {
     let (positions, charges) = cloud();
     let periodic = domain([[Boundary::Periodic; 2]; 3]);

@@ -49,15 +49,6 @@ impl Around {
         }
     }
 
-    /// Grains have moved: what touches is to be found again.
-    pub(super) fn forget(&mut self) {
-        self.start.clear();
-    }
-
-    pub(super) fn is_known(&self) -> bool {
-        !self.start.is_empty()
-    }
-
     pub(super) fn of(&self, grain: usize) -> &[Toucher] {
         &self.touchers[self.start[grain] as usize..self.start[grain + 1] as usize]
     }

@@ -86,7 +86,7 @@ impl Charging {
             let mut own =
                 k * charge / (distance - before).powi(2) + image * k * charge / (distance + before).powi(2);
             if let Some((at, held)) = self.facet_of(traders, walls, &touch) {
-                let from = place - at;
+                let from = domain.shortest(place - at);
                 own += k * held * from.dot(&normal) / from.norm().powi(3);
             }
             extras.push(inside(domain, place), 0.0);
@@ -118,8 +118,8 @@ impl Charging {
         for (probe, e) in self.probes.iter().zip(&e[sources..]) {
             let field = probe.factor * (e.dot(&probe.normal) - probe.own);
             match (probe.slot, walls.as_mut()) {
-                (Slot::Pair { chunk, entry }, _) => neighbours.lists[chunk].growth[entry].foresee(field),
-                (Slot::Wall(slot), Some(walls)) => walls.growth_mut(slot).foresee(field),
+                (Slot::Pair { chunk, entry }, _) => neighbours.lists[chunk].foreseen[entry] = Some(field),
+                (Slot::Wall(slot), Some(walls)) => walls.memory_mut(slot).foreseen = Some(field),
                 (Slot::Wall(_), None) => {}
             }
         }
@@ -127,19 +127,17 @@ impl Charging {
         self.lag = 0.0;
     }
 
-    /// E_x·n of a pair that was not foreseen [V/m].
+    /// E_x·n of a pair of charges [C] that was not foreseen [V/m].
     pub(super) fn unforeseen(
         &self,
         traders: Traders<'_>,
-        neighbours: &Neighbours,
+        shifts: &[[f64; 3]; 32],
         pair: Listed,
-        charge: &[f64],
+        [of_i, of_j]: [f64; 2],
     ) -> f64 {
-        let grains = traders.grains;
-        let offset = pair.offset(grains, &neighbours.shifts);
+        let offset = pair.offset(traders.grains, shifts);
         let distance2 = offset.norm_squared();
         let sum = traders.field.at(pair.i) + traders.field.at(pair.j);
-        let [of_i, of_j] = [pair.i, pair.j].map(|grain| charge[grains.original[grain] as usize]);
         0.5 * (sum.dot(&offset) / distance2.sqrt() + self.coulomb * (of_j - of_i) / distance2)
     }
 
@@ -152,7 +150,7 @@ impl Charging {
     }
 
     /// Change of E·n since the last evaluation at a distance `reach` [m] along `normal` from grain i, made by the grains that touch i
-    /// or its partner.
+    /// or its partner; `charge` is that of a sorted index [C].
     pub(super) fn gained_beside(
         &self,
         grains: &Grains,
@@ -160,13 +158,13 @@ impl Charging {
         partner: &Toucher,
         normal: Vector3<f64>,
         reach: f64,
-        charge: &[f64],
+        charge: impl Fn(usize) -> f64,
     ) -> f64 {
         let mut sum = 0.0;
         self.around.beside(i, partner, |grain, offset| {
             let from = normal * reach - offset;
             let original = grains.original[grain] as usize;
-            let gained = charge[original] - self.evaluated[original];
+            let gained = charge(grain) - self.evaluated[original];
             sum += gained * from.dot(&normal) / from.norm().powi(3);
         });
         self.coulomb * sum

@@ -2,70 +2,60 @@
 
 use serde::{Deserialize, Serialize};
 
-/// Contact area and what of its growth has not moved charge yet.
+/// How contact areas are followed in a step.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Follow {
+    /// Whether it is a step: what touches at the start has its area from before the run.
+    pub(crate) moves: bool,
+    /// Whether only growth beyond a contact's largest area counts.
+    pub(crate) beyond: bool,
+}
+
+/// Contact area and what of its growth has not moved charge yet. Every step reads and writes those of all contacts: single precision
+/// halves that, and its rounding does not add up, since differences of close areas are exact.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
 pub(crate) struct Growth {
     /// Area at the last step at which it touched, or the largest since first touch [m²].
-    area: f64,
+    area: f32,
     /// Growth that has not moved charge yet [m²].
-    due: f64,
-    /// E_x·n at the last evaluation of the field [V/m], if it is `foreseen`.
-    field: f64,
-    /// Step at which it touched last, its lower bits.
-    step: u32,
-    foreseen: bool,
+    due: f32,
 }
 
 impl Growth {
-    /// Takes the area [m²] at a step; of what grows, only what exceeds the largest area so far counts if `beyond`. Whether
-    /// the contact begins, and whether this is the first growth that is due.
+    /// Takes the area [m²] at a step, the one before which it `touched` or not; whether the contact begins. Without branches, which would keep
+    /// the next contacts waiting.
     #[inline(always)]
-    pub(crate) fn follow(&mut self, area: f64, step: u64, beyond: bool) -> [bool; 2] {
-        #[expect(
-            clippy::cast_possible_truncation,
-            reason = "two steps in a row differ by one in the lower bits too"
-        )]
-        let now = step as u32;
-        let touched = now.wrapping_sub(self.step) <= 1;
+    pub(crate) fn follow(&mut self, area: f64, touched: bool, Follow { moves, beyond }: Follow) -> bool {
+        #[expect(clippy::cast_possible_truncation, reason = "single precision is meant")]
+        let area = area as f32;
         let before = if touched { self.area } else { 0.0 };
-        let first = self.due == 0.0;
-        // What touches at the start has its area from before the run.
-        if step > 0 {
-            self.due += (area - before).max(0.0);
-        }
+        let grows = (area - before).max(0.0);
+        self.due += if moves { grows } else { 0.0 };
         self.area = if beyond { area.max(before) } else { area };
-        self.step = now;
-        [before == 0.0 && area > 0.0, first && self.due > 0.0]
-    }
-
-    /// The same for the partner's list (sign −1), whose normal points the other way.
-    pub(crate) fn seen_from(self, sign: f64) -> Self {
-        Self { field: sign * self.field, ..self }
-    }
-
-    /// E_x·n at the last evaluation of the field [V/m]; `None`: the contact was not foreseen there.
-    pub(crate) fn field(&self) -> Option<f64> {
-        self.foreseen.then_some(self.field)
-    }
-
-    /// Takes E_x·n [V/m] of an evaluation.
-    pub(crate) fn foresee(&mut self, field: f64) {
-        (self.field, self.foreseen) = (field, true);
+        (before == 0.0) & (area > 0.0)
     }
 
     /// Growth that has not moved charge yet [m²].
-    pub(crate) fn due(&self) -> f64 {
-        self.due
+    pub(crate) fn due(self) -> f64 {
+        self.due.into()
     }
 
-    /// The same, which from now on has.
-    pub(crate) fn take_due(&mut self) -> f64 {
-        std::mem::take(&mut self.due)
+    /// Nothing is due any more.
+    pub(crate) fn settle(&mut self) {
+        self.due = 0.0;
     }
 }
 
+/// All that a contact remembers of its charging.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
+pub(crate) struct Memory {
+    pub(crate) growth: Growth,
+    /// E_x·n at the last evaluation of the field [V/m]; `None`: the contact was not foreseen there.
+    pub(crate) foreseen: Option<f64>,
+}
+
 /// A pair of a list whose growth is due.
-#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
+#[derive(Clone, Copy, Debug, PartialEq)]
 pub(crate) struct Grown {
     pub(crate) entry: u32,
     /// Grain in the chunk.
@@ -79,7 +69,7 @@ mod tests {
     fn due_after(areas: &[f64], beyond: bool) -> f64 {
         let mut growth = Growth::default();
         for (step, &area) in areas.iter().enumerate() {
-            growth.follow(area, step as u64, beyond);
+            growth.follow(area, true, Follow { moves: step > 0, beyond });
         }
         growth.due()
     }
@@ -94,12 +84,13 @@ mod tests {
 
     #[test]
     fn separated_contact_begins_anew() {
+        let follow = Follow { moves: true, beyond: true };
         let mut growth = Growth::default();
-        assert_eq!(growth.follow(2.0, 5, true), [true, true]);
-        assert_eq!(growth.follow(3.0, 6, true), [false, false]);
-        assert_eq!(growth.take_due(), 3.0);
-        // It did not touch in steps 7 to 9.
-        assert_eq!(growth.follow(1.0, 10, true), [true, true]);
+        assert!(growth.follow(2.0, false, follow));
+        assert!(!growth.follow(3.0, true, follow));
+        assert_eq!(growth.due(), 3.0);
+        growth.settle();
+        assert!(growth.follow(1.0, false, follow));
         assert_eq!(growth.due(), 1.0);
     }
 }

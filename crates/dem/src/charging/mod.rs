@@ -2,9 +2,9 @@
 //!
 //! Every step follows the contact areas. What they grow by moves charge a few steps later for pairs of grains, at once at walls: the
 //! exponential update is exact for any growth, so that several steps' growth in one update is the same charge. Contacts are taken one after another, each
-//! with the charges that the ones before it left, first to last and then last to first in turn; that is what keeps networks of contacts bounded. The order
-//! follows the lists, which depend on the grains alone, and one thread takes it: results do not depend on their number, and the work is a small
-//! part of a step.
+//! with the charges that the ones before it left; that is what keeps networks of contacts bounded. The order follows the lists, which depend on the grains
+//! alone, so that results do not depend on the number of threads: while contacts barely relax, halves of the grains trade side by side and then with each
+//! other; stiff contacts come after them, one by one, first to last and then last to first in turn.
 //!
 //! The field of everything else at a contact, E_x, comes from the last evaluation of the field, see `contact_field`. Between two evaluations charges
 //! change: as long as no contact has relaxed by a few per cent since, that is left to the next evaluation, which is asked for when charges
@@ -20,8 +20,7 @@ mod walls;
 
 pub use facets::Facet;
 pub(crate) use facets::Facets;
-pub(crate) use growth::{Grown, Growth};
-pub(crate) use pairs::follow;
+pub(crate) use growth::{Follow, Grown, Growth, Memory};
 
 use crate::field_stage::FieldStage;
 use crate::grains::Grains;
@@ -35,6 +34,7 @@ use amberfield_laws::dielectric_breakdown;
 use around::Around;
 use contact_field::Probe;
 use materials::ChargingTable;
+use pairs::Held;
 use serde::{Deserialize, Serialize};
 
 /// Steps whose growth moves charge together.
@@ -90,10 +90,12 @@ pub(crate) struct Charging {
     evaluated: Vec<f64>,
     probes: Vec<Probe>,
     around: Around,
+    /// Charges in the making of a trade.
+    held: Vec<Held>,
     /// Contacts with walls in the making of a trade.
     touches: Vec<Touch>,
-    /// Sorted indices of the grains whose charge changed in the last trade.
-    pub(crate) changed: Vec<u32>,
+    /// Sorted indices of the grains that traded with walls last.
+    pub(crate) at_walls: Vec<u32>,
 }
 
 impl Charging {
@@ -119,24 +121,26 @@ impl Charging {
             evaluated: particles.charge.clone(),
             probes: Vec::new(),
             around: Around::default(),
+            held: Vec::new(),
             touches: Vec::new(),
-            changed: Vec::new(),
+            at_walls: Vec::new(),
         }
     }
 
     pub(crate) fn state(&self, particles: &Particles, neighbours: &Neighbours) -> ChargingState {
         let mut pairs = Vec::new();
         for (k, list) in neighbours.lists.iter().enumerate() {
-            let known = list.growth.iter().enumerate().filter(|(_, growth)| **growth != Growth::default());
-            pairs.extend(
-                known.map(|(entry, growth)| PairGrowth { slot: [k as u32, entry as u32], growth: *growth }),
-            );
+            let all = list.growth.iter().zip(&list.foreseen).enumerate();
+            let all = all.map(|(entry, (&growth, &foreseen))| PairGrowth {
+                slot: [k as u32, entry as u32],
+                memory: Memory { growth, foreseen },
+            });
+            pairs.extend(all.filter(|pair| pair.memory != Memory::default()));
         }
         ChargingState {
             charge: particles.charge.clone(),
             evaluated: self.evaluated.clone(),
             pairs,
-            grown: neighbours.lists.iter().map(|list| list.grown.clone()).collect(),
             facets: self.facets.clone(),
             ledger: self.ledger.clone(),
             backwards: self.backwards,
@@ -152,16 +156,15 @@ impl Charging {
     ) -> Result<(), String> {
         for pair in &state.pairs {
             let list = neighbours.lists.get_mut(pair.slot[0] as usize);
-            let growth = list.and_then(|list| list.growth.get_mut(pair.slot[1] as usize));
-            *growth.ok_or_else(|| format!("charging of unknown contact {:?}", pair.slot))? = pair.growth;
+            let entry = pair.slot[1] as usize;
+            let list = list.filter(|list| entry < list.growth.len());
+            let list = list.ok_or_else(|| format!("charging of unknown contact {:?}", pair.slot))?;
+            (list.growth[entry], list.foreseen[entry]) = (pair.memory.growth, pair.memory.foreseen);
         }
         if state.ledger.walls.len() != self.ledger.walls.len()
             || state.evaluated.len() != self.evaluated.len()
         {
             return Err("charging of other walls or grains".to_owned());
-        }
-        for (list, grown) in neighbours.lists.iter_mut().zip(&state.grown) {
-            list.grown.clone_from(grown);
         }
         self.evaluated.clone_from(&state.evaluated);
         self.facets = state.facets.clone();
@@ -175,9 +178,9 @@ impl Charging {
         step.is_multiple_of(EVERY)
     }
 
-    /// Whether only growth beyond a contact's largest area counts.
-    pub(crate) fn beyond(&self) -> bool {
-        self.settings.beyond_previous_maximum
+    /// How contact areas are followed in a step.
+    pub(crate) fn follow(&self, step: u64) -> Follow {
+        Follow { moves: step > 0, beyond: self.settings.beyond_previous_maximum }
     }
 
     /// Whether charges have changed so much that the field is due.

@@ -1,46 +1,58 @@
 //! Grain with grain.
 
 use super::around::Toucher;
-use super::{Charging, Grown, LAG_SEEN, Traders};
-use crate::chunks::is_parallel;
-use crate::grains::Grains;
-use crate::neighbours::{ChunkList, Hit, Listed, Neighbours};
+use super::{Charging, Follow, Grown, LAG_SEEN, Traders};
+use crate::chunks::CHUNK;
+use crate::neighbours::{ChunkList, Listed, Neighbours};
 use amberfield_core::Vector3;
-use amberfield_laws::charge_transfer::{Grain, between_grains};
-use amberfield_laws::contact_area;
+use amberfield_laws::charge_transfer::{Drive, Grain, between_grains};
 use rayon::prelude::*;
-use std::f64::consts::PI;
 
-/// Follows the areas of all touching pairs at a step; how many begin.
-pub(crate) fn follow(grains: &Grains, neighbours: &mut Neighbours, step: u64, beyond: bool) -> u64 {
-    let shifts = &neighbours.shifts;
-    let each = |(k, list): (usize, &mut ChunkList)| {
-        let mut begun = 0_u64;
-        for hit in 0..list.contacts {
-            let Hit { entry, local, .. } = list.hits[hit];
-            let at = entry as usize;
-            let area = match list.spring.get(at) {
-                // Its square is R*δ.
-                Some([.., contact_radius]) => PI * contact_radius * contact_radius,
-                None => {
-                    let pair = list.listed(k, local, entry);
-                    let (a, b) = (grains.centre[pair.i][3], grains.centre[pair.j][3]);
-                    contact_area::hertz(a * b / (a + b), a + b - pair.offset(grains, shifts).norm())
-                }
-            };
-            let [begins, is_due] = list.growth[at].follow(area, step, beyond);
-            begun += u64::from(begins);
-            if is_due {
-                list.grown.push(Grown { entry, local });
-            }
-        }
-        begun
-    };
-    if is_parallel(grains.len()) {
-        neighbours.lists.par_iter_mut().enumerate().map(each).sum()
-    } else {
-        neighbours.lists.iter_mut().enumerate().map(each).sum()
+impl Follow {
+    /// Follows a touching pair of a list, before the list takes note of it; `area` in m².
+    #[inline(always)]
+    pub(crate) fn pair(self, list: &mut ChunkList, entry: u32, area: f64) {
+        let at = entry as usize;
+        let begins = list.growth[at].follow(area, list.touching[at], self);
+        list.begun += u64::from(begins);
     }
+}
+
+impl ChunkList {
+    /// Lists the entries whose growth is due.
+    fn list_grown(&mut self) {
+        self.grown.clear();
+        for (local, range) in self.start.windows(2).enumerate() {
+            let due = (range[0]..range[1]).filter(|&entry| self.growth[entry as usize].due() > 0.0);
+            self.grown.extend(due.map(|entry| Grown { entry, local: local as u32 }));
+        }
+    }
+}
+
+/// What pairs moved.
+#[derive(Clone, Copy, Debug, Default)]
+struct Traded {
+    /// Σ of the sizes of the charges [C].
+    moved: f64,
+    /// Largest αΔA.
+    largest: f64,
+}
+
+impl Traded {
+    fn and(self, other: Self) -> Self {
+        Self { moved: self.moved + other.moved, largest: self.largest.max(other.largest) }
+    }
+}
+
+/// Charges [C] in sorted order, `None` for grains that take no part.
+pub(super) type Held = Option<f64>;
+
+/// A pair about to trade.
+struct Trading {
+    drive: Drive,
+    work: f64,
+    /// Growth of the area [m²], corrected.
+    growth: f64,
 }
 
 impl Charging {
@@ -51,69 +63,150 @@ impl Charging {
         neighbours: &mut Neighbours,
         charge: &mut [f64],
     ) {
+        neighbours.lists.par_iter_mut().for_each(ChunkList::list_grown);
         if neighbours.lists.iter().all(|list| list.grown.is_empty()) {
             return;
         }
-        self.around.forget();
-        let mut largest = 0.0_f64;
+        let original = &traders.grains.original;
+        let mut held = std::mem::take(&mut self.held);
+        held.clear();
+        held.extend((0..original.len()).map(|i| traders.member(i).map(|original| charge[original])));
+        let mut traded = Traded::default();
+        if self.lag <= LAG_SEEN {
+            let shifts = &neighbours.shifts;
+            traded = self.trade_mild(traders, shifts, 0, &mut neighbours.lists, &mut held);
+        }
+        traded = traded.and(self.trade_stiff(traders, neighbours, &mut held));
+        for (held, &original) in held.iter().zip(original) {
+            if let Some(held) = held {
+                charge[original as usize] = *held;
+            }
+        }
+        self.held = held;
+        self.backwards = !self.backwards;
+        self.lag += traded.largest;
+        self.ledger.moved += traded.moved;
+    }
+
+    /// Pairs of chunks from `first` on that barely relax: what a half of the chunks knows both of in each half, side by side, then the
+    /// others. The halves depend on the number of chunks alone.
+    fn trade_mild(
+        &self,
+        traders: Traders<'_>,
+        shifts: &[[f64; 3]; 32],
+        first: usize,
+        lists: &mut [ChunkList],
+        held: &mut [Held],
+    ) -> Traded {
+        let mut traded = Traded::default();
+        if lists.len() > 1 {
+            let half = lists.len() / 2;
+            let (left, right) = lists.split_at_mut(half);
+            let (of_left, of_right) = held.split_at_mut(half * CHUNK);
+            let (left, right) = rayon::join(
+                || self.trade_mild(traders, shifts, first, left, of_left),
+                || self.trade_mild(traders, shifts, first + half, right, of_right),
+            );
+            traded = left.and(right);
+        }
+        let from = first * CHUNK;
+        for (k, list) in (first..).zip(lists) {
+            let mut grown = std::mem::take(&mut list.grown);
+            grown.retain(|&Grown { entry, local }| {
+                let pair = list.listed(k, local, entry);
+                let (i, j) = (pair.i - from, pair.j.wrapping_sub(from));
+                if j >= held.len() {
+                    return true;
+                }
+                let Some(trading) = self.trading(traders, shifts, pair, list, [held[i], held[j]]) else {
+                    list.growth[pair.entry].settle();
+                    return false;
+                };
+                let relaxes = trading.drive.decay * trading.growth;
+                if self.lag + relaxes > LAG_SEEN {
+                    return true;
+                }
+                list.growth[pair.entry].settle();
+                let moved = self.allowed(trading.drive, trading.work, trading.drive.transfer(trading.growth));
+                give(held, i, j, moved);
+                traded = traded.and(Traded { moved: moved.abs(), largest: relaxes });
+                false
+            });
+            list.grown = grown;
+        }
+        traded
+    }
+
+    /// All that is left, one after another, each with the present charges of the grains that touch its own; first to last and last to
+    /// first in turn.
+    fn trade_stiff(
+        &mut self,
+        traders: Traders<'_>,
+        neighbours: &mut Neighbours,
+        held: &mut [Held],
+    ) -> Traded {
+        let mut traded = Traded::default();
+        if neighbours.lists.iter().all(|list| list.grown.is_empty()) {
+            return traded;
+        }
+        let grains = traders.grains;
+        self.around.build(grains, neighbours);
+        let now = |held: &[Held], grain: usize| held[grain].unwrap_or(0.0);
         let chunks = neighbours.lists.len();
         for k in 0..chunks {
             let k = if self.backwards { chunks - 1 - k } else { k };
             let mut grown = std::mem::take(&mut neighbours.lists[k].grown);
             let count = grown.len();
             for n in 0..count {
-                let n = if self.backwards { count - 1 - n } else { n };
-                let Grown { entry, local } = grown[n];
+                let Grown { entry, local } = grown[if self.backwards { count - 1 - n } else { n }];
                 let pair = neighbours.lists[k].listed(k, local, entry);
-                let due = neighbours.lists[k].growth[pair.entry].take_due();
-                largest = largest.max(self.trade_pair(traders, neighbours, pair, due, charge));
+                let Listed { i, j, .. } = pair;
+                let list = &mut neighbours.lists[k];
+                let trading = self.trading(traders, &neighbours.shifts, pair, list, [held[i], held[j]]);
+                list.growth[pair.entry].settle();
+                let Some(mut trading) = trading else { continue };
+                let offset = pair.offset(grains, &neighbours.shifts);
+                let [one, other] = [i, j].map(|grain| grains.centre[grain][3]);
+                let reach = one - 0.5 * (one + other - offset.norm());
+                let partner = Toucher { grain: j, offset };
+                let charges = |grain| now(held, grain);
+                let gained = self.gained_beside(grains, i, &partner, offset.normalize(), reach, charges);
+                trading.drive.drive += self.permittivity * gained;
+                let moved = self.allowed(trading.drive, trading.work, trading.drive.transfer(trading.growth));
+                give(held, i, j, moved);
+                let relaxes = trading.drive.decay * trading.growth;
+                traded = traded.and(Traded { moved: moved.abs(), largest: relaxes });
             }
             grown.clear();
             neighbours.lists[k].grown = grown;
         }
-        self.backwards = !self.backwards;
-        self.lag += largest;
+        traded
     }
 
-    /// Returns αΔA.
-    fn trade_pair(
-        &mut self,
+    /// What drives charge through a pair with the field of the last evaluation; `None` if one of the two takes no part.
+    #[inline(always)]
+    fn trading(
+        &self,
         traders: Traders<'_>,
-        neighbours: &Neighbours,
+        shifts: &[[f64; 3]; 32],
         pair: Listed,
-        due: f64,
-        charge: &mut [f64],
-    ) -> f64 {
+        list: &ChunkList,
+        held: [Held; 2],
+    ) -> Option<Trading> {
+        let [Some(of_i), Some(of_j)] = held else { return None };
         let Listed { i, j, .. } = pair;
-        let (Some(a), Some(b)) = (traders.member(i), traders.member(j)) else { return 0.0 };
         let grains = traders.grains;
         let materials = self.table.get(grains.material[i], grains.material[j]);
-        let growth = due * materials.area_factor;
-        let of = |grain: usize, original: usize| Grain {
-            charge: charge[original],
-            radius: grains.centre[grain][3],
-        };
-        let known = neighbours.lists[pair.chunk].growth[pair.entry].field();
-        let field = known.unwrap_or_else(|| self.unforeseen(traders, neighbours, pair, charge));
-        let colliders = [of(i, a), of(j, b)];
-        let mut drive = between_grains(self.permittivity, materials.work, colliders, field);
-        if self.lag + drive.decay * growth > LAG_SEEN {
-            if !self.around.is_known() {
-                self.around.build(grains, neighbours);
-            }
-            let offset = pair.offset(grains, &neighbours.shifts);
-            let [one, other] = colliders.map(|grain| grain.radius);
-            let reach = one - 0.5 * (one + other - offset.norm());
-            let partner = Toucher { grain: j, offset };
-            let gained = self.gained_beside(grains, i, &partner, offset.normalize(), reach, charge);
-            drive.drive += self.permittivity * gained;
-        }
-        let moved = self.allowed(drive, materials.work, drive.transfer(growth));
-        charge[a] -= moved;
-        charge[b] += moved;
-        self.ledger.moved += moved.abs();
-        self.changed.extend([i as u32, j as u32]);
-        drive.decay * growth
+        let field =
+            list.foreseen[pair.entry].unwrap_or_else(|| self.unforeseen(traders, shifts, pair, [of_i, of_j]));
+        let colliders =
+            [(of_i, i), (of_j, j)].map(|(charge, grain)| Grain { charge, radius: grains.centre[grain][3] });
+        let drive = between_grains(self.permittivity, materials.work, colliders, field);
+        Some(Trading {
+            drive,
+            work: materials.work,
+            growth: list.growth[pair.entry].due() * materials.area_factor,
+        })
     }
 
     /// Every listed pair of members that touches or is nearer than `margin` [m].
@@ -133,4 +226,10 @@ impl Charging {
             }
         }
     }
+}
+
+/// Moves a charge [C] from i to j.
+fn give(held: &mut [Held], i: usize, j: usize, moved: f64) {
+    held[i] = held[i].map(|charge| charge - moved);
+    held[j] = held[j].map(|charge| charge + moved);
 }

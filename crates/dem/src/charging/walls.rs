@@ -18,31 +18,25 @@ impl Charging {
     ) {
         let mut grown = std::mem::take(&mut self.touches);
         grown.clear();
-        grown.extend(walls.touches(traders.grains).filter(|touch| touch.growth.due() > 0.0));
+        grown.extend(walls.touches(traders.grains).filter(|touch| touch.memory.growth.due() > 0.0));
         if self.backwards {
             grown.reverse();
         }
         if self.lag > LAG_SEEN && !grown.is_empty() {
             self.around.build(traders.grains, neighbours);
         }
+        self.at_walls.clear();
         let mut largest = 0.0_f64;
         for touch in &grown {
-            let due = walls.growth_mut(touch.slot).take_due();
-            largest = largest.max(self.trade_wall(traders, walls, touch, due, charge));
+            walls.memory_mut(touch.slot).growth.settle();
+            largest = largest.max(self.trade_wall(traders, walls, touch, charge));
         }
         self.lag += largest;
         self.touches = grown;
     }
 
     /// Returns αΔA.
-    fn trade_wall(
-        &mut self,
-        traders: Traders<'_>,
-        walls: &Walls,
-        touch: &Touch,
-        due: f64,
-        charge: &mut [f64],
-    ) -> f64 {
+    fn trade_wall(&mut self, traders: Traders<'_>, walls: &Walls, touch: &Touch, charge: &mut [f64]) -> f64 {
         let grains = traders.grains;
         let Some(a) = traders.member(touch.grain) else { return 0.0 };
         let materials = self.table.get(grains.material[touch.grain], touch.material);
@@ -50,11 +44,12 @@ impl Charging {
         let (surface, place) = (walls.surface(touch), touch.place(grains));
         let number = self.facets.at(traders.domain, wall, surface, place, -touch.normal);
         let mut field =
-            touch.growth.field().unwrap_or_else(|| self.unforeseen_at_wall(traders, touch, charge));
+            touch.memory.foreseen.unwrap_or_else(|| self.unforeseen_at_wall(traders, touch, charge));
         if self.lag > LAG_SEEN {
             let nobody = Toucher { grain: NOBODY, offset: Vector3::zeros() };
+            let charges = |grain| charge[grains.original[grain] as usize];
             let gained =
-                self.gained_beside(grains, touch.grain, &nobody, touch.normal, touch.distance, charge);
+                self.gained_beside(grains, touch.grain, &nobody, touch.normal, touch.distance, charges);
             field += gained * if touch.charging == WallCharging::Grounded { 2.0 } else { 1.0 };
         }
         let grain = Grain { charge: charge[a], radius: grains.centre[touch.grain][3] };
@@ -66,13 +61,13 @@ impl Charging {
             }
             _ => with_grounded_wall(permittivity, work, grain, field),
         };
-        let growth = due * materials.area_factor;
+        let growth = touch.memory.growth.due() * materials.area_factor;
         let moved = self.allowed(drive, work, drive.transfer(growth));
         charge[a] -= moved;
         self.facets.get_mut(number).charge += moved;
         self.ledger.walls[touch.wall as usize] += moved;
         self.ledger.moved += moved.abs();
-        self.changed.push(touch.grain as u32);
+        self.at_walls.push(touch.grain as u32);
         drive.decay * growth
     }
 }

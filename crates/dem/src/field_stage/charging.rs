@@ -20,9 +20,14 @@ impl FieldStage {
         self.forecast.at(grain, self.control.age as f64)
     }
 
-    /// Takes a grain's new charge [C].
-    pub(crate) fn recharge(&mut self, grain: usize, charge: f64) {
-        self.forecast.recharge(grain, charge);
+    /// Takes the new charges of grains; `charge` is by the set-up's order [C].
+    pub(crate) fn recharge(&mut self, grains: impl Iterator<Item = usize>, original: &[u32], charge: &[f64]) {
+        for grain in grains {
+            let of = original[grain] as usize;
+            if self.member[of] {
+                self.forecast.recharge(grain, charge[of]);
+            }
+        }
     }
 
     /// Whether E is evaluated as often as its error asks.

@@ -1,7 +1,7 @@
 //! When contacts trade charge, and with what.
 
 use super::Simulation;
-use crate::charging::{Charging, Facet, Ledger, Traders, follow};
+use crate::charging::{Charging, Facet, Ledger, Traders};
 use crate::timing::Stage;
 
 /// Who trades.
@@ -15,15 +15,14 @@ pub(super) enum Trade {
 const FORESIGHT: f64 = 2.0;
 
 impl Simulation {
-    /// Follows the contact areas of a step of length `step` [s], 0 for the start; moves what is due.
+    /// Follows the areas of contacts with walls in a step of length `step` [s], 0 for the start, as those of pairs are in their forces; moves
+    /// what is due.
     pub(super) fn charge_contacts(&mut self, step: f64) {
         let Some(charging) = &mut self.charging else { return };
-        let (step_index, beyond) = (self.step_index, charging.beyond());
-        let mut begun = follow(&self.grains, &mut self.neighbours, step_index, beyond);
+        charging.ledger.collisions += self.neighbours.lists.iter().map(|list| list.begun).sum::<u64>();
         if let Some(walls) = &mut self.walls {
-            begun += walls.follow(&self.grains, step_index, beyond);
+            charging.ledger.collisions += walls.follow(&self.grains, charging.follow(self.step_index));
         }
-        charging.ledger.collisions += begun;
         if step > 0.0 {
             if Charging::is_due(self.step_index) {
                 self.trade(Trade::Pairs);
@@ -44,17 +43,19 @@ impl Simulation {
     /// Moves what is due.
     pub(super) fn trade(&mut self, who: Trade) {
         let (Some(charging), Some(field)) = (&mut self.charging, &mut self.field) else { return };
-        charging.changed.clear();
         let charge = &mut self.particles.charge;
         let traders = Traders { domain: &self.domain, grains: &self.grains, field };
         match (who, &mut self.walls) {
-            (Trade::Pairs, _) => charging.trade_pairs(traders, &mut self.neighbours, charge),
-            (Trade::Walls, Some(walls)) => charging.trade_walls(traders, &self.neighbours, walls, charge),
+            (Trade::Pairs, _) => {
+                charging.trade_pairs(traders, &mut self.neighbours, charge);
+                field.recharge(0..self.grains.len(), &self.grains.original, charge);
+            }
+            (Trade::Walls, Some(walls)) => {
+                charging.trade_walls(traders, &self.neighbours, walls, charge);
+                let traded = charging.at_walls.iter().map(|&grain| grain as usize);
+                field.recharge(traded, &self.grains.original, charge);
+            }
             (Trade::Walls, None) => {}
-        }
-        for &grain in &charging.changed {
-            let grain = grain as usize;
-            field.recharge(grain, charge[self.grains.original[grain] as usize]);
         }
     }
 
@@ -85,7 +86,7 @@ impl Simulation {
 #[cfg(all(test, feature = "field"))]
 mod tests {
     use super::*;
-    use crate::charging::Grown;
+    use crate::charging::{Follow, Grown};
     use crate::chunks::CHUNK;
     use crate::neighbours::Listed;
     use crate::setup::{FieldStageSetup, Setup};
@@ -105,6 +106,14 @@ mod tests {
     const PLATEAU: f64 = 0.05;
 
     fn packed(places: &[(Vector3<f64>, f64)], work_functions: &[f64], cutoff_m: f64) -> Simulation {
+        built(places, work_functions, Some(ChargeTransfer::new(cutoff_m)))
+    }
+
+    fn built(
+        places: &[(Vector3<f64>, f64)],
+        work_functions: &[f64],
+        transfer: Option<ChargeTransfer>,
+    ) -> Simulation {
         let grain = |n: usize| Grain {
             id: n as u64,
             position: places[n].0,
@@ -128,10 +137,7 @@ mod tests {
             work_function_ev: Some(*work),
         };
         let settings = FieldSettings { method: Method::Direct, ..FieldSettings::default() };
-        let field = FieldStageSetup {
-            transfer: Some(ChargeTransfer::new(cutoff_m)),
-            ..FieldStageSetup::new(settings, vec![true; places.len()])
-        };
+        let field = FieldStageSetup { transfer, ..FieldStageSetup::new(settings, vec![true; places.len()]) };
         let setup = Setup {
             domain: Domain::new(Vector3::repeat(-1.0), Vector3::repeat(1.0), [[Boundary::Open; 2]; 3])
                 .expect("a good scene"),
@@ -216,6 +222,18 @@ mod tests {
     }
 
     #[test]
+    fn contacts_remember_no_areas_unless_they_charge() {
+        let places = close_packed(2);
+        let run = built(&places, &work_functions(places.len(), 1), None);
+        assert!(run.charging.is_none());
+        assert!(run.neighbours.lists.iter().all(|list| [
+            list.growth.capacity(),
+            list.foreseen.capacity(),
+            list.grown.capacity()
+        ] == [0; 3]));
+    }
+
+    #[test]
     fn field_at_contacts_is_the_direct_sum_of_all_others_there() {
         let places = close_packed(2);
         let mut run = packed(&places, &work_functions(places.len(), 1), 5e-7);
@@ -227,7 +245,7 @@ mod tests {
         assert!(pairs.len() > 90);
         let count = run.grains.len();
         for (k, grown, i, j) in pairs {
-            let found = run.neighbours.lists[k].growth[grown.entry as usize].field().expect("it touches");
+            let found = run.neighbours.lists[k].foreseen[grown.entry as usize].expect("it touches");
             let others = (0..count).filter(|&source| source != i && source != j);
             let term = |source: usize| grain_of(&run, source).charge * seen(&run, source, i, j);
             let exact: f64 = others.clone().map(term).sum();
@@ -253,8 +271,7 @@ mod tests {
             .iter()
             .find(|(_, _, i, j)| [*i, *j].contains(&beside) && sees(*i, *j))
             .expect("a good scene");
-        let growth = run.neighbours.lists[k].growth[grown.entry as usize];
-        assert_eq!(growth.field(), Some(0.0));
+        assert_eq!(run.neighbours.lists[k].foreseen[grown.entry as usize], Some(0.0));
         let decay =
             between_grains(VACUUM_PERMITTIVITY, 0.0, [grain_of(&run, i), grain_of(&run, j)], 0.0).decay;
         force(&mut run, k, grown, 1e3 / decay);
@@ -277,15 +294,14 @@ mod tests {
     /// Makes a contact's area grow [m²].
     fn force(run: &mut Simulation, k: usize, grown: Grown, growth: f64) {
         let list = &mut run.neighbours.lists[k];
-        list.growth[grown.entry as usize].follow(0.0, 1, false);
-        list.growth[grown.entry as usize].follow(growth, 2, false);
-        list.grown.push(grown);
+        let follow = Follow { moves: true, beyond: false };
+        list.growth[grown.entry as usize].follow(growth, false, follow);
     }
 
     /// Driving terms of all contacts at the present charges, and the largest charge.
     fn driving(run: &Simulation, cutoff_m: f64, works: &[f64]) -> (f64, f64) {
         let term = |(k, grown, i, j): (usize, Grown, usize, usize)| {
-            let field = run.neighbours.lists[k].growth[grown.entry as usize].field().expect("it touches");
+            let field = run.neighbours.lists[k].foreseen[grown.entry as usize].expect("it touches");
             let work = work(run, cutoff_m, works, i, j);
             between_grains(VACUUM_PERMITTIVITY, work, [grain_of(run, i), grain_of(run, j)], field)
                 .drive
@@ -365,8 +381,7 @@ mod tests {
             let drives: Vec<f64> = pairs
                 .iter()
                 .map(|&(k, grown, i, j)| {
-                    let field =
-                        run.neighbours.lists[k].growth[grown.entry as usize].field().expect("a good scene");
+                    let field = run.neighbours.lists[k].foreseen[grown.entry as usize].expect("a good scene");
                     let pair = [grain_of(&run, i), grain_of(&run, j)];
                     let drive =
                         between_grains(VACUUM_PERMITTIVITY, work(&run, 5e-7, &works, i, j), pair, field);

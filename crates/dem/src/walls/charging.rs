@@ -1,7 +1,7 @@
 //! Contacts with walls as charge transfer sees them.
 
 use super::{Shape, Walls};
-use crate::charging::Growth;
+use crate::charging::{Follow, Memory};
 use crate::chunks::CHUNK;
 use crate::grains::Grains;
 use crate::mesh_wall::MOST_CONTACTS;
@@ -24,7 +24,7 @@ pub(crate) struct Touch {
     pub(crate) normal: Vector3<f64>,
     /// Centre of the grain from the wall [m].
     pub(crate) distance: f64,
-    pub(crate) growth: Growth,
+    pub(crate) memory: Memory,
 }
 
 impl Touch {
@@ -42,19 +42,19 @@ pub(crate) enum Surface {
 }
 
 impl Walls {
-    /// Follows the areas of all contacts at a step; how many begin.
-    pub(crate) fn follow(&mut self, grains: &Grains, step: u64, beyond: bool) -> u64 {
+    /// Follows the areas of all contacts; how many begin.
+    pub(crate) fn follow(&mut self, grains: &Grains, follow: Follow) -> u64 {
         let mut begun = 0;
         for (k, chunk) in self.chunks.iter_mut().enumerate() {
             for entry in &chunk.entries {
                 let radius = grains.centre[k * CHUNK + entry.local as usize][3];
                 let touching = entry.contacts as usize..(entry.contacts + entry.count) as usize;
-                for (contact, growth) in
-                    chunk.contacts[touching.clone()].iter().zip(&mut chunk.growth[touching])
+                for (contact, memory) in
+                    chunk.contacts[touching.clone()].iter().zip(&mut chunk.charging[touching])
                 {
-                    let [begins, _] =
-                        growth.follow(contact_area::hertz(radius, contact.overlap), step, beyond);
-                    begun += u64::from(begins);
+                    // What did not touch before has nothing to remember.
+                    let area = contact_area::hertz(radius, contact.overlap);
+                    begun += u64::from(memory.growth.follow(area, true, follow));
                 }
             }
         }
@@ -81,16 +81,16 @@ impl Walls {
                         triangle: contact.triangle,
                         normal: contact.normal,
                         distance: grains.centre[grain][3] - contact.overlap,
-                        growth: chunk.growth[number as usize],
+                        memory: chunk.charging[number as usize],
                     }
                 })
             })
         })
     }
 
-    /// The charging of a contact.
-    pub(crate) fn growth_mut(&mut self, [chunk, contact]: [u32; 2]) -> &mut Growth {
-        &mut self.chunks[chunk as usize].growth[contact as usize]
+    /// What a contact remembers of its charging.
+    pub(crate) fn memory_mut(&mut self, [chunk, contact]: [u32; 2]) -> &mut Memory {
+        &mut self.chunks[chunk as usize].charging[contact as usize]
     }
 
     /// What a contact touches.
@@ -105,11 +105,11 @@ impl Walls {
 }
 
 /// Moves charging along with contacts that were others before; those that are gone have nothing due.
-pub(super) fn renew(growth: &mut [Growth], from: &[Option<usize>]) {
-    let mut old = [Growth::default(); MOST_CONTACTS];
-    let count = growth.len().min(MOST_CONTACTS);
-    old[..count].copy_from_slice(&growth[..count]);
-    for (growth, from) in growth.iter_mut().zip(from) {
-        *growth = from.map_or_else(Growth::default, |from| old[from]);
+pub(super) fn renew(memory: &mut [Memory], from: &[Option<usize>]) {
+    let mut old = [Memory::default(); MOST_CONTACTS];
+    let count = memory.len().min(MOST_CONTACTS);
+    old[..count].copy_from_slice(&memory[..count]);
+    for (memory, from) in memory.iter_mut().zip(from) {
+        *memory = from.map_or_else(Memory::default, |from| old[from]);
     }
 }

@@ -2,7 +2,7 @@
 
 use super::{ChunkWalls, Entry, Shape, Solid, WallContact};
 use crate::cells::NO_SHIFT;
-use crate::charging::Growth;
+use crate::charging::Memory;
 use crate::chunks::CHUNK;
 use crate::grains::Grains;
 use crate::mesh_wall::MOST_CONTACTS;
@@ -24,7 +24,7 @@ impl ChunkWalls {
         self.entries.clear();
         self.triangles.clear();
         self.contacts.clear();
-        self.growth.clear();
+        self.charging.clear();
         let mut near = Vec::new();
         let mut most = 0;
         for i in k * CHUNK..grains.len().min((k + 1) * CHUNK) {
@@ -46,7 +46,7 @@ impl ChunkWalls {
                 if room > 0 {
                     let contacts = self.contacts.len();
                     self.contacts.resize(contacts + room, WallContact::default());
-                    self.growth.resize(if charge { contacts + room } else { 0 }, Growth::default());
+                    self.charging.resize(if charge { contacts + room } else { 0 }, Memory::default());
                     let original = grains.original[i];
                     let from = histories.partition_point(|h| (h.grain, h.wall) < (original, wall as u32));
                     let mut count = 0;
@@ -60,7 +60,7 @@ impl ChunkWalls {
                             rolling: h.rolling,
                         };
                         if charge {
-                            self.growth[contacts + count] = h.growth;
+                            self.charging[contacts + count] = h.charging;
                         }
                         count += 1;
                     }

@@ -40,14 +40,23 @@ struct Sources {
     charge: Vec<f64>,
 }
 
-/// Σ q/r and its field at every particle of an open box, over every charge and image but the particle itself.
+/// Σ q/r and its field at every particle of an open box, over every charge and image but the particle itself. Particles
+/// without charge only see.
 pub(crate) fn open(lattice: &ImageLattice, positions: &[Vector3<f64>], charges: &[f64]) -> Vec<PairSum> {
-    let count = positions.len();
     let images: usize = lattice.axes.iter().map(|axis| axis.images.len()).product();
+    let count = charges.iter().filter(|charge| **charge != 0.0).count();
     let empty = || vec![0.0; count * images];
     let mut sources = Sources { coordinates: [empty(), empty(), empty()], charge: empty() };
-    for (index, (position, charge)) in positions.iter().zip(charges).enumerate() {
-        let mut place = index;
+    // The particle itself among the sources, or the place where it would be.
+    let mut own = vec![0..0; positions.len()];
+    let mut number = 0;
+    for (index, (position, &charge)) in positions.iter().zip(charges).enumerate() {
+        if charge == 0.0 {
+            own[index] = number..number;
+            continue;
+        }
+        own[index] = number..number + 1;
+        let mut place = number;
         lattice.for_each_finite(position, |image| {
             for axis in 0..3 {
                 sources.coordinates[axis][place] = image.position[axis];
@@ -55,16 +64,17 @@ pub(crate) fn open(lattice: &ImageLattice, positions: &[Vector3<f64>], charges: 
             sources.charge[place] = charge * image.sign;
             place += count;
         });
+        number += 1;
     }
     let instructions = Instructions::detect();
     positions
         .par_iter()
-        .enumerate()
-        .map(|(index, at)| {
-            let below = coulomb(instructions, &sources, 0..index, at);
-            let above = coulomb(instructions, &sources, index + 1..count * images, at);
+        .zip(&own)
+        .map(|(at, own)| {
+            let below = coulomb(instructions, &sources, 0..own.start, at);
+            let above = coulomb(instructions, &sources, own.end..count * images, at);
             let sum: [f64; 4] = std::array::from_fn(|k| below[k] + above[k]);
-            (sum[0], Vector3::new(sum[1], sum[2], sum[3]), count * images - 1)
+            (sum[0], Vector3::new(sum[1], sum[2], sum[3]), count * images - own.len())
         })
         .collect()
 }

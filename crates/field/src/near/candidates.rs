@@ -87,7 +87,7 @@ impl<T: Real> Candidates<T> {
         [V::load(&x[at..]), V::load(&y[at..]), V::load(&z[at..]), V::load(&charge[at..])]
     }
 
-    /// Drops candidates beyond the cut-off of a box, none within.
+    /// Drops candidates beyond the cut-off of a box and those without charge, no others.
     #[inline(always)]
     pub(crate) fn cull<V: Vector<Number = T>>(&mut self, [low, high]: [[T; 3]; 2]) {
         /// Above 1 by more than single precision rounds at such distances.
@@ -104,7 +104,8 @@ impl<T: Real> Candidates<T> {
             let dx = low_x.sub(x).max(x.sub(high_x)).max(zero);
             let dy = low_y.sub(y).max(y.sub(high_y)).max(zero);
             let dz = low_z.sub(z).max(z.sub(high_z)).max(zero);
-            let lanes = dx.mul_add(dx, dy.mul_add(dy, dz.mul(dz))).below(bound);
+            let near = dx.mul_add(dx, dy.mul_add(dy, dz.mul(dz))).below(bound);
+            let lanes = near & zero.below(charge.max(zero.sub(charge)));
             self.stayed.push([lanes, kept]);
             // In place: never ahead of what is read.
             let to = kept as usize;
@@ -125,7 +126,7 @@ impl<T: Real> Candidates<T> {
         (kept + (lanes & ((1 << (before % V::LANES)) - 1)).count_ones()) as usize
     }
 
-    /// What to add to the squares of the candidates' distances, so that `own` does not count.
+    /// What to add to the squares of the candidates' distances, so that `own` does not count; [`Self::len`] for nobody.
     #[inline(always)]
     pub(crate) fn apart(&self, own: usize) -> &[T] {
         &self.apart[self.apart.len() / 2 - own..][..self.len]

@@ -204,6 +204,12 @@ impl NearCells {
         [self.x[source], self.y[source], self.z[source]]
     }
 
+    /// Charge of a source over the largest.
+    #[inline(always)]
+    pub(super) fn charge(&self, source: usize) -> f64 {
+        self.charge[source]
+    }
+
     pub(super) fn sources(&self) -> Sources<'_> {
         Sources { x: &self.x, y: &self.y, z: &self.z, charge: &self.charge }
     }

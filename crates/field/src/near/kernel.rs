@@ -149,25 +149,37 @@ fn sum_group<V: Vector, const N: usize, const POTENTIAL: bool>(
 ) {
     let field: &[V::Number; N] = kernel.field[..].try_into().expect("N coefficients");
     let potential: &[V::Number; N] = kernel.potential[..].try_into().expect("N coefficients");
-    let shift = gather::<V>(group, candidates);
-    let own = |target: u32| candidates.number::<V>((target as usize).wrapping_add(shift));
+    let (shift, reference) = gather::<V>(group, candidates);
+    let place = |target: u32| {
+        let charged = V::Number::narrow(group.cells.charge(target as usize)) != V::Number::narrow(0.0);
+        let before = (target as usize).wrapping_add(shift);
+        let own = if charged { candidates.number::<V>(before) } else { candidates.len() };
+        (relative(group.cells, target, reference), own)
+    };
     let polynomials = (field, potential);
     for (targets, sums) in group.targets.chunks(2).zip(sums.chunks_mut(2)) {
         match (targets, sums) {
             (&[first, second], [first_sum, second_sum]) => {
-                let own = [own(first), own(second)];
-                [*first_sum, *second_sum] = sum_two::<V, N, POTENTIAL>(polynomials, candidates, own);
+                let places = [place(first), place(second)];
+                [*first_sum, *second_sum] = sum_two::<V, N, POTENTIAL>(polynomials, candidates, places);
             }
-            (&[only], [sum, ..]) => *sum = sum_one::<V, N, POTENTIAL>(polynomials, candidates, own(only)),
+            (&[only], [sum, ..]) => *sum = sum_one::<V, N, POTENTIAL>(polynomials, candidates, place(only)),
             _ => {}
         }
     }
 }
 
-/// Lays the sources around a group side by side and drops those beyond the cut-off of all; before that, a target's number among
-/// them was its number plus what is returned.
+/// A source's place as the candidates have theirs.
 #[inline(always)]
-fn gather<V: Vector>(group: Group<'_>, candidates: &mut Candidates<V::Number>) -> usize {
+fn relative<T: Real>(cells: &NearCells, source: u32, reference: [f64; 3]) -> [T; 3] {
+    let [x, y, z] = cells.place(source as usize);
+    [T::narrow(x - reference[0]), T::narrow(y - reference[1]), T::narrow(z - reference[2])]
+}
+
+/// Lays the sources around a group side by side and drops those beyond the cut-off of all; before that, a target's number among
+/// them was its number plus what is returned. Their places are relative to the other result.
+#[inline(always)]
+fn gather<V: Vector>(group: Group<'_>, candidates: &mut Candidates<V::Number>) -> (usize, [f64; 3]) {
     let cells = group.cells;
     let first = group.targets[0] as usize;
     let mut range = [cells.place(first)[0]; 2];
@@ -186,20 +198,16 @@ fn gather<V: Vector>(group: Group<'_>, candidates: &mut Candidates<V::Number>) -
         candidates.append::<V>(sources, run, reference);
     }
     candidates.finish();
-    candidates.cull::<V>(bounds(candidates, group.targets, shift));
-    shift
+    candidates.cull::<V>(bounds(group, reference));
+    (shift, reference)
 }
 
-/// Lowest and highest coordinates of the targets among the candidates.
+/// Lowest and highest coordinates of the targets, as the candidates have theirs.
 #[inline(always)]
-fn bounds<T: Real>(candidates: &Candidates<T>, targets: &[u32], shift: usize) -> [[T; 3]; 2] {
-    let [x, y, z, _] = candidates.arrays();
-    let place = |target: u32| {
-        let own = (target as usize).wrapping_add(shift);
-        [x[own], y[own], z[own]]
-    };
-    let [mut low, mut high] = [place(targets[0]); 2];
-    for &target in &targets[1..] {
+fn bounds<T: Real>(group: Group<'_>, reference: [f64; 3]) -> [[T; 3]; 2] {
+    let place = |target: u32| relative::<T>(group.cells, target, reference);
+    let [mut low, mut high] = [place(group.targets[0]); 2];
+    for &target in &group.targets[1..] {
         let place = place(target);
         for axis in 0..3 {
             low[axis] = if place[axis] < low[axis] { place[axis] } else { low[axis] };

@@ -29,9 +29,8 @@ struct Target<V> {
 
 impl<V: Vector> Target<V> {
     #[inline(always)]
-    fn new(candidates: &Candidates<V::Number>, own: usize) -> Self {
-        let [x, y, z, _] = candidates.arrays();
-        let (x, y, z) = (V::splat(x[own]), V::splat(y[own]), V::splat(z[own]));
+    fn new([x, y, z]: [V::Number; 3]) -> Self {
+        let (x, y, z) = (V::splat(x), V::splat(y), V::splat(z));
         let number = |value| V::splat(V::Number::narrow(value));
         let (zero, nearest) = (number(0.0), number(2.0));
         Self { x, y, z, ex: zero, ey: zero, ez: zero, potential: zero, nearest }
@@ -73,14 +72,17 @@ impl<V: Vector> Target<V> {
     }
 }
 
-/// Sums at the candidate with the number `own`, without itself.
+/// Where a sum is taken, and the candidate there that does not count: [`Candidates::len`] if there is none.
+pub(super) type Place<T> = ([T; 3], usize);
+
+/// Sums at a place.
 #[inline(always)]
 pub(super) fn sum_one<V: Vector, const N: usize, const POTENTIAL: bool>(
     polynomials: Polynomials<'_, V::Number, N>,
     candidates: &Candidates<V::Number>,
-    own: usize,
+    (place, own): Place<V::Number>,
 ) -> Sum {
-    let mut target = Target::<V>::new(candidates, own);
+    let mut target = Target::<V>::new(place);
     let apart = candidates.apart(own);
     for at in (0..candidates.len()).step_by(V::LANES) {
         target.add::<N, POTENTIAL>(polynomials, candidates.load::<V>(at), V::load(&apart[at..]));
@@ -93,10 +95,10 @@ pub(super) fn sum_one<V: Vector, const N: usize, const POTENTIAL: bool>(
 pub(super) fn sum_two<V: Vector, const N: usize, const POTENTIAL: bool>(
     polynomials: Polynomials<'_, V::Number, N>,
     candidates: &Candidates<V::Number>,
-    [first, second]: [usize; 2],
+    [(place_one, first), (place_two, second)]: [Place<V::Number>; 2],
 ) -> [Sum; 2] {
-    let mut one = Target::<V>::new(candidates, first);
-    let mut two = Target::<V>::new(candidates, second);
+    let mut one = Target::<V>::new(place_one);
+    let mut two = Target::<V>::new(place_two);
     let (apart_one, apart_two) = (candidates.apart(first), candidates.apart(second));
     for at in (0..candidates.len()).step_by(V::LANES) {
         let some = candidates.load::<V>(at);
