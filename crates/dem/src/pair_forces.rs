@@ -180,10 +180,12 @@ fn chunk<const FRICTION: bool, const ROLLING: bool, const DAMPING: bool, const P
             read::<FRICTION, ROLLING, PERIODIC>(scene, list, entry as usize, i, &mut batch, lane);
         }
         batch.respond::<FRICTION, ROLLING, DAMPING>(scene.step);
-        for lane in 0..size {
-            if let Some(follow) = scene.follow {
+        if let Some(follow) = scene.follow {
+            for lane in 0..size {
                 follow.pair(list, list.hits[start + lane].entry, batch.area::<FRICTION>(lane));
             }
+        }
+        for lane in 0..size {
             write::<FRICTION, ROLLING>(list, start + lane, first, &batch, lane, force, torque);
         }
     }

@@ -1,5 +1,6 @@
 //! Runs whose far field OpenFOAM computes; `cargo xtask openfoam` builds the solver.
 
+mod charging;
 mod failures;
 mod fields;
 mod function_object;

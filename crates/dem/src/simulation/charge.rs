@@ -293,9 +293,8 @@ mod tests {
 
     /// Makes a contact's area grow [m²].
     fn force(run: &mut Simulation, k: usize, grown: Grown, growth: f64) {
-        let list = &mut run.neighbours.lists[k];
         let follow = Follow { moves: true, beyond: false };
-        list.growth[grown.entry as usize].follow(growth, false, follow);
+        run.neighbours.lists[k].growth[grown.entry as usize].follow(growth, false, follow);
     }
 
     /// Driving terms of all contacts at the present charges, and the largest charge.
