@@ -25,7 +25,7 @@ pub(crate) fn plot(case: &str, name: &str, [x, y]: [&str; 2], logarithmic: bool,
     fs::create_dir_all(&folder).expect("a folder");
     let scales = [if logarithmic { Scale::Logarithmic } else { Scale::Linear }; 2];
     let title = format!("{case}: {name}");
-    let plot = Plot { title: &title, x, y, scales, series: &curves };
+    let plot = Plot { title: &title, x, y, scales, series: &curves, ringed: &[] };
     write_plot(&folder.join(format!("{name}.svg")), &plot).expect("a plot");
 }
 

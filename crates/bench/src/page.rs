@@ -47,7 +47,8 @@ pub(crate) fn plot(store: &Store, name: &str, title: &str, axes: [&str; 2], all:
     if series.is_empty() {
         return Ok(());
     }
-    let plot = Plot { title, x: axes[0], y: axes[1], scales: [Scale::Logarithmic; 2], series: &series };
+    let plot =
+        Plot { title, x: axes[0], y: axes[1], scales: [Scale::Logarithmic; 2], series: &series, ringed: &[] };
     Ok(write_plot(&store.path(&format!("pictures/{name}.svg")), &plot)?)
 }
 

@@ -52,6 +52,11 @@ pub(crate) enum Command {
     Field(FieldOptions),
     /// What will run, what is left out and why, error expected, memory, limits on the time step
     Explain(ExplainOptions),
+    /// Candidates for the field's parameters, their measured error and time, the choice
+    Tune(TuneOptions),
+    /// Error against run time: methods and parameters swept over problems
+    #[cfg(feature = "plots")]
+    Study(StudyOptions),
     /// What this machine offers, stale runs
     Doctor(DoctorOptions),
 }
@@ -111,6 +116,33 @@ pub(crate) struct ExplainOptions {
     /// Override a key of the scene
     #[arg(long, value_name = "KEY=VALUE")]
     pub(crate) set: Vec<String>,
+}
+
+/// Options of `tune`.
+#[derive(Debug, Args)]
+pub(crate) struct TuneOptions {
+    /// Scene file
+    pub(crate) scene: PathBuf,
+    /// Tolerance instead of the scene's
+    #[arg(long, value_name = "T")]
+    pub(crate) tolerance: Option<f64>,
+    /// Table of the candidates (default: named after the scene)
+    #[arg(long, value_name = "FILE.csv")]
+    pub(crate) out: Option<PathBuf>,
+    /// Override a key of the scene
+    #[arg(long, value_name = "KEY=VALUE")]
+    pub(crate) set: Vec<String>,
+}
+
+/// Options of `study`.
+#[cfg(feature = "plots")]
+#[derive(Debug, Args)]
+pub(crate) struct StudyOptions {
+    /// Study file
+    pub(crate) study: PathBuf,
+    /// Folder of the results (default: named after the study)
+    #[arg(long, value_name = "DIR")]
+    pub(crate) out: Option<PathBuf>,
 }
 
 /// Options of `doctor`.

@@ -32,6 +32,12 @@ impl Failure {
         Self { code: EXIT_TOLERANCE, message: message.into() }
     }
 
+    /// A study that cannot be read or written.
+    #[cfg(feature = "plots")]
+    pub(crate) fn of_study(error: &amberfield_study::StudyError) -> Self {
+        Self::bad_input(error.to_string())
+    }
+
     /// A simulation that cannot start.
     pub(crate) fn at_start(error: &DemError) -> Self {
         match error {

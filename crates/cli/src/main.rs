@@ -36,6 +36,9 @@ fn dispatch(arguments: &Arguments, log: &logging::Log) -> Result<(), Failure> {
         Command::Run(options) => commands::run(options, common, log),
         Command::Field(options) => commands::field(options),
         Command::Explain(options) => commands::explain(options),
+        Command::Tune(options) => commands::tune(options),
+        #[cfg(feature = "plots")]
+        Command::Study(options) => commands::study(options),
         Command::Doctor(options) => commands::doctor(options),
     }
 }

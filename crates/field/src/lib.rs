@@ -30,7 +30,7 @@ mod values;
 pub use boundary_field::BoundaryField;
 pub use cutoff::Cutoff;
 pub use direct::Direct;
-pub use electric_field::{Choice, ElectricField, Measured, Statistics};
+pub use electric_field::{Candidate, Choice, ElectricField, Measured, Statistics};
 pub use error::FieldError;
 pub use kolehmainen::Kolehmainen;
 pub use method::FieldMethod;

@@ -4,7 +4,7 @@ use crate::error_model::error_squared;
 use crate::grid::level::{grid_sizes, widest_spacing};
 use crate::p3m::{P3m, P3mParameters};
 use crate::shapes::{self, ORDERS, Shapes, cutoff_over_spacing_for};
-use crate::{FieldError, FieldMethod, FieldValues, Measured, Wanted};
+use crate::{Candidate, Choice, FieldError, FieldMethod, FieldValues, Measured, Wanted};
 use amberfield_core::constants::coulomb_constant;
 use amberfield_core::{Domain, FieldSettings, Tuning};
 use nalgebra::Vector3;
@@ -182,6 +182,22 @@ impl<'a> Tuner<'a> {
                 self.fixed_keys()
             ),
         })
+    }
+
+    /// The best of each order, cheapest by the cost model first, with errors and times.
+    pub(crate) fn table(&self) -> Result<Vec<Candidate>, FieldError> {
+        let charged = self.cloud.charge > 0.0;
+        let scale = if charged { self.scale()? } else { self.cloud.floor };
+        let error = AIM * self.settings.tolerance * scale;
+        let one = |(_, parameters): &(f64, P3mParameters)| {
+            Ok(Candidate {
+                choice: Choice::P3m(*parameters),
+                estimated: charged.then(|| self.estimate(parameters, scale)),
+                measured: charged.then(|| self.measure(*parameters, scale)),
+                seconds: self.time(parameters)?,
+            })
+        };
+        self.candidates(&self.cloud, error).iter().map(one).collect()
     }
 
     /// What errors are relative to [V/m]: the larger of E_rms and q_rms n^{2/3}/(4πε).

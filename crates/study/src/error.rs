@@ -14,6 +14,22 @@ pub enum StudyError {
         /// What the system says.
         source: std::io::Error,
     },
+    /// A study cannot be read.
+    #[error("cannot read {}: {source}; check its name", path.display())]
+    Read {
+        /// The file.
+        path: PathBuf,
+        /// What the system says.
+        source: std::io::Error,
+    },
+    /// A file that is no study.
+    #[error("{}: {reason}", path.display())]
+    Description {
+        /// The file.
+        path: PathBuf,
+        /// Why.
+        reason: String,
+    },
     /// A plot cannot be drawn.
     #[error("cannot draw {}: {reason}", path.display())]
     Plot {

@@ -1,7 +1,7 @@
-//! Draws what was computed: pictures of the bed, curves.
+//! Error against run time, and what was computed as pictures of the bed and curves.
 //!
-//! [`write_picture`] carries its font with it and needs nothing from the machine. The feature `plots` (on by
-//! default) holds it.
+//! [`sweep`] runs studies. Pictures carry their font with them and need nothing from the machine. The feature `plots` (on by default) holds
+//! all of it.
 
 #[cfg(feature = "plots")]
 mod colour;
@@ -14,6 +14,8 @@ mod picture;
 mod plot;
 #[cfg(feature = "plots")]
 mod raster;
+#[cfg(feature = "plots")]
+pub mod sweep;
 #[cfg(feature = "plots")]
 mod ticks;
 

@@ -1,6 +1,8 @@
 //! Curves, by plotters.
 
 use crate::error::StudyError;
+use crate::raster::write_png;
+use plotters::coord::Shift;
 use plotters::coord::ranged1d::ValueFormatter;
 use plotters::prelude::*;
 use plotters::style::{FontStyle, register_font};
@@ -37,6 +39,8 @@ pub struct Plot<'a> {
     pub scales: [Scale; 2],
     /// The curves.
     pub series: &'a [Series],
+    /// Points to mark with a ring.
+    pub ringed: &'a [(f64, f64)],
 }
 
 const SIZE: (u32, u32) = (720, 460);
@@ -53,22 +57,27 @@ const COLOURS: [RGBColor; 6] = [
     RGBColor(86, 180, 233),
 ];
 
-/// Writes a plot as SVG; the same plot gives the same file.
+/// Writes a plot as PNG where the file's name says so, else as SVG; the same plot gives the same file.
 ///
 /// # Errors
 /// A file that cannot be written; a plot without points.
 pub fn write_plot(path: &Path, plot: &Plot<'_>) -> Result<(), StudyError> {
+    let failed = |reason| StudyError::Plot { path: path.to_owned(), reason };
+    if path.extension().is_some_and(|extension| extension == "png") {
+        let mut pixels = vec![0; SIZE.0 as usize * SIZE.1 as usize * 3];
+        draw(plot, BitMapBackend::with_buffer(&mut pixels, SIZE).into_drawing_area()).map_err(failed)?;
+        return write_png(path, SIZE, &pixels);
+    }
     let mut text = String::new();
-    draw(plot, &mut text).map_err(|reason| StudyError::Plot { path: path.to_owned(), reason })?;
+    draw(plot, SVGBackend::with_string(&mut text, SIZE).into_drawing_area()).map_err(failed)?;
     std::fs::write(path, text).map_err(|source| StudyError::Write { path: path.to_owned(), source })
 }
 
-fn draw(plot: &Plot<'_>, into: &mut String) -> Result<(), String> {
+fn draw<B: DrawingBackend>(plot: &Plot<'_>, area: DrawingArea<B, Shift>) -> Result<(), String> {
     // A second registration of the same font is refused; the first one stays.
     let _registered = register_font(FONT, FontStyle::Normal, notosans::REGULAR_TTF);
     let (x, y) = (range(plot, 0)?, range(plot, 1)?);
-    let area = SVGBackend::with_string(into, SIZE).into_drawing_area();
-    area.fill(&WHITE).map_err(failed)?;
+    area.fill(&WHITE).map_err(failed::<B>)?;
     let mut builder = ChartBuilder::on(&area);
     builder.caption(plot.title, (FONT, 18)).margin(12).x_label_area_size(44).y_label_area_size(72);
     let (x, y) = (x.0..x.1, y.0..y.1);
@@ -80,25 +89,26 @@ fn draw(plot: &Plot<'_>, into: &mut String) -> Result<(), String> {
             curves(builder.build_cartesian_2d(x.log_scale(), y.log_scale()), plot)?;
         }
     }
-    area.present().map_err(failed)
+    area.present().map_err(failed::<B>)
 }
 
-type SvgError = DrawingAreaErrorKind<std::io::Error>;
+type DrawError<B> = DrawingAreaErrorKind<<B as DrawingBackend>::ErrorType>;
 
-fn failed(error: SvgError) -> String {
+fn failed<B: DrawingBackend>(error: DrawError<B>) -> String {
     error.to_string()
 }
 
 /// Draws the axes, the curves and their names.
-fn curves<'s, X, Y>(
-    chart: Result<ChartContext<'s, SVGBackend<'s>, Cartesian2d<X, Y>>, SvgError>,
+fn curves<'s, B, X, Y>(
+    chart: Result<ChartContext<'s, B, Cartesian2d<X, Y>>, DrawError<B>>,
     plot: &Plot<'_>,
 ) -> Result<(), String>
 where
+    B: DrawingBackend + 's,
     X: Ranged<ValueType = f64> + ValueFormatter<f64>,
     Y: Ranged<ValueType = f64> + ValueFormatter<f64>,
 {
-    let mut chart = chart.map_err(failed)?;
+    let mut chart = chart.map_err(failed::<B>)?;
     let widths = [0, 1].map(|axis| range(plot, axis).map_or(0.0, |(low, high)| high - low));
     let label = |value: &f64, axis: usize| {
         // A tick at zero comes with round-off.
@@ -115,19 +125,22 @@ where
         .y_label_formatter(&|value| label(value, 1))
         .light_line_style(WHITE)
         .draw()
-        .map_err(failed)?;
+        .map_err(failed::<B>)?;
     for (series, colour) in plot.series.iter().zip(COLOURS.into_iter().cycle()) {
         let points: Vec<_> = shown(plot, series).collect();
         let style = colour.stroke_width(2);
         chart
             .draw_series(LineSeries::new(points.iter().copied(), style))
-            .map_err(failed)?
+            .map_err(failed::<B>)?
             .label(series.name.as_str())
             .legend(move |(x, y)| PathElement::new([(x, y), (x + 18, y)], style));
         chart
             .draw_series(points.iter().map(|&point| Circle::new(point, 3, colour.filled())))
-            .map_err(failed)?;
+            .map_err(failed::<B>)?;
     }
+    chart
+        .draw_series(plot.ringed.iter().map(|&point| Circle::new(point, 7, BLACK.stroke_width(1))))
+        .map_err(failed::<B>)?;
     chart
         .configure_series_labels()
         .label_font((FONT, 13))
@@ -135,7 +148,7 @@ where
         .border_style(RGBColor(200, 203, 210))
         .position(emptiest_corner(plot))
         .draw()
-        .map_err(failed)
+        .map_err(failed::<B>)
 }
 
 /// Where the names of the curves hide the fewest points.
@@ -226,11 +239,18 @@ mod tests {
             y: "time per grain [ns]",
             scales: [Scale::Logarithmic; 2],
             series: &series,
+            ringed: &[(1e-2, 500.0)],
         };
-        let (mut first, mut second) = (String::new(), String::new());
-        draw(&plot, &mut first).unwrap();
-        draw(&plot, &mut second).unwrap();
-        assert_eq!(first, second);
+        let folder = tempfile::tempdir().unwrap();
+        let write = |name: &str| {
+            let path = folder.path().join(name);
+            write_plot(&path, &plot).unwrap();
+            std::fs::read(path).unwrap()
+        };
+        assert_eq!(write("a.svg"), write("b.svg"));
+        assert_eq!(write("a.png"), write("b.png"));
+        assert!(write("a.png").starts_with(b"\x89PNG"));
+        let first = String::from_utf8(write("a.svg")).unwrap();
         for word in ["Cost and error", "time per grain [ns]", "p3m"] {
             assert!(first.contains(word), "no {word}");
         }
@@ -239,7 +259,9 @@ mod tests {
     #[test]
     fn a_plot_without_points_is_refused() {
         let series = plot(vec![(0.0, 1.0)]);
-        let plot = Plot { title: "", x: "", y: "", scales: [Scale::Logarithmic; 2], series: &series };
-        assert!(draw(&plot, &mut String::new()).is_err());
+        let plot =
+            Plot { title: "", x: "", y: "", scales: [Scale::Logarithmic; 2], series: &series, ringed: &[] };
+        let folder = tempfile::tempdir().unwrap();
+        assert!(write_plot(&folder.path().join("none.svg"), &plot).is_err());
     }
 }

@@ -81,14 +81,7 @@ impl Raster {
 
     /// Writes a PNG file.
     pub(crate) fn write_png(&self, path: &Path) -> Result<(), StudyError> {
-        let failed = |source| StudyError::Write { path: path.to_owned(), source };
-        let file = BufWriter::new(File::create(path).map_err(failed)?);
-        let mut encoder = png::Encoder::new(file, self.width as u32, self.height as u32);
-        encoder.set_color(png::ColorType::Rgb);
-        encoder.set_depth(png::BitDepth::Eight);
-        let mut writer = encoder.write_header().map_err(|error| failed(error.into()))?;
-        writer.write_image_data(&self.bytes()).map_err(|error| failed(error.into()))?;
-        writer.finish().map_err(|error| failed(error.into()))
+        write_png(path, (self.width as u32, self.height as u32), &self.bytes())
     }
 
     /// A line through the points, of the given width [px].
@@ -167,6 +160,18 @@ pub(crate) fn blend(pixel: &mut Colour, colour: Colour, weight: f64) {
     for (old, new) in pixel.iter_mut().zip(colour) {
         *old = (f64::from(*old) + (f64::from(new) - f64::from(*old)) * weight.clamp(0.0, 1.0)).round() as u8;
     }
+}
+
+/// Writes rows of red, green and blue as a PNG file.
+pub(crate) fn write_png(path: &Path, (width, height): (u32, u32), bytes: &[u8]) -> Result<(), StudyError> {
+    let failed = |source| StudyError::Write { path: path.to_owned(), source };
+    let file = BufWriter::new(File::create(path).map_err(failed)?);
+    let mut encoder = png::Encoder::new(file, width, height);
+    encoder.set_color(png::ColorType::Rgb);
+    encoder.set_depth(png::BitDepth::Eight);
+    let mut writer = encoder.write_header().map_err(|error| failed(error.into()))?;
+    writer.write_image_data(bytes).map_err(|error| failed(error.into()))?;
+    writer.finish().map_err(|error| failed(error.into()))
 }
 
 #[cfg(test)]

@@ -4,8 +4,14 @@ mod doctor;
 mod explain;
 mod field;
 mod run;
+#[cfg(feature = "plots")]
+mod study;
+mod tune;
 
 pub(crate) use doctor::doctor;
 pub(crate) use explain::explain;
 pub(crate) use field::field;
 pub(crate) use run::run;
+#[cfg(feature = "plots")]
+pub(crate) use study::study;
+pub(crate) use tune::tune;

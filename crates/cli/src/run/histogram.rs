@@ -121,6 +121,7 @@ pub(crate) fn plot(folder: &RunFolder) {
             y: "grains in a bin",
             scales: [Scale::Linear; 2],
             series: &series,
+            ringed: &[],
         };
         if let Err(error) = write_plot(&folder.file(name), &plot) {
             tracing::warn!("no plot: {error}");

@@ -43,6 +43,18 @@ pub fn write_atomically(
     write().map_err(|error| SceneError::unwritable(path, error))
 }
 
+/// Writes rows of a table as CSV, a header of the fields' names first.
+///
+/// # Errors
+/// As [`write_atomically`].
+pub fn write_table<R: Serialize>(path: &Path, rows: &[R]) -> Result<(), SceneError> {
+    write_atomically(path, |writer| {
+        let mut table = csv::Writer::from_writer(writer);
+        rows.iter().try_for_each(|row| table.serialize(row))?;
+        table.flush()
+    })
+}
+
 /// Writes a text.
 ///
 /// # Errors

@@ -1,0 +1,202 @@
+//! `amberfield study`.
+
+mod peers;
+
+use crate::arguments::StudyOptions;
+use crate::failure::Failure;
+use crate::print::line;
+use crate::run::{connect_solver, domain_of, field_of, members, parameters, scene_name};
+use crate::{machine, not_built};
+use amberfield_core::constants::coulomb_constant;
+use amberfield_core::{Domain, FieldSettings, Method, Tuning, Vector3};
+use amberfield_field::{ElectricField, FieldValues, Wanted};
+use amberfield_oracle::field_scale;
+use amberfield_scene::{Purpose, Scene, read_scene, write_table};
+use amberfield_study::sweep::{self, Evaluation, Exact, Laboratory, Machine, Peer, Row, Study};
+use std::path::{Path, PathBuf};
+use std::process::Command;
+use std::time::Instant;
+
+/// Tolerance of the p3m that is the truth for many grains.
+const TRUTH: f64 = 1e-8;
+
+/// Runs a study and writes its rows, plots and page.
+pub(crate) fn study(options: &StudyOptions) -> Result<(), Failure> {
+    let study = Study::read(&options.study).map_err(|error| Failure::of_study(&error))?;
+    let out =
+        options.out.clone().unwrap_or_else(|| PathBuf::from(format!("{}-study", scene_name(&options.study))));
+    std::fs::create_dir_all(&out)
+        .map_err(|error| Failure::bad_input(format!("cannot make {}: {error}", out.display())))?;
+    let folder = options.study.parent().unwrap_or_else(|| Path::new(""));
+    let table = out.join("points.csv");
+    let mut known: Vec<Row> = Vec::new();
+    let mut unwritten = Ok(());
+    let rows = sweep::run(&study, folder, &mut Bench, |rows| {
+        for row in rows {
+            tracing::info!("{}", told(row));
+        }
+        // What is known is on the disk, should the rest never come.
+        known.extend_from_slice(rows);
+        unwritten = write_table(&table, &known);
+    });
+    unwritten?;
+    let repeat = format!("amberfield study {}", options.study.display());
+    sweep::write_report(&out, &study, &rows, &repeat).map_err(|error| Failure::of_study(&error))?;
+    line(format_args!("{} points; report: {}", rows.len(), out.join("report.md").display()));
+    let broken: Vec<_> = rows.iter().filter(|row| row.breaks_its_bound()).collect();
+    match broken.first() {
+        None => Ok(()),
+        Some(first) => Err(Failure::outside_tolerance(format!(
+            "{} of {} points have an error above their bound; the first: {}",
+            broken.len(),
+            rows.len(),
+            told(first)
+        ))),
+    }
+}
+
+/// A point in a line.
+fn told(row: &Row) -> String {
+    let name = format!("{}, {} {}", row.problem, row.method, row.value);
+    match (row.error, row.ns_per_grain()) {
+        (Some(error), Some(ns)) => format!("{name}: error {error:.2e}, {ns:.0} ns a grain"),
+        _ => format!("{name}: {}", row.failure),
+    }
+}
+
+/// Our own methods.
+struct Bench;
+
+/// A scene's charges.
+struct Charged {
+    scene: Scene,
+    domain: Option<Domain>,
+    settings: FieldSettings,
+    positions: Vec<Vector3<f64>>,
+    charges: Vec<f64>,
+}
+
+/// A field and its results.
+struct Built {
+    field: ElectricField,
+    values: FieldValues,
+}
+
+impl Laboratory for Bench {
+    type Problem = Charged;
+    type Method = Built;
+
+    fn machine(&self) -> Machine {
+        Machine {
+            processor: machine::cpu_name().unwrap_or_else(|| "a processor without a name".to_owned()),
+            threads: rayon::current_num_threads(),
+            version: format!("{}{}", env!("CARGO_PKG_VERSION"), commit()),
+            date: machine::today(),
+        }
+    }
+
+    fn problem(&mut self, scene: &Path, set: &[String]) -> Result<Charged, String> {
+        let scene = read_scene(scene, set, Purpose::Field).map_err(|error| error.to_string())?;
+        not_built::refuse(&scene).map_err(|failure| failure.message().to_owned())?;
+        let settings = scene.electric_field.as_ref().expect("the purpose needs it").field.clone();
+        let member = members(&scene);
+        let indices = || (0..scene.particles.len()).filter(|&index| member[index]);
+        let wrapped = |index: usize| {
+            let position = scene.particles.position[index];
+            scene.domain.as_ref().map_or(position, |domain| domain.wrap(position))
+        };
+        let positions: Vec<_> = indices().map(wrapped).collect();
+        if positions.is_empty() {
+            return Err("no grain takes part in the field".to_owned());
+        }
+        let charges = indices().map(|index| scene.particles.charge[index]).collect();
+        Ok(Charged { domain: scene.domain.clone(), settings, positions, charges, scene })
+    }
+
+    fn grains(&self, problem: &Charged) -> usize {
+        problem.charges.len()
+    }
+
+    fn exact(&mut self, problem: &Charged, direct_up_to: usize) -> Result<Exact, String> {
+        let Charged { positions, charges, .. } = problem;
+        let domain = problem
+            .domain
+            .as_ref()
+            .ok_or("the scene has no [domain], whose box would be the truth; add it")?;
+        let few = charges.len() <= direct_up_to;
+        let (method, by) = if few {
+            (Method::Direct, "the direct sum".to_owned())
+        } else {
+            (Method::P3m, format!("p3m with a tolerance of {TRUTH:e}"))
+        };
+        let settings = FieldSettings {
+            method,
+            tolerance: TRUTH,
+            tuning: Tuning::Model,
+            cutoff_radius_m: None,
+            grid_cells: None,
+            ..problem.settings.clone()
+        };
+        let mut values = FieldValues::default();
+        let mut field =
+            ElectricField::new(domain, &settings, positions, charges).map_err(|error| error.to_string())?;
+        field
+            .evaluate(positions, charges, Wanted::default(), &mut values)
+            .map_err(|error| error.to_string())?;
+        let coulomb = coulomb_constant(settings.relative_permittivity);
+        let scale = field_scale(&values.e, charges, domain.volume(), coulomb);
+        Ok(Exact { e: values.e, scale, by })
+    }
+
+    fn charges(&self, problem: &Charged) -> (Vec<Vector3<f64>>, Vec<f64>, f64) {
+        let coulomb = coulomb_constant(problem.settings.relative_permittivity);
+        (problem.positions.clone(), problem.charges.clone(), coulomb)
+    }
+
+    fn method(&mut self, problem: &mut Charged) -> Result<Built, String> {
+        let said = |failure: Failure| failure.message().to_owned();
+        let solver = connect_solver(&mut problem.scene).map_err(said)?;
+        let domain = domain_of(&problem.scene).map_err(said)?;
+        let field = field_of(domain, &problem.settings, solver, &problem.positions, &problem.charges)
+            .map_err(said)?;
+        Ok(Built { field, values: FieldValues::default() })
+    }
+
+    fn peer(
+        &mut self,
+        program: &str,
+        problem: &Charged,
+        exact: &Exact,
+        tolerance: f64,
+    ) -> Result<Peer, String> {
+        peers::run(program, problem, exact, tolerance)
+    }
+
+    fn evaluate(&mut self, problem: &Charged, method: &mut Built) -> Result<Evaluation, String> {
+        let Built { field, values } = method;
+        let begun = Instant::now();
+        field
+            .evaluate(&problem.positions, &problem.charges, Wanted::default(), values)
+            .map_err(|error| error.to_string())?;
+        let seconds = begun.elapsed().as_secs_f64();
+        let statistics = field.statistics();
+        let promises = problem.settings.method == Method::P3m;
+        Ok(Evaluation {
+            e: values.e.clone(),
+            seconds,
+            stages: statistics.seconds.into_iter().map(|(stage, s)| (stage.to_owned(), s)).collect(),
+            memory_bytes: field.memory_bytes(),
+            parameters: parameters(field.choice()).to_string(),
+            estimated: field.error_estimated(),
+            promised: promises.then_some(problem.settings.tolerance),
+            pairs_per_grain: statistics.pairs_per_particle,
+        })
+    }
+}
+
+/// What the program was made from, where the study is run in its repository.
+fn commit() -> String {
+    let output = Command::new("git").args(["describe", "--always", "--dirty"]).output();
+    let output = output.ok().filter(|output| output.status.success());
+    output.map_or_else(String::new, |output| format!("+{}", String::from_utf8_lossy(&output.stdout).trim()))
+}

@@ -1,0 +1,195 @@
+//! What a study sweeps: STUDY.toml.
+
+use crate::StudyError;
+use serde::Deserialize;
+use std::path::{Path, PathBuf};
+
+/// A study.
+#[derive(Clone, Debug, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct Study {
+    /// Headline of the report.
+    pub title: String,
+    /// How often every point is timed, all points of a problem taking turns.
+    #[serde(default = "three")]
+    pub passes: usize,
+    /// Evaluations of one turn go on for so long [s].
+    #[serde(default = "tenth")]
+    pub least_s: f64,
+    /// Grains up to which the truth is the direct sum.
+    #[serde(default = "ten_thousand")]
+    pub direct_up_to: usize,
+    /// What is computed.
+    pub problems: Vec<Problem>,
+    /// What computes it.
+    pub methods: Vec<Method>,
+}
+
+/// Charges in a box, or a cavity.
+#[derive(Clone, Debug, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct Problem {
+    /// Name in the report.
+    pub name: String,
+    /// Scene file, beside the study.
+    pub scene: PathBuf,
+    /// Overrides of the scene, `KEY=VALUE`.
+    #[serde(default)]
+    pub set: Vec<String>,
+    /// One key with several values: a problem for each.
+    pub sweep: Option<Sweep>,
+    /// Where the truth comes from.
+    #[serde(default)]
+    pub truth: Truth,
+}
+
+/// Where the exact field of a problem comes from.
+#[derive(Clone, Debug, Default, Deserialize, PartialEq)]
+#[serde(rename_all = "snake_case", deny_unknown_fields)]
+pub enum Truth {
+    /// The direct sum, or for many grains a much tighter p3m, in the scene's own box without a field solver.
+    #[default]
+    Box,
+    /// Charges in a grounded sphere: Kelvin's images.
+    GroundedSphere {
+        /// Centre [m].
+        centre_m: [f64; 3],
+        /// Radius [m].
+        radius_m: f64,
+    },
+}
+
+/// A method with its parameters.
+#[derive(Clone, Debug, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct Method {
+    /// Name in the report.
+    pub name: String,
+    /// Overrides of the scene, `KEY=VALUE`.
+    #[serde(default)]
+    pub set: Vec<String>,
+    /// One key with several values: a point for each.
+    pub sweep: Option<Sweep>,
+    /// Another program, by the name that the laboratory knows it by; the sweep's values are tolerances then.
+    pub program: Option<String>,
+    /// Problems that it is used on; all if it is absent.
+    pub problems: Option<Vec<String>>,
+    /// Grains beyond which it is left out.
+    pub most_grains: Option<usize>,
+    /// Relative RMS error above which the study fails. Methods that promise a tolerance must keep it anyway.
+    pub most_error: Option<f64>,
+}
+
+/// A key and its values.
+#[derive(Clone, Debug, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct Sweep {
+    /// Key of the scene, as in `--set`.
+    pub key: String,
+    /// Its values.
+    pub values: Vec<toml::Value>,
+    /// What numbers among them are multiplied with: a diameter, a cell.
+    pub times: Option<f64>,
+}
+
+fn three() -> usize {
+    3
+}
+
+fn tenth() -> f64 {
+    0.1
+}
+
+fn ten_thousand() -> usize {
+    10_000
+}
+
+impl Study {
+    /// Reads a study.
+    ///
+    /// # Errors
+    /// A file that cannot be read or is no study: unknown or missing keys, empty sweeps, unknown problems' names.
+    pub fn read(path: &Path) -> Result<Self, StudyError> {
+        let text = std::fs::read_to_string(path)
+            .map_err(|source| StudyError::Read { path: path.to_owned(), source })?;
+        let bad = |reason: String| StudyError::Description { path: path.to_owned(), reason };
+        let study: Self = toml::from_str(&text).map_err(|error| bad(error.to_string()))?;
+        study.check().map_err(bad)?;
+        Ok(study)
+    }
+
+    fn check(&self) -> Result<(), String> {
+        if self.passes == 0 {
+            return Err("passes = 0: nothing would be timed; give 1 or more".to_owned());
+        }
+        if !(self.least_s >= 0.0 && self.least_s < 3600.0) {
+            return Err(format!("least_s = {}: give seconds from 0 to 3600", self.least_s));
+        }
+        if self.problems.is_empty() || self.methods.is_empty() {
+            return Err("a study needs [[problems]] and [[methods]]; add at least one of each".to_owned());
+        }
+        let sweeps = self.problems.iter().map(|p| &p.sweep).chain(self.methods.iter().map(|m| &m.sweep));
+        if let Some(sweep) = sweeps.flatten().find(|sweep| sweep.values.is_empty()) {
+            return Err(format!("sweep over {}: no values; give some or remove it", sweep.key));
+        }
+        let lost = |method: &&Method| method.program.is_some() && method.sweep.is_none();
+        if let Some(method) = self.methods.iter().find(lost) {
+            return Err(format!("method {}: another program needs a sweep over its tolerances", method.name));
+        }
+        let known = |name: &String| self.problems.iter().any(|problem| problem.name == *name);
+        for method in &self.methods {
+            if let Some(name) = method.problems.iter().flatten().find(|name| !known(name)) {
+                return Err(format!("method {}: there is no problem named {name:?}", method.name));
+            }
+        }
+        Ok(())
+    }
+}
+
+impl Sweep {
+    /// The overrides of all values; one empty list without a sweep.
+    pub(super) fn overrides(sweep: Option<&Self>) -> Vec<(Vec<String>, String)> {
+        let Some(Self { key, values, times }) = sweep else { return vec![(Vec::new(), String::new())] };
+        let scaled = |value: &toml::Value| {
+            let number = value.as_float().or_else(|| value.as_integer().map(|value| value as f64));
+            number
+                .zip(*times)
+                .map_or_else(|| value.to_string(), |(number, times)| (number * times).to_string())
+        };
+        values.iter().map(|value| (vec![format!("{key}={}", scaled(value))], value.to_string())).collect()
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn parsed(text: &str) -> Result<(), String> {
+        toml::from_str::<Study>(text).map_err(|error| error.to_string())?.check()
+    }
+
+    #[test]
+    fn bad_studies_are_refused_with_a_reason() {
+        let problem = "[[problems]]\nname = 'a'\nscene = 'a.toml'\n";
+        let method = "[[methods]]\nname = 'p3m'\n";
+        assert_eq!(parsed(&format!("title = 't'\n{problem}{method}")), Ok(()));
+        for (text, reason) in [
+            (format!("title = 't'\npasses = 0\n{problem}{method}"), "passes = 0"),
+            (format!("title = 't'\n{problem}{method}sweep = {{ key = 'x', values = [] }}\n"), "no values"),
+            (format!("title = 't'\n{problem}{method}problems = ['b']\n"), "no problem named"),
+            (format!("title = 't'\n{problem}{method}colour = 1\n"), "unknown field `colour`"),
+            (format!("title = 't'\nmethods = []\n{problem}"), "[[methods]]"),
+        ] {
+            let error = parsed(&text).unwrap_err();
+            assert!(error.contains(reason), "{error}");
+        }
+    }
+
+    #[test]
+    fn sweeps_are_overrides_of_the_scene() {
+        let sweep: Sweep = toml::from_str("key = 'electric_field.tolerance'\nvalues = [1e-2, 3]").unwrap();
+        let overrides: Vec<_> =
+            Sweep::overrides(Some(&sweep)).into_iter().map(|(set, _)| set[0].clone()).collect();
+        assert_eq!(overrides, ["electric_field.tolerance=0.01", "electric_field.tolerance=3"]);
+    }
+}

@@ -1,0 +1,113 @@
+//! What a study needs of whoever computes fields.
+
+use amberfield_core::Vector3;
+use std::path::Path;
+
+/// The exact field of a problem.
+#[derive(Clone, Debug)]
+pub struct Exact {
+    /// E at the grains [V/m].
+    pub e: Vec<Vector3<f64>>,
+    /// What errors are relative to [V/m].
+    pub scale: f64,
+    /// How it was found, in words.
+    pub by: String,
+}
+
+/// One evaluation.
+#[derive(Clone, Debug, Default)]
+pub struct Evaluation {
+    /// E at the grains [V/m].
+    pub e: Vec<Vector3<f64>>,
+    /// Seconds in all.
+    pub seconds: f64,
+    /// Stages and their seconds.
+    pub stages: Vec<(String, f64)>,
+    /// Memory held [bytes].
+    pub memory_bytes: usize,
+    /// Parameters, in words.
+    pub parameters: String,
+    /// Relative RMS error by the a-priori model, if there is one.
+    pub estimated: Option<f64>,
+    /// Tolerance that the method promises to keep, if it promises any.
+    pub promised: Option<f64>,
+    /// Mean number of partners within the cut-off.
+    pub pairs_per_grain: f64,
+}
+
+/// What another program needs.
+#[derive(Clone, Debug, Default)]
+pub struct Peer {
+    /// Relative RMS error of E, against the same truth.
+    pub error: f64,
+    /// Seconds of an evaluation.
+    pub seconds: f64,
+    /// Parameters, in words.
+    pub parameters: String,
+}
+
+/// Where a study was made.
+#[derive(Clone, Debug, Default)]
+pub struct Machine {
+    /// Processor.
+    pub processor: String,
+    /// Threads.
+    pub threads: usize,
+    /// Version of the program, and of what it was made from.
+    pub version: String,
+    /// Date, as 2026-01-31.
+    pub date: String,
+}
+
+/// Computes fields for a study. Errors are sentences for the report: a point that fails is listed, and the study goes on.
+pub trait Laboratory {
+    /// A scene, read.
+    type Problem;
+    /// A method with its parameters chosen.
+    type Method;
+
+    /// The machine.
+    fn machine(&self) -> Machine;
+
+    /// Reads a scene with overrides.
+    ///
+    /// # Errors
+    /// What is wrong with the scene.
+    fn problem(&mut self, scene: &Path, set: &[String]) -> Result<Self::Problem, String>;
+
+    /// Grains of a problem that take part in the field.
+    fn grains(&self, problem: &Self::Problem) -> usize;
+
+    /// Exact field in the scene's own box, without a field solver; the direct sum for at most so many grains.
+    ///
+    /// # Errors
+    /// Why there is none.
+    fn exact(&mut self, problem: &Self::Problem, direct_up_to: usize) -> Result<Exact, String>;
+
+    /// Positions [m], charges [C] and Coulomb's constant of the medium [V·m/C], for truths that the study knows itself.
+    fn charges(&self, problem: &Self::Problem) -> (Vec<Vector3<f64>>, Vec<f64>, f64);
+
+    /// Chooses a method's parameters.
+    ///
+    /// # Errors
+    /// Why it cannot be used.
+    fn method(&mut self, problem: &mut Self::Problem) -> Result<Self::Method, String>;
+
+    /// Another program's fastest parameters whose error is at most a tolerance.
+    ///
+    /// # Errors
+    /// That it is missing or cannot compute this, and what to do.
+    fn peer(
+        &mut self,
+        program: &str,
+        problem: &Self::Problem,
+        exact: &Exact,
+        tolerance: f64,
+    ) -> Result<Peer, String>;
+
+    /// Evaluates the field once.
+    ///
+    /// # Errors
+    /// Why it failed.
+    fn evaluate(&mut self, problem: &Self::Problem, method: &mut Self::Method) -> Result<Evaluation, String>;
+}

@@ -1,0 +1,17 @@
+//! Error against run time: methods and parameters swept over problems, each answer checked against the truth before it is timed.
+//!
+//! A problem is a scene with overrides, a method is more overrides: any point of a study is a scene that everyone can run. What computes
+//! fields is given from outside, see [`Laboratory`].
+
+mod description;
+mod front;
+mod laboratory;
+mod page;
+mod points;
+mod row;
+
+pub use description::{Method, Problem, Study, Sweep, Truth};
+pub use laboratory::{Evaluation, Exact, Laboratory, Machine, Peer};
+pub use page::write_report;
+pub use points::run;
+pub use row::Row;
