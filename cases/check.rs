@@ -15,6 +15,8 @@ mod charging_on_a_wall;
 mod coupled_settling_bed;
 #[path = "electrode-channel/check.rs"]
 mod electrode_channel;
+#[path = "error-vs-runtime/check.rs"]
+mod error_vs_runtime;
 #[path = "grounded-plane/check.rs"]
 mod grounded_plane;
 #[path = "grounded-sphere/check.rs"]

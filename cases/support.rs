@@ -88,6 +88,12 @@ impl Case {
         Table::read(Path::new(out))
     }
 
+    /// `amberfield study` of a file of that name: its page.
+    pub(crate) fn study(&self, file: &str, name: &str) -> String {
+        self.execute(&["study", file, "--out", "study"]);
+        fs::read_to_string(self.path("study").join(format!("{name}.md"))).expect("a page")
+    }
+
     /// `amberfield run scene.toml` with more arguments: the run folder.
     pub(crate) fn run(&self, arguments: &[&str]) -> Run<'_> {
         self.execute(&[&["run", "scene.toml", "--out", "run"], arguments].concat());

@@ -10,3 +10,4 @@ mod interrupt;
 mod openfoam;
 mod run;
 mod scenes;
+mod study;

@@ -73,6 +73,12 @@ pub(crate) mod far {
 #[derive(Debug)]
 pub enum ElectricField {}
 
+/// An error of it.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Measured {
+    pub(crate) relative_rms: f64,
+}
+
 /// What an evaluation is asked for.
 #[derive(Clone, Copy, Debug, Default)]
 #[expect(dead_code, reason = "nothing evaluates it")]
@@ -126,6 +132,14 @@ impl ElectricField {
         _: Wanted,
         _: &mut FieldValues,
     ) -> Result<(), FieldError> {
+        match *self {}
+    }
+
+    pub(crate) fn measure_error(
+        &mut self,
+        _: &[Vector3<f64>],
+        _: &[f64],
+    ) -> Result<Option<Measured>, FieldError> {
         match *self {}
     }
 

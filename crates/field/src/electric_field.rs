@@ -48,19 +48,6 @@ pub struct Measured {
     pub sample: usize,
 }
 
-/// Parameters that can be chosen for a scene.
-#[derive(Clone, Debug, PartialEq)]
-pub struct Candidate {
-    /// The parameters.
-    pub choice: Choice,
-    /// Relative error by the a-priori model; `None` for sums that are exact and while no grain is charged.
-    pub estimated: Option<f64>,
-    /// Relative error found on a sample; `None` likewise.
-    pub measured: Option<Measured>,
-    /// Shortest of a few evaluations [s].
-    pub seconds: f64,
-}
-
 /// Cost of the last evaluation.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Statistics {
@@ -121,39 +108,6 @@ impl ElectricField {
         };
         let field = Self::with_choice(domain, settings, &choice)?;
         Ok(Self { error_estimated, error_measured, ..field })
-    }
-
-    /// What p3m can choose from for the given particles (positions in m, charges in C): the best of each window's order by the cost model, cheapest
-    /// first, and the sum over all pairs where few charges in open space make that worth a look; each with its errors and its time.
-    ///
-    /// # Errors
-    /// As [`Self::new`]; a method without parameters to choose.
-    pub fn candidates(
-        domain: &Domain,
-        settings: &FieldSettings,
-        positions: &[Vector3<f64>],
-        charges: &[f64],
-    ) -> Result<Vec<Candidate>, FieldError> {
-        check_finite(positions, charges)?;
-        if settings.method != Method::P3m {
-            return Err(FieldError::Settings(format!(
-                "method {} has no parameters to choose; set electric_field.method = \"p3m\"",
-                settings.method
-            )));
-        }
-        check(domain, settings, positions, charges)?;
-        let tuner = Tuner::new(domain, settings, positions, charges);
-        let open = Geometry::of(domain)? == Geometry::Open;
-        let mut candidates = tuner.table()?;
-        if open && tuner.all_pairs_are_cheaper(images(domain)) {
-            let (choice, mut values) = (Choice::AllPairs, FieldValues::default());
-            let mut field = Self::with_choice(domain, settings, &choice)?;
-            let start = std::time::Instant::now();
-            field.evaluate(positions, charges, Wanted::default(), &mut values)?;
-            let seconds = start.elapsed().as_secs_f64();
-            candidates.push(Candidate { choice, estimated: None, measured: None, seconds });
-        }
-        Ok(candidates)
     }
 
     /// The field over somebody else's mesh, whose boundary conditions take the place of a domain's: p3m with three levels.
@@ -390,7 +344,7 @@ fn far_level(solver: Box<dyn FarField>, settings: &FieldSettings) -> FarLevel {
 }
 
 /// As p3m checks at every evaluation, before anything is tuned.
-fn check(
+pub(crate) fn check(
     domain: &Domain,
     settings: &FieldSettings,
     positions: &[Vector3<f64>],
@@ -411,6 +365,6 @@ fn cutoff_radius(settings: &FieldSettings) -> Result<f64, FieldError> {
 }
 
 /// Images per charge in a box without closed axes.
-fn images(domain: &Domain) -> usize {
+pub(crate) fn images(domain: &Domain) -> usize {
     ImageLattice::new(domain).axes.iter().map(|axis| axis.images.len()).product()
 }

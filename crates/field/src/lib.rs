@@ -3,6 +3,7 @@
 //! E = near + far + boundary + external (+ correction), see [`ElectricField::evaluate`].
 
 mod boundary_field;
+mod candidates;
 mod chebyshev;
 mod cutoff;
 mod direct;
@@ -28,9 +29,10 @@ mod tuning;
 mod values;
 
 pub use boundary_field::BoundaryField;
+pub use candidates::Candidate;
 pub use cutoff::Cutoff;
 pub use direct::Direct;
-pub use electric_field::{Candidate, Choice, ElectricField, Measured, Statistics};
+pub use electric_field::{Choice, ElectricField, Measured, Statistics};
 pub use error::FieldError;
 pub use kolehmainen::Kolehmainen;
 pub use method::FieldMethod;

@@ -190,8 +190,7 @@ impl FieldStage {
         let far = self.source.field.far_solver();
         self.solver_iterations = far.map_or(0, FarSolver::iterations);
         let missed = far.map_or(0.0, FarSolver::missed);
-        let scale = self.scale(domain);
-        let age = self.control.age;
+        let (scale, age) = (self.scale(domain), self.control.age);
         self.energy.renew(self.energy_of(&self.members, domain), age);
         let mut check = self.forecast.renew(&self.members, &self.values.e, age, scale);
         if let Some(check) = check.as_mut().filter(|_| missed > 0.0) {
@@ -202,6 +201,7 @@ impl FieldStage {
         let FieldSettings { coupling_interval, tolerance, .. } = self.settings;
         self.control.evaluated(check, coupling_interval, tolerance, self.plasma_steps);
         self.travel = 0.0;
+        self.source.recheck(domain, &self.settings, &self.members, self.control.intervals.evaluations)?;
         Ok(())
     }
 

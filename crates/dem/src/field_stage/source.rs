@@ -7,11 +7,14 @@ use crate::field_crate::far::{FarSolver, FarState};
 use crate::field_crate::{Choice, ElectricField, FieldError, FieldValues};
 use crate::setup::FieldStageSetup;
 use crate::state::FieldState;
-use amberfield_core::{Domain, FieldSettings, Vector3};
+use amberfield_core::{Domain, FieldSettings, Tuning, Vector3};
 
 /// Difference between the fields of a solver and of the grid, over E_rms and the tolerance, above which a run says that they
 /// have other boundaries.
 const STRANGERS: f64 = 5.0;
+
+/// Evaluations after which the error is measured again, the first time and from then on; each time costs several evaluations.
+const RECHECK: [u64; 2] = [200, 1000];
 
 /// A field, and what takes its place.
 #[derive(Debug)]
@@ -74,6 +77,48 @@ impl Source {
         tracing::warn!("{lost}; from here on the internal grid takes the field solver's place");
         self.field = ElectricField::with_choice(domain, settings, &choice)?;
         Ok(self.field.evaluate(position, charge, WANTED, values)?)
+    }
+
+    /// Measures the error on a sample of the grains now and then. Where it has left the tolerance, the internal grid chooses new parameters, by its model rather
+    /// than by a stopwatch: a resumed run chooses the same. A field solver's stay, with a warning.
+    pub(super) fn recheck(
+        &mut self,
+        domain: &Domain,
+        settings: &FieldSettings,
+        members: &Members,
+        evaluations: u64,
+    ) -> Result<(), DemError> {
+        if evaluations != RECHECK[0] && !evaluations.is_multiple_of(RECHECK[1]) {
+            return Ok(());
+        }
+        let Members { index, position, charge, .. } = members;
+        let (position, charge) = (&position[..index.len()], &charge[..index.len()]);
+        let Some(measured) = self.field.measure_error(position, charge)? else { return Ok(()) };
+        let (error, tolerance) = (measured.relative_rms, settings.tolerance);
+        if error <= tolerance {
+            tracing::info!("error of the field on a sample: {error:.2e}, tolerance {tolerance:e}");
+            return Ok(());
+        }
+        if self.field.far_solver().is_some() {
+            tracing::warn!(
+                "error of the field on a sample: {error:.2e}, above the tolerance {tolerance:e}; a run that starts from here chooses new parameters"
+            );
+            return Ok(());
+        }
+        let by_model = FieldSettings { tuning: Tuning::Model, ..settings.clone() };
+        match ElectricField::new(domain, &by_model, position, charge) {
+            Ok(field) => {
+                self.field = field;
+                tracing::warn!(
+                    "error of the field on a sample: {error:.2e}, above the tolerance {tolerance:e}; new parameters: {:?}",
+                    self.field.choice()
+                );
+            }
+            Err(reason) => tracing::warn!(
+                "error of the field on a sample: {error:.2e}, above the tolerance {tolerance:e}, and no better parameters: {reason}"
+            ),
+        }
+        Ok(())
     }
 
     /// Evaluates E for onlookers: a field solver goes on from where the motion left it. `false` where it works beside
@@ -143,4 +188,42 @@ fn provide(
         );
     }
     Ok(internal.choice().clone())
+}
+
+#[cfg(all(test, feature = "field"))]
+mod tests {
+    use super::*;
+    use amberfield_core::Boundary;
+
+    #[test]
+    fn parameters_that_no_longer_keep_the_tolerance_are_chosen_anew() {
+        let domain = Domain::new(Vector3::zeros(), Vector3::repeat(1.0), [[Boundary::Grounded; 2]; 3])
+            .expect("a good scene");
+        let at = |i: u32, k: f64| 0.05 + 0.9 * (f64::from(i) * k).fract();
+        let members = Members {
+            index: (0..300).collect(),
+            position: (0..300)
+                .map(|i| Vector3::new(at(i, 0.618_034), at(i, 0.414_214), at(i, 0.302_776)))
+                .collect(),
+            charge: (0..300).map(|i| if i % 2 == 0 { 1e-12 } else { -1e-12 }).collect(),
+            count: 300,
+        };
+        let charges = (&members.position[..], &members.charge[..]);
+        let of =
+            |tolerance: f64| FieldSettings { tolerance, tuning: Tuning::Model, ..FieldSettings::default() };
+        let built = |choice: Option<Choice>, tolerance: f64| {
+            let setup = FieldStageSetup { choice, ..FieldStageSetup::new(of(tolerance), vec![true; 300]) };
+            Source::new(&domain, setup, charges, None).expect("a good scene")
+        };
+        let coarse = built(None, 0.1).field.choice().clone();
+        let mut source = built(Some(coarse.clone()), 1e-3);
+        let mut recheck = |evaluations: u64| {
+            source.recheck(&domain, &of(1e-3), &members, evaluations).expect("a good scene");
+            source.field.choice().clone()
+        };
+        assert_eq!(recheck(RECHECK[0] - 1), coarse);
+        let finer = recheck(RECHECK[0]);
+        assert_ne!(finer, coarse);
+        assert_eq!(recheck(RECHECK[1]), finer);
+    }
 }

@@ -8,7 +8,9 @@ use std::path::{Path, PathBuf};
 #[derive(Clone, Debug, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct Study {
-    /// Headline of the report.
+    /// Name of the page, the pictures and the rows.
+    pub name: String,
+    /// Headline of the page.
     pub title: String,
     /// How often every point is timed, all points of a problem taking turns.
     #[serde(default = "three")]
@@ -119,6 +121,9 @@ impl Study {
     }
 
     fn check(&self) -> Result<(), String> {
+        if self.name.is_empty() || self.name.contains(['/', '\\', '.']) {
+            return Err(format!("name = {:?}: files are named after it; give a word", self.name));
+        }
         if self.passes == 0 {
             return Err("passes = 0: nothing would be timed; give 1 or more".to_owned());
         }
@@ -172,7 +177,7 @@ mod tests {
     fn bad_studies_are_refused_with_a_reason() {
         let problem = "[[problems]]\nname = 'a'\nscene = 'a.toml'\n";
         let method = "[[methods]]\nname = 'p3m'\n";
-        assert_eq!(parsed(&format!("title = 't'\n{problem}{method}")), Ok(()));
+        assert_eq!(parsed(&format!("name = 'n'\ntitle = 't'\n{problem}{method}")), Ok(()));
         for (text, reason) in [
             (format!("title = 't'\npasses = 0\n{problem}{method}"), "passes = 0"),
             (format!("title = 't'\n{problem}{method}sweep = {{ key = 'x', values = [] }}\n"), "no values"),
@@ -180,7 +185,7 @@ mod tests {
             (format!("title = 't'\n{problem}{method}colour = 1\n"), "unknown field `colour`"),
             (format!("title = 't'\nmethods = []\n{problem}"), "[[methods]]"),
         ] {
-            let error = parsed(&text).unwrap_err();
+            let error = parsed(&format!("name = 'n'\n{text}")).unwrap_err();
             assert!(error.contains(reason), "{error}");
         }
     }

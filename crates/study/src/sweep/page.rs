@@ -6,33 +6,36 @@ use super::row::Row;
 use crate::StudyError;
 use crate::plot::{Plot, Scale, Series, write_plot};
 use std::fmt::Write as _;
-use std::path::Path;
+use std::path::{Path, PathBuf};
 
 /// Factor within which the a-priori model is said to be right.
 const WITHIN: f64 = 2.0;
 /// Share of the points at which it should be.
 const SHARE: f64 = 0.9;
 
-/// Writes `report.md` and its pictures (SVG and PNG) into a folder that exists; rows in the order of the study.
+/// Writes the page of a study and its pictures (SVG and PNG) into a folder; rows in the order of the study. Where the page is.
 ///
 /// # Errors
 /// A file that cannot be written.
-pub fn write_report(folder: &Path, study: &Study, rows: &[Row], repeat: &str) -> Result<(), StudyError> {
+pub fn write_report(folder: &Path, study: &Study, rows: &[Row], repeat: &str) -> Result<PathBuf, StudyError> {
+    let pictures = folder.join("pictures");
+    std::fs::create_dir_all(&pictures)
+        .map_err(|source| StudyError::Write { path: pictures.clone(), source })?;
+    let name = &study.name;
     let mut page = format!("# {}\n\n{}", study.title, setting(study, rows, repeat));
     page += &conclusions(rows);
-    let mut pictures = Vec::new();
     for (number, of_problem) in rows.chunk_by(|a, b| a.problem == b.problem).enumerate() {
-        page += &section(of_problem, number);
-        pictures.push((format!("problem-{number}"), of_problem));
+        let picture = format!("{name}-{number}");
+        draw(&pictures, &picture, of_problem)?;
+        page += &section(of_problem, &picture);
     }
-    page += &model(rows);
+    let picture = format!("{name}-model");
+    draw_model(&pictures, &picture, rows)?;
+    page += &model(rows, &picture);
     page += &failures(rows);
-    for (name, of_problem) in pictures {
-        draw(folder, &name, of_problem)?;
-    }
-    draw_model(folder, rows)?;
-    let path = folder.join("report.md");
-    std::fs::write(&path, page).map_err(|source| StudyError::Write { path, source })
+    let path = folder.join(format!("{name}.md"));
+    std::fs::write(&path, page).map_err(|source| StudyError::Write { path: path.clone(), source })?;
+    Ok(path)
 }
 
 fn setting(study: &Study, rows: &[Row], repeat: &str) -> String {
@@ -40,7 +43,7 @@ fn setting(study: &Study, rows: &[Row], repeat: &str) -> String {
     format!(
         "Measured {} with amberfield {} on {}, {} thread{}. Every point is first compared with the truth at every grain, then timed {} times, all points of a problem taking turns, \
          each turn at least {} s long; times are medians. Errors are the root mean square of |ΔE| over the grains, relative to the larger of E_rms and q_rms n^{{2/3}}/(4πε). \
-         All rows, with the command that repeats each, are in [points.csv](points.csv); the whole study is repeated by\n\n    {repeat}\n\n",
+         All rows, with the command that repeats each, are in [data](data/{}-{}.csv); the whole study is repeated by\n\n    {repeat}\n\n",
         first.date,
         first.version,
         first.processor,
@@ -48,52 +51,63 @@ fn setting(study: &Study, rows: &[Row], repeat: &str) -> String {
         if first.threads == 1 { "" } else { "s" },
         study.passes,
         study.least_s,
+        first.date,
+        study.name,
     )
 }
 
 /// What the rows say, in words.
 fn conclusions(rows: &[Row]) -> String {
-    let mut text = "## What it says\n\n".to_owned();
+    let mut text = "## What it says\n\nWhat methods without a promised error, and other programs, reach; the smallest error that p3m reaches in the same time, and p3m's time for the same error:\n\n\
+                    | problem | method | | error | ns/grain | p3m in that time | times less | p3m for that error [ns/grain] | times as fast |\n|---|---|---|---|---|---|---|---|---|\n"
+        .to_owned();
     for of_problem in rows.chunk_by(|a, b| a.problem == b.problem) {
-        for pair in comparisons(of_problem) {
-            let _infallible = writeln!(text, "* {pair}");
-        }
+        text.extend(comparisons(of_problem));
     }
-    let kept = rows.iter().filter(|row| row.bound.is_some() && row.error.is_some());
-    let (broken, all) = (kept.clone().filter(|row| row.breaks_its_bound()).count(), kept.count());
-    let _infallible = writeln!(
-        text,
-        "* Of {all} points with a tolerance or a bound {} keep it.\n",
-        if broken == 0 { "all".to_owned() } else { format!("{} (of {all})", all - broken) }
-    );
+    let bound = rows.iter().filter(|row| row.bound().is_some() && row.error.is_some());
+    let (broken, all) = (bound.clone().filter(|row| row.breaks_its_bound()).count(), bound.count());
+    let _infallible =
+        writeln!(text, "\nOf {all} points with a promised tolerance or a bound, {} keep it.\n", all - broken);
     text
 }
 
-/// For every point that promises nothing, how much smaller the error of the points with a promise is in the same time.
-fn comparisons(rows: &[Row]) -> Vec<String> {
+/// Lines of the points that promise nothing, beside the points with a promise.
+fn comparisons(rows: &[Row]) -> impl Iterator<Item = String> {
     let points = |promises: bool| {
         rows.iter().filter_map(move |row| {
             let known = (row.error?, row.ns_per_grain()?, row);
-            (row.estimated.is_some() == promises).then_some(known)
+            (row.promised.is_some() == promises).then_some(known)
         })
     };
-    let one = |(error, time, row): (f64, f64, &Row)| {
-        let (best, ..) =
-            points(true).filter(|(_, ours, _)| *ours <= time).min_by(|a, b| a.0.total_cmp(&b.0))?;
-        (best > 0.0 && error > 0.0).then(|| {
-            format!(
-                "{}: in the time of {} {} ({:.0} ns a grain, error {:.1e}) the best with a promise errs by {best:.1e}, {:.1} times less.",
-                row.problem, row.method, row.value, time, error, error / best
-            )
-        })
-    };
-    points(false).filter_map(one).collect()
+    points(false).filter(|(error, ..)| *error > 0.0).map(move |(error, ns, row)| {
+        let in_time = points(true).filter(|other| other.1 <= ns).min_by(|a, b| a.0.total_cmp(&b.0));
+        let as_exact = points(true).filter(|other| other.0 <= error).min_by(|a, b| a.1.total_cmp(&b.1));
+        let (best, less) = in_time.map_or(("–".to_owned(), "–".to_owned()), |(best, ..)| {
+            (format!("{best:.1e}"), if best > 0.0 { rounded(error / best) } else { "∞".to_owned() })
+        });
+        let (time, faster) = as_exact.map_or(("–".to_owned(), "–".to_owned()), |(_, other, _)| {
+            (format!("{other:.0}"), rounded(ns / other))
+        });
+        let (problem, method, value) = (&row.problem, &row.method, &row.value);
+        format!("| {problem} | {method} | {value} | {error:.1e} | {ns:.0} | {best} | {less} | {time} | {faster} |\n")
+    })
 }
 
-fn section(rows: &[Row], number: usize) -> String {
+/// A ratio as a sentence gives it.
+fn rounded(ratio: f64) -> String {
+    if ratio < 10.0 {
+        return format!("{ratio:.1}");
+    }
+    let digits = 10_f64.powf(ratio.log10().floor() - 1.0);
+    format!("{:.0}", (ratio / digits).round() * digits)
+}
+
+fn section(rows: &[Row], picture: &str) -> String {
     let Some(first) = rows.first() else { return String::new() };
+    let plot =
+        if is_drawn(rows) { format!("![error and time](pictures/{picture}.svg)\n\n") } else { String::new() };
     let mut text = format!(
-        "## {}\n\n{} grains; truth: {}.\n\n![error and time](problem-{number}.svg)\n\n| method | | error | p99 | worst | bias | ns/grain | spread [%] | pairs/grain | MB | front |\n|---|---|---|---|---|---|---|---|---|---|---|\n",
+        "## {}\n\n{} grains; truth: {}.\n\n{plot}| method | | error | p99 | worst | bias | ns/grain | spread [%] | pairs/grain | MB | front |\n|---|---|---|---|---|---|---|---|---|---|---|\n",
         first.problem, first.grains, first.truth
     );
     let points: Vec<(f64, f64)> =
@@ -128,7 +142,7 @@ fn model_points(rows: &[Row]) -> Vec<(f64, f64)> {
     rows.iter().filter_map(|row| Some((row.estimated?, row.error?))).collect()
 }
 
-fn model(rows: &[Row]) -> String {
+fn model(rows: &[Row], picture: &str) -> String {
     let points = model_points(rows);
     if points.is_empty() {
         return String::new();
@@ -136,7 +150,7 @@ fn model(rows: &[Row]) -> String {
     let within = points.iter().filter(|(model, error)| (error / model).max(model / error) <= WITHIN).count();
     let share = within as f64 / points.len() as f64;
     format!(
-        "## The error model\n\n![predicted and measured error](model.svg)\n\nThe model ([equations](../equations.md#error-model)) is within a factor {WITHIN} of the measured error at {within} of {} points ({:.0} %); \
+        "## The error model\n\n![predicted and measured error](pictures/{picture}.svg)\n\nThe model (docs/equations.md, Error model) is within a factor {WITHIN} of the measured error at {within} of {} points ({:.0} %); \
          goal {:.0} %: {}.\n\n",
         points.len(),
         100.0 * share,
@@ -149,7 +163,7 @@ fn failures(rows: &[Row]) -> String {
     let mut text = "## What failed\n\n".to_owned();
     let broken = rows.iter().filter(|row| row.breaks_its_bound()).map(|row| {
         let number = |value: Option<f64>| value.unwrap_or(f64::NAN);
-        (row, format!("error {:.2e} above {:e}", number(row.error), number(row.bound)))
+        (row, format!("error {:.2e} above {:e}", number(row.error), number(row.bound())))
     });
     let failed = rows.iter().filter(|row| !row.failure.is_empty()).map(|row| (row, row.failure.clone()));
     let all: Vec<_> = failed.chain(broken).collect();
@@ -162,7 +176,15 @@ fn failures(rows: &[Row]) -> String {
     text
 }
 
+/// Whether there is anything to draw.
+fn is_drawn(rows: &[Row]) -> bool {
+    rows.iter().any(|row| row.error.is_some_and(|error| error > 0.0) && row.seconds.is_some())
+}
+
 fn draw(folder: &Path, name: &str, rows: &[Row]) -> Result<(), StudyError> {
+    if !is_drawn(rows) {
+        return Ok(());
+    }
     let mut series: Vec<Series> = Vec::new();
     for row in rows {
         let (Some(error), Some(ns)) = (row.error, row.ns_per_grain()) else { continue };
@@ -186,8 +208,11 @@ fn draw(folder: &Path, name: &str, rows: &[Row]) -> Result<(), StudyError> {
     write_both(folder, name, &plot)
 }
 
-fn draw_model(folder: &Path, rows: &[Row]) -> Result<(), StudyError> {
+fn draw_model(folder: &Path, name: &str, rows: &[Row]) -> Result<(), StudyError> {
     let points = model_points(rows);
+    if points.is_empty() {
+        return Ok(());
+    }
     let ends = points.iter().flat_map(|&(a, b)| [a, b]);
     let (low, high) = ends.fold((f64::INFINITY, 0.0_f64), |(low, high), v| (low.min(v), high.max(v)));
     let line = |factor: f64| vec![(low, low * factor), (high, high * factor)];
@@ -205,15 +230,11 @@ fn draw_model(folder: &Path, rows: &[Row]) -> Result<(), StudyError> {
         series: &series,
         ringed: &[],
     };
-    write_both(folder, "model", &plot)
+    write_both(folder, name, &plot)
 }
 
-/// As SVG and PNG, unless there is nothing to draw.
+/// As SVG and PNG.
 fn write_both(folder: &Path, name: &str, plot: &Plot<'_>) -> Result<(), StudyError> {
-    let shown = |series: &Series| series.points.iter().any(|(x, y)| *x > 0.0 && *y > 0.0);
-    if !plot.series.iter().any(shown) {
-        return Ok(());
-    }
     write_plot(&folder.join(format!("{name}.svg")), plot)?;
     write_plot(&folder.join(format!("{name}.png")), plot)
 }

@@ -83,7 +83,7 @@ impl Setting<'_> {
                     truth: exact.by.clone(),
                     method: method.name.clone(),
                     value,
-                    bound: method.most_error,
+                    allowed: method.most_error,
                     command: command(self.scene, &set),
                     ..self.row()
                 };
@@ -153,7 +153,7 @@ fn checked<L: Laboratory>(
             row.worst = Some(norms.worst);
             row.bias = Some(bias(&evaluation.e, &exact.e));
             row.estimated = evaluation.estimated;
-            row.bound = row.bound.or(evaluation.promised);
+            row.promised = evaluation.promised;
             row.memory_bytes = Some(evaluation.memory_bytes);
             row.pairs_per_grain = Some(evaluation.pairs_per_grain);
             row.parameters = evaluation.parameters;

@@ -35,8 +35,10 @@ pub struct Row {
     pub bias: Option<f64>,
     /// Error that the a-priori model expected.
     pub estimated: Option<f64>,
-    /// Tolerance or bound that must be kept.
-    pub bound: Option<f64>,
+    /// Tolerance that the method promises to keep.
+    pub promised: Option<f64>,
+    /// Error that the study allows.
+    pub allowed: Option<f64>,
     /// Median seconds of an evaluation, over all turns.
     pub seconds: Option<f64>,
     /// Fastest and slowest turn's median [s].
@@ -62,9 +64,15 @@ impl Row {
         Some(1e9 * self.seconds? / self.grains.max(1) as f64)
     }
 
-    /// Whether an error above its bound, or none at all, makes the study fail.
+    /// Error above which the study fails: what is promised or allowed, the smaller of the two.
+    #[must_use]
+    pub fn bound(&self) -> Option<f64> {
+        [self.promised, self.allowed].into_iter().flatten().min_by(f64::total_cmp)
+    }
+
+    /// Whether the error is above its bound.
     #[must_use]
     pub fn breaks_its_bound(&self) -> bool {
-        matches!((self.error, self.bound), (Some(error), Some(bound)) if error.is_nan() || error > bound)
+        matches!((self.error, self.bound()), (Some(error), Some(bound)) if error.is_nan() || error > bound)
     }
 }

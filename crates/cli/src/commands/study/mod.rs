@@ -5,7 +5,7 @@ mod peers;
 use crate::arguments::StudyOptions;
 use crate::failure::Failure;
 use crate::print::line;
-use crate::run::{connect_solver, domain_of, field_of, members, parameters, scene_name};
+use crate::run::{connect_solver, domain_of, field_of, members, parameters};
 use crate::{machine, not_built};
 use amberfield_core::constants::coulomb_constant;
 use amberfield_core::{Domain, FieldSettings, Method, Tuning, Vector3};
@@ -23,12 +23,12 @@ const TRUTH: f64 = 1e-8;
 /// Runs a study and writes its rows, plots and page.
 pub(crate) fn study(options: &StudyOptions) -> Result<(), Failure> {
     let study = Study::read(&options.study).map_err(|error| Failure::of_study(&error))?;
-    let out =
-        options.out.clone().unwrap_or_else(|| PathBuf::from(format!("{}-study", scene_name(&options.study))));
-    std::fs::create_dir_all(&out)
-        .map_err(|error| Failure::bad_input(format!("cannot make {}: {error}", out.display())))?;
+    let out = options.out.clone().unwrap_or_else(|| PathBuf::from(format!("{}-study", study.name)));
+    let data = out.join("data");
+    std::fs::create_dir_all(&data)
+        .map_err(|error| Failure::bad_input(format!("cannot make {}: {error}", data.display())))?;
     let folder = options.study.parent().unwrap_or_else(|| Path::new(""));
-    let table = out.join("points.csv");
+    let table = data.join(format!("{}-{}.csv", machine::today(), study.name));
     let mut known: Vec<Row> = Vec::new();
     let mut unwritten = Ok(());
     let rows = sweep::run(&study, folder, &mut Bench, |rows| {
@@ -41,8 +41,9 @@ pub(crate) fn study(options: &StudyOptions) -> Result<(), Failure> {
     });
     unwritten?;
     let repeat = format!("amberfield study {}", options.study.display());
-    sweep::write_report(&out, &study, &rows, &repeat).map_err(|error| Failure::of_study(&error))?;
-    line(format_args!("{} points; report: {}", rows.len(), out.join("report.md").display()));
+    let page =
+        sweep::write_report(&out, &study, &rows, &repeat).map_err(|error| Failure::of_study(&error))?;
+    line(format_args!("{} points; page: {}", rows.len(), page.display()));
     let broken: Vec<_> = rows.iter().filter(|row| row.breaks_its_bound()).collect();
     match broken.first() {
         None => Ok(()),
