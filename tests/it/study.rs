@@ -35,6 +35,24 @@ fn study_writes_rows_plots_and_a_page_that_say_the_same() {
 }
 
 #[test]
+fn whole_runs_are_compared_with_a_finer_one() {
+    let walls = "[time]\nstep_s = 2e-6\nend_s = 4e-4\ngravity_m_s2 = [0, 0, -9.81]\n[output]\nevery_s = 4e-4\nformats = ['csv']\n";
+    let bench = Bench::new(&format!("{BOX}{walls}"));
+    let study = "name = 'runs'\ntitle = 'Runs'\n[[motions]]\nname = 'falling'\nscene = 'scene.toml'\nreference = ['electric_field.tolerance=1e-5', 'electric_field.coupling_interval=1', 'electric_field.tuning=model']\n\
+         replicas = { key = 'particles.generate.seed', values = [2, 3] }\n[[motions.variants]]\nname = 'tolerance'\nsweep = { key = 'electric_field.tolerance', values = [1e-2, 1e-5] }\n";
+    bench.write("study.toml", study);
+    let answer = bench.run(&["study", "study.toml", "--out", "out"]);
+    assert_eq!(answer.code, Some(0), "{}", answer.stderr);
+    let data = bench.names("out/data");
+    assert!(data.len() == 1 && data[0].ends_with("-runs-motions.csv"), "{data:?}");
+    let table = Table::parse(&bench.read(&format!("out/data/{}", data[0])));
+    let error = table.numbers("position_error");
+    assert!(error[0] > 1e-12 && error[0] < 1e-6, "{error:?}");
+    assert_eq!(error[1], 0.0, "the reference's own settings");
+    assert!(bench.read("out/runs.md").contains("## falling"));
+}
+
+#[test]
 fn study_fails_where_an_error_is_above_its_bound() {
     let bench = bench(
         "[[methods]]\nname = 'cut-off'\nset = ['electric_field.method=cutoff', 'electric_field.field_cutoff_radius=1e-3']\nmost_error = 1e-3\n",

@@ -22,9 +22,14 @@ pub struct Study {
     #[serde(default = "ten_thousand")]
     pub direct_up_to: usize,
     /// What is computed.
+    #[serde(default)]
     pub problems: Vec<Problem>,
     /// What computes it.
+    #[serde(default)]
     pub methods: Vec<Method>,
+    /// Whole runs.
+    #[serde(default)]
+    pub motions: Vec<Motion>,
 }
 
 /// Charges in a box, or a cavity.
@@ -82,6 +87,25 @@ pub struct Method {
     pub most_error: Option<f64>,
 }
 
+/// A run with settings that are compared with much finer ones.
+#[derive(Clone, Debug, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct Motion {
+    /// Name in the report.
+    pub name: String,
+    /// Scene file, beside the study.
+    pub scene: PathBuf,
+    /// Overrides of the scene, `KEY=VALUE`.
+    #[serde(default)]
+    pub set: Vec<String>,
+    /// More overrides, which make the reference.
+    pub reference: Vec<String>,
+    /// A key, such as the seed, whose values give replicas of the reference.
+    pub replicas: Option<Sweep>,
+    /// Overrides on top of the reference's, each a run or several.
+    pub variants: Vec<Method>,
+}
+
 /// A key and its values.
 #[derive(Clone, Debug, Deserialize)]
 #[serde(deny_unknown_fields)]
@@ -130,10 +154,21 @@ impl Study {
         if !(self.least_s >= 0.0 && self.least_s < 3600.0) {
             return Err(format!("least_s = {}: give seconds from 0 to 3600", self.least_s));
         }
-        if self.problems.is_empty() || self.methods.is_empty() {
-            return Err("a study needs [[problems]] and [[methods]]; add at least one of each".to_owned());
+        if (self.problems.is_empty() || self.methods.is_empty()) && self.motions.is_empty() {
+            return Err(
+                "a study needs [[problems]] and [[methods]], or [[motions]]; add at least one of each"
+                    .to_owned(),
+            );
         }
         let sweeps = self.problems.iter().map(|p| &p.sweep).chain(self.methods.iter().map(|m| &m.sweep));
+        let of_motion = |m: &'_ Motion| {
+            std::iter::once(m.replicas.clone())
+                .chain(m.variants.iter().map(|v| v.sweep.clone()))
+                .collect::<Vec<_>>()
+        };
+        if self.motions.iter().flat_map(of_motion).flatten().any(|sweep| sweep.values.is_empty()) {
+            return Err("a sweep of [[motions]] has no values; give some or remove it".to_owned());
+        }
         if let Some(sweep) = sweeps.flatten().find(|sweep| sweep.values.is_empty()) {
             return Err(format!("sweep over {}: no values; give some or remove it", sweep.key));
         }
@@ -152,16 +187,20 @@ impl Study {
 }
 
 impl Sweep {
-    /// The overrides of all values; one empty list without a sweep.
+    /// The overrides of all values, and how the report shows each; one empty list without a sweep.
     pub(super) fn overrides(sweep: Option<&Self>) -> Vec<(Vec<String>, String)> {
         let Some(Self { key, values, times }) = sweep else { return vec![(Vec::new(), String::new())] };
+        let shown = |value: &toml::Value| match value.as_float() {
+            Some(number) if number != 0.0 && number.abs() < 1e-2 => format!("{number:e}"),
+            _ => value.to_string(),
+        };
         let scaled = |value: &toml::Value| {
             let number = value.as_float().or_else(|| value.as_integer().map(|value| value as f64));
             number
                 .zip(*times)
                 .map_or_else(|| value.to_string(), |(number, times)| (number * times).to_string())
         };
-        values.iter().map(|value| (vec![format!("{key}={}", scaled(value))], value.to_string())).collect()
+        values.iter().map(|value| (vec![format!("{key}={}", scaled(value))], shown(value))).collect()
     }
 }
 

@@ -46,6 +46,36 @@ pub struct Peer {
     pub parameters: String,
 }
 
+/// A run.
+#[derive(Clone, Debug, Default)]
+pub struct Moved {
+    /// Positions [m] at the start and at every look.
+    pub positions: Vec<Vec<Vector3<f64>>>,
+    /// Charges [C] likewise.
+    pub charges: Vec<Vec<f64>>,
+    /// Time at the end [s].
+    pub end_s: f64,
+    /// Wall-clock seconds.
+    pub seconds: f64,
+    /// Steps.
+    pub steps: u64,
+    /// Evaluations of the field.
+    pub evaluations: u64,
+    /// Kinetic energy at the end [J].
+    pub kinetic_j: f64,
+    /// Contacts per grain at the end.
+    pub contacts_per_grain: f64,
+}
+
+impl Moved {
+    /// Mean height [m], kinetic energy [J] and contacts per grain at the end.
+    pub(super) fn statistics(&self) -> [f64; 3] {
+        let last = self.positions.last().map_or(&[][..], |last| last);
+        let height = last.iter().map(|position| position.z).sum::<f64>() / last.len().max(1) as f64;
+        [height, self.kinetic_j, self.contacts_per_grain]
+    }
+}
+
 /// Where a study was made.
 #[derive(Clone, Debug, Default)]
 pub struct Machine {
@@ -104,6 +134,12 @@ pub trait Laboratory {
         exact: &Exact,
         tolerance: f64,
     ) -> Result<Peer, String>;
+
+    /// Runs a scene to its end, its grains displaced by so many radii before it starts, and looks at it so many times, evenly in time, and at the start.
+    ///
+    /// # Errors
+    /// Why it cannot be run.
+    fn simulate(&mut self, scene: &Path, set: &[String], nudge: f64, looks: usize) -> Result<Moved, String>;
 
     /// Evaluates the field once.
     ///

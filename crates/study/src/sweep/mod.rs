@@ -6,12 +6,15 @@
 mod description;
 mod front;
 mod laboratory;
+mod motion;
+mod motion_page;
 mod page;
 mod points;
 mod row;
 
-pub use description::{Method, Problem, Study, Sweep, Truth};
-pub use laboratory::{Evaluation, Exact, Laboratory, Machine, Peer};
+pub use description::{Method, Motion, Problem, Study, Sweep, Truth};
+pub use laboratory::{Evaluation, Exact, Laboratory, Machine, Moved, Peer};
+pub use motion::{MotionRow, run_motions};
 pub use page::write_report;
 pub use points::run;
 pub use row::Row;

@@ -2,6 +2,8 @@
 
 use super::description::Study;
 use super::front::front;
+use super::motion::MotionRow;
+use super::motion_page;
 use super::row::Row;
 use crate::StudyError;
 use crate::plot::{Plot, Scale, Series, write_plot};
@@ -17,18 +19,27 @@ const SHARE: f64 = 0.9;
 ///
 /// # Errors
 /// A file that cannot be written.
-pub fn write_report(folder: &Path, study: &Study, rows: &[Row], repeat: &str) -> Result<PathBuf, StudyError> {
+pub fn write_report(
+    folder: &Path,
+    study: &Study,
+    (rows, motions): (&[Row], &[MotionRow]),
+    repeat: &str,
+) -> Result<PathBuf, StudyError> {
     let pictures = folder.join("pictures");
     std::fs::create_dir_all(&pictures)
         .map_err(|source| StudyError::Write { path: pictures.clone(), source })?;
     let name = &study.name;
-    let mut page = format!("# {}\n\n{}", study.title, setting(study, rows, repeat));
-    page += &conclusions(rows);
+    let mut page = format!("# {}\n\n{}", study.title, setting(study, (rows, motions), repeat));
+    if !rows.is_empty() {
+        page += &conclusions(rows);
+    }
     for (number, of_problem) in rows.chunk_by(|a, b| a.problem == b.problem).enumerate() {
         let picture = format!("{name}-{number}");
         draw(&pictures, &picture, of_problem)?;
         page += &section(of_problem, &picture);
     }
+    motion_page::draw(&pictures, motions, name)?;
+    page += &motion_page::section(motions, name);
     let picture = format!("{name}-model");
     draw_model(&pictures, &picture, rows)?;
     page += &model(rows, &picture);
@@ -38,22 +49,24 @@ pub fn write_report(folder: &Path, study: &Study, rows: &[Row], repeat: &str) ->
     Ok(path)
 }
 
-fn setting(study: &Study, rows: &[Row], repeat: &str) -> String {
-    let first = rows.first().cloned().unwrap_or_default();
-    format!(
-        "Measured {} with amberfield {} on {}, {} thread{}. Every point is first compared with the truth at every grain, then timed {} times, all points of a problem taking turns, \
-         each turn at least {} s long; times are medians. Errors are the root mean square of |ΔE| over the grains, relative to the larger of E_rms and q_rms n^{{2/3}}/(4πε). \
-         All rows, with the command that repeats each, are in [data](data/{}-{}.csv); the whole study is repeated by\n\n    {repeat}\n\n",
-        first.date,
-        first.version,
-        first.processor,
-        first.threads,
-        if first.threads == 1 { "" } else { "s" },
-        study.passes,
-        study.least_s,
-        first.date,
-        study.name,
-    )
+fn setting(study: &Study, (rows, motions): (&[Row], &[MotionRow]), repeat: &str) -> String {
+    let of_row = rows.first().map(|row| (&row.date, &row.version, &row.processor, row.threads));
+    let of_motion = motions.first().map(|row| (&row.date, &row.version, &row.processor, row.threads));
+    let Some((date, version, processor, threads)) = of_row.or(of_motion) else { return String::new() };
+    let plural = if threads == 1 { "" } else { "s" };
+    let mut text =
+        format!("Measured {date} with amberfield {version} on {processor}, {threads} thread{plural}. ");
+    if !rows.is_empty() {
+        let _infallible = write!(
+            text,
+            "Every point is first compared with the truth at every grain, then timed {} times, all points of a problem taking turns, \
+             each turn at least {} s long; times are medians. Errors are the root mean square of |ΔE| over the grains, relative to the larger of E_rms and q_rms n^{{2/3}}/(4πε). \
+             All rows, with the command that repeats each, are in [data](data/{date}-{}.csv). ",
+            study.passes, study.least_s, study.name,
+        );
+    }
+    let _infallible = write!(text, "The whole study is repeated by\n\n    {repeat}\n\n");
+    text
 }
 
 /// What the rows say, in words.
@@ -234,7 +247,7 @@ fn draw_model(folder: &Path, name: &str, rows: &[Row]) -> Result<(), StudyError>
 }
 
 /// As SVG and PNG.
-fn write_both(folder: &Path, name: &str, plot: &Plot<'_>) -> Result<(), StudyError> {
+pub(super) fn write_both(folder: &Path, name: &str, plot: &Plot<'_>) -> Result<(), StudyError> {
     write_plot(&folder.join(format!("{name}.svg")), plot)?;
     write_plot(&folder.join(format!("{name}.png")), plot)
 }

@@ -84,7 +84,7 @@ impl Setting<'_> {
                     method: method.name.clone(),
                     value,
                     allowed: method.most_error,
-                    command: command(self.scene, &set),
+                    command: command("field", self.scene, &set),
                     ..self.row()
                 };
                 points.push(match &method.program {
@@ -126,10 +126,10 @@ impl Setting<'_> {
     }
 }
 
-/// The command that evaluates a point by hand.
-fn command(scene: &Path, set: &[String]) -> String {
+/// The command that repeats a point by hand.
+pub(super) fn command(verb: &str, scene: &Path, set: &[String]) -> String {
     let set: String = set.iter().map(|set| format!(" --set '{set}'")).collect();
-    format!("amberfield field {}{set} --repeat 5", scene.display())
+    format!("amberfield {verb} {}{set}", scene.display())
 }
 
 /// A point whose error is known, or its failure.

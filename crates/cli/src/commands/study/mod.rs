@@ -1,5 +1,6 @@
 //! `amberfield study`.
 
+mod motion;
 mod peers;
 
 use crate::arguments::StudyOptions;
@@ -12,7 +13,7 @@ use amberfield_core::{Domain, FieldSettings, Method, Tuning, Vector3};
 use amberfield_field::{ElectricField, FieldValues, Wanted};
 use amberfield_oracle::field_scale;
 use amberfield_scene::{Purpose, Scene, read_scene, write_table};
-use amberfield_study::sweep::{self, Evaluation, Exact, Laboratory, Machine, Peer, Row, Study};
+use amberfield_study::sweep::{self, Evaluation, Exact, Laboratory, Machine, Moved, Peer, Row, Study};
 use std::path::{Path, PathBuf};
 use std::process::Command;
 use std::time::Instant;
@@ -40,9 +41,16 @@ pub(crate) fn study(options: &StudyOptions) -> Result<(), Failure> {
         unwritten = write_table(&table, &known);
     });
     unwritten?;
+    let (mut of_motions, mut unwritten) = (Vec::new(), Ok(()));
+    let motions = sweep::run_motions(&study, folder, &mut Bench, |row| {
+        tracing::info!("{}, {} {}: {:?} s", row.problem, row.method, row.value, row.seconds);
+        of_motions.push(row.clone());
+        unwritten = write_table(&data.join(format!("{}-{}-motions.csv", row.date, study.name)), &of_motions);
+    });
+    unwritten?;
     let repeat = format!("amberfield study {}", options.study.display());
-    let page =
-        sweep::write_report(&out, &study, &rows, &repeat).map_err(|error| Failure::of_study(&error))?;
+    let page = sweep::write_report(&out, &study, (&rows, &motions), &repeat)
+        .map_err(|error| Failure::of_study(&error))?;
     line(format_args!("{} points; page: {}", rows.len(), page.display()));
     let broken: Vec<_> = rows.iter().filter(|row| row.breaks_its_bound()).collect();
     match broken.first() {
@@ -171,6 +179,10 @@ impl Laboratory for Bench {
         tolerance: f64,
     ) -> Result<Peer, String> {
         peers::run(program, problem, exact, tolerance)
+    }
+
+    fn simulate(&mut self, scene: &Path, set: &[String], nudge: f64, looks: usize) -> Result<Moved, String> {
+        motion::simulate(scene, set, nudge, looks)
     }
 
     fn evaluate(&mut self, problem: &Charged, method: &mut Built) -> Result<Evaluation, String> {
