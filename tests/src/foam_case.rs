@@ -54,7 +54,8 @@ pub fn write_case(bench: &Bench, mesh: &str, conditions: &str, gradient: &str) {
 /// When it fails.
 pub fn foam_program(bench: &Bench, program: &str, options: &[&str]) {
     let mut command = Command::new(program);
-    command.args(options).arg("-case").arg(bench.path("foam"));
+    // Some leave pictures of what they found where they run.
+    command.args(options).arg("-case").arg(bench.path("foam")).current_dir(bench.path(""));
     if std::env::var_os("WM_PROJECT_DIR").is_none() {
         command.env("WM_PROJECT_DIR", "/usr/share/openfoam");
     }

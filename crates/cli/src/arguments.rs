@@ -143,6 +143,9 @@ pub(crate) struct StudyOptions {
     /// Folder of the results (default: named after the study)
     #[arg(long, value_name = "DIR")]
     pub(crate) out: Option<PathBuf>,
+    /// Measure nothing: write the page anew from the newest rows in the folder
+    #[arg(long)]
+    pub(crate) page: bool,
 }
 
 /// Options of `doctor`.

@@ -17,6 +17,6 @@ pub use scene::{
 };
 pub use write::{
     Cell, FacetCell, FieldColumns, FieldReport, FieldReportSeconds, History, PvdSeries, read_checkpoint,
-    write_atomically, write_checkpoint, write_facets_vtu, write_field_csv, write_json, write_particles_csv,
-    write_table, write_text, write_vtu,
+    read_table, write_atomically, write_checkpoint, write_facets_vtu, write_field_csv, write_json,
+    write_particles_csv, write_table, write_text, write_vtu,
 };

@@ -2,6 +2,7 @@
 
 use crate::SceneError;
 use serde::Serialize;
+use serde::de::DeserializeOwned;
 use std::io::{self, BufWriter, Write};
 use std::path::Path;
 
@@ -53,6 +54,18 @@ pub fn write_table<R: Serialize>(path: &Path, rows: &[R]) -> Result<(), SceneErr
         rows.iter().try_for_each(|row| table.serialize(row))?;
         table.flush()
     })
+}
+
+/// Reads what [`write_table`] wrote.
+///
+/// # Errors
+/// A file that cannot be read, a row of another kind.
+pub fn read_table<R: DeserializeOwned>(path: &Path) -> Result<Vec<R>, SceneError> {
+    let file = path.display().to_string();
+    let failed =
+        |reason: csv::Error| SceneError::Unreadable { file: file.clone(), reason: reason.to_string() };
+    let mut reader = csv::Reader::from_path(path).map_err(failed)?;
+    reader.deserialize().map(|row| row.map_err(failed)).collect()
 }
 
 /// Writes a text.

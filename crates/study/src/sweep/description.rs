@@ -30,6 +30,9 @@ pub struct Study {
     /// Whole runs.
     #[serde(default)]
     pub motions: Vec<Motion>,
+    /// What should come out.
+    #[serde(default)]
+    pub goals: Vec<Goal>,
 }
 
 /// Charges in a box, or a cavity.
@@ -106,6 +109,35 @@ pub struct Motion {
     pub variants: Vec<Method>,
 }
 
+/// What should come out of a study. Exactly one of `times_less`, `times_as_fast` and `at_most` says what.
+#[derive(Clone, Debug, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct Goal {
+    /// The goal in words.
+    pub text: String,
+    /// Method that it is about.
+    pub method: String,
+    /// One value of its sweep; all if it is absent.
+    pub value: Option<String>,
+    /// Problems; all if it is absent.
+    pub problems: Option<Vec<String>>,
+    /// In the method's time, the best with a promise errs so many times less.
+    pub times_less: Option<f64>,
+    /// For the method's error, the fastest with a promise is so many times as fast.
+    pub times_as_fast: Option<f64>,
+    /// The method's time on the first problem is at most `at_most` times that on the second.
+    pub price: Option<[String; 2]>,
+    /// See `price`.
+    pub at_most: Option<f64>,
+}
+
+impl Goal {
+    /// Whether it is about a problem.
+    pub(super) fn is_about(&self, problem: &String) -> bool {
+        self.problems.as_ref().is_none_or(|problems| problems.contains(problem))
+    }
+}
+
 /// A key and its values.
 #[derive(Clone, Debug, Deserialize)]
 #[serde(deny_unknown_fields)]
@@ -175,6 +207,16 @@ impl Study {
         let lost = |method: &&Method| method.program.is_some() && method.sweep.is_none();
         if let Some(method) = self.methods.iter().find(lost) {
             return Err(format!("method {}: another program needs a sweep over its tolerances", method.name));
+        }
+        let vague = |goal: &&Goal| {
+            let wanted = [goal.times_less, goal.times_as_fast, goal.at_most];
+            wanted.iter().flatten().count() != 1 || goal.at_most.is_some() != goal.price.is_some()
+        };
+        if let Some(goal) = self.goals.iter().find(vague) {
+            return Err(format!(
+                "goal {:?}: give one of times_less, times_as_fast, at_most, the last with price = [\"dear\", \"cheap\"]",
+                goal.text
+            ));
         }
         let known = |name: &String| self.problems.iter().any(|problem| problem.name == *name);
         for method in &self.methods {

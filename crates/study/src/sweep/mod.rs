@@ -3,6 +3,7 @@
 //! A problem is a scene with overrides, a method is more overrides: any point of a study is a scene that everyone can run. What computes
 //! fields is given from outside, see [`Laboratory`].
 
+mod comparison;
 mod description;
 mod front;
 mod laboratory;
@@ -12,7 +13,7 @@ mod page;
 mod points;
 mod row;
 
-pub use description::{Method, Motion, Problem, Study, Sweep, Truth};
+pub use description::{Goal, Method, Motion, Problem, Study, Sweep, Truth};
 pub use laboratory::{Evaluation, Exact, Laboratory, Machine, Moved, Peer};
 pub use motion::{MotionRow, run_motions};
 pub use page::write_report;

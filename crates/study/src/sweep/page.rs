@@ -1,5 +1,6 @@
 //! The report: tables, plots and conclusions, from rows only.
 
+use super::comparison::{Comparison, comparisons, verdict};
 use super::description::Study;
 use super::front::front;
 use super::motion::MotionRow;
@@ -31,7 +32,7 @@ pub fn write_report(
     let name = &study.name;
     let mut page = format!("# {}\n\n{}", study.title, setting(study, (rows, motions), repeat));
     if !rows.is_empty() {
-        page += &conclusions(rows);
+        page += &conclusions(study, rows);
     }
     for (number, of_problem) in rows.chunk_by(|a, b| a.problem == b.problem).enumerate() {
         let picture = format!("{name}-{number}");
@@ -70,40 +71,39 @@ fn setting(study: &Study, (rows, motions): (&[Row], &[MotionRow]), repeat: &str)
 }
 
 /// What the rows say, in words.
-fn conclusions(rows: &[Row]) -> String {
-    let mut text = "## What it says\n\nWhat methods without a promised error, and other programs, reach; the smallest error that p3m reaches in the same time, and p3m's time for the same error:\n\n\
-                    | problem | method | | error | ns/grain | p3m in that time | times less | p3m for that error [ns/grain] | times as fast |\n|---|---|---|---|---|---|---|---|---|\n"
-        .to_owned();
-    for of_problem in rows.chunk_by(|a, b| a.problem == b.problem) {
-        text.extend(comparisons(of_problem));
+fn conclusions(study: &Study, rows: &[Row]) -> String {
+    let mut text = "## What it says\n\n".to_owned();
+    for goal in &study.goals {
+        let said = match verdict(goal, rows) {
+            None => "not measured".to_owned(),
+            Some((worst, met, count)) => {
+                let word = if met { "**met**" } else { "**missed**" };
+                format!("{word} (worst of {count}: {})", rounded(worst))
+            }
+        };
+        let _infallible = writeln!(text, "* {}: {said}.", goal.text);
     }
     let bound = rows.iter().filter(|row| row.bound().is_some() && row.error.is_some());
     let (broken, all) = (bound.clone().filter(|row| row.breaks_its_bound()).count(), bound.count());
     let _infallible =
-        writeln!(text, "\nOf {all} points with a promised tolerance or a bound, {} keep it.\n", all - broken);
-    text
-}
-
-/// Lines of the points that promise nothing, beside the points with a promise.
-fn comparisons(rows: &[Row]) -> impl Iterator<Item = String> {
-    let points = |promises: bool| {
-        rows.iter().filter_map(move |row| {
-            let known = (row.error?, row.ns_per_grain()?, row);
-            (row.promised.is_some() == promises).then_some(known)
-        })
-    };
-    points(false).filter(|(error, ..)| *error > 0.0).map(move |(error, ns, row)| {
-        let in_time = points(true).filter(|other| other.1 <= ns).min_by(|a, b| a.0.total_cmp(&b.0));
-        let as_exact = points(true).filter(|other| other.0 <= error).min_by(|a, b| a.1.total_cmp(&b.1));
-        let (best, less) = in_time.map_or(("–".to_owned(), "–".to_owned()), |(best, ..)| {
+        writeln!(text, "* Of {all} points with a promised tolerance or a bound, {} keep it.\n", all - broken);
+    text += "What methods without a promised error, and other programs, reach; the smallest error that p3m reaches in the same time, and p3m's time for the same error:\n\n\
+             | problem | method | | error | ns/grain | p3m in that time | times less | p3m for that error [ns/grain] | times as fast |\n|---|---|---|---|---|---|---|---|---|\n";
+    for Comparison { row, error, ns, in_time, as_exact } in
+        rows.chunk_by(|a, b| a.problem == b.problem).flat_map(comparisons)
+    {
+        let none = || ("–".to_owned(), "–".to_owned());
+        let (best, less) = in_time.map_or_else(none, |best| {
             (format!("{best:.1e}"), if best > 0.0 { rounded(error / best) } else { "∞".to_owned() })
         });
-        let (time, faster) = as_exact.map_or(("–".to_owned(), "–".to_owned()), |(_, other, _)| {
-            (format!("{other:.0}"), rounded(ns / other))
-        });
-        let (problem, method, value) = (&row.problem, &row.method, &row.value);
-        format!("| {problem} | {method} | {value} | {error:.1e} | {ns:.0} | {best} | {less} | {time} | {faster} |\n")
-    })
+        let (time, faster) = as_exact.map_or_else(none, |other| (format!("{other:.0}"), rounded(ns / other)));
+        let Row { problem, method, value, .. } = row;
+        let _infallible = writeln!(
+            text,
+            "| {problem} | {method} | {value} | {error:.1e} | {ns:.0} | {best} | {less} | {time} | {faster} |"
+        );
+    }
+    text + "\n"
 }
 
 /// A ratio as a sentence gives it.

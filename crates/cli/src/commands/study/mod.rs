@@ -12,8 +12,11 @@ use amberfield_core::constants::coulomb_constant;
 use amberfield_core::{Domain, FieldSettings, Method, Tuning, Vector3};
 use amberfield_field::{ElectricField, FieldValues, Wanted};
 use amberfield_oracle::field_scale;
-use amberfield_scene::{Purpose, Scene, read_scene, write_table};
-use amberfield_study::sweep::{self, Evaluation, Exact, Laboratory, Machine, Moved, Peer, Row, Study};
+use amberfield_scene::{Purpose, Scene, read_scene, read_table, write_table};
+use amberfield_study::sweep::{
+    self, Evaluation, Exact, Laboratory, Machine, MotionRow, Moved, Peer, Row, Study,
+};
+use serde::de::DeserializeOwned;
 use std::path::{Path, PathBuf};
 use std::process::Command;
 use std::time::Instant;
@@ -28,30 +31,15 @@ pub(crate) fn study(options: &StudyOptions) -> Result<(), Failure> {
     let data = out.join("data");
     std::fs::create_dir_all(&data)
         .map_err(|error| Failure::bad_input(format!("cannot make {}: {error}", data.display())))?;
-    let folder = options.study.parent().unwrap_or_else(|| Path::new(""));
-    let table = data.join(format!("{}-{}.csv", machine::today(), study.name));
-    let mut known: Vec<Row> = Vec::new();
-    let mut unwritten = Ok(());
-    let rows = sweep::run(&study, folder, &mut Bench, |rows| {
-        for row in rows {
-            tracing::info!("{}", told(row));
-        }
-        // What is known is on the disk, should the rest never come.
-        known.extend_from_slice(rows);
-        unwritten = write_table(&table, &known);
-    });
-    unwritten?;
-    let (mut of_motions, mut unwritten) = (Vec::new(), Ok(()));
-    let motions = sweep::run_motions(&study, folder, &mut Bench, |row| {
-        tracing::info!("{}, {} {}: {:?} s", row.problem, row.method, row.value, row.seconds);
-        of_motions.push(row.clone());
-        unwritten = write_table(&data.join(format!("{}-{}-motions.csv", row.date, study.name)), &of_motions);
-    });
-    unwritten?;
+    let (rows, motions) = if options.page {
+        (newest(&data, &study.name)?, newest(&data, &format!("{}-motions", study.name))?)
+    } else {
+        measured(options, &study, &data)?
+    };
     let repeat = format!("amberfield study {}", options.study.display());
     let page = sweep::write_report(&out, &study, (&rows, &motions), &repeat)
         .map_err(|error| Failure::of_study(&error))?;
-    line(format_args!("{} points; page: {}", rows.len(), page.display()));
+    line(format_args!("{} points, {} runs; page: {}", rows.len(), motions.len(), page.display()));
     let broken: Vec<_> = rows.iter().filter(|row| row.breaks_its_bound()).collect();
     match broken.first() {
         None => Ok(()),
@@ -62,6 +50,54 @@ pub(crate) fn study(options: &StudyOptions) -> Result<(), Failure> {
             told(first)
         ))),
     }
+}
+
+/// Measures all; what is known is on the disk, should the rest never come.
+fn measured(
+    options: &StudyOptions,
+    study: &Study,
+    data: &Path,
+) -> Result<(Vec<Row>, Vec<MotionRow>), Failure> {
+    let folder = options.study.parent().unwrap_or_else(|| Path::new(""));
+    let table = |name: &str| data.join(format!("{}-{name}.csv", machine::today()));
+    let (of_points, of_motions) = (table(&study.name), table(&format!("{}-motions", study.name)));
+    let (mut known, mut unwritten) = (Vec::new(), Ok(()));
+    let rows = sweep::run(study, folder, &mut Bench, |rows| {
+        for row in rows {
+            tracing::info!("{}", told(row));
+        }
+        known.extend_from_slice(rows);
+        unwritten = write_table(&of_points, &known);
+    });
+    unwritten?;
+    let (mut known, mut unwritten) = (Vec::new(), Ok(()));
+    let motions = sweep::run_motions(study, folder, &mut Bench, |row| {
+        tracing::info!(
+            "{}, {} {}: {:.2} s",
+            row.problem,
+            row.method,
+            row.value,
+            row.seconds.unwrap_or(f64::NAN)
+        );
+        known.push(row.clone());
+        unwritten = write_table(&of_motions, &known);
+    });
+    unwritten?;
+    Ok((rows, motions))
+}
+
+/// The newest rows of a name; none where there is no such file.
+fn newest<R: DeserializeOwned>(data: &Path, name: &str) -> Result<Vec<R>, Failure> {
+    /// Characters of a date.
+    const DATE: usize = 10;
+    let ours = |file: &PathBuf| {
+        let file = file.file_stem().and_then(|stem| stem.to_str()).unwrap_or_default();
+        file.get(DATE..) == Some(&format!("-{name}"))
+    };
+    let entries = std::fs::read_dir(data)
+        .map_err(|error| Failure::bad_input(format!("cannot read {}: {error}", data.display())))?;
+    let newest = entries.filter_map(|entry| Some(entry.ok()?.path())).filter(ours).max();
+    Ok(newest.map_or_else(|| Ok(Vec::new()), |file| read_table(&file))?)
 }
 
 /// A point in a line.

@@ -1,0 +1,117 @@
+//! Points that promise nothing beside points with a promise, and the goals that a study sets.
+
+use super::description::Goal;
+use super::row::Row;
+
+/// A point beside the best with a promise on the same problem.
+pub(super) struct Comparison<'a> {
+    pub(super) row: &'a Row,
+    pub(super) error: f64,
+    pub(super) ns: f64,
+    /// Smallest error with a promise in at most the same time.
+    pub(super) in_time: Option<f64>,
+    /// Shortest time with a promise and at most the same error [ns per grain].
+    pub(super) as_exact: Option<f64>,
+}
+
+/// Every point of a problem that promises nothing and is not exact.
+pub(super) fn comparisons(rows: &[Row]) -> Vec<Comparison<'_>> {
+    let points = |promises: bool| {
+        rows.iter().filter_map(move |row| {
+            let known = (row.error?, row.ns_per_grain()?, row);
+            (row.promised.is_some() == promises).then_some(known)
+        })
+    };
+    let one = |(error, ns, row)| Comparison {
+        row,
+        error,
+        ns,
+        in_time: points(true).filter(|other| other.1 <= ns).map(|other| other.0).min_by(f64::total_cmp),
+        as_exact: points(true).filter(|other| other.0 <= error).map(|other| other.1).min_by(f64::total_cmp),
+    };
+    points(false).filter(|(error, ..)| *error > 0.0).map(one).collect()
+}
+
+/// What became of a goal: the worst ratio, and how many were looked at; `None` where nothing was measured.
+pub(super) fn verdict(goal: &Goal, rows: &[Row]) -> Option<(f64, bool, usize)> {
+    let ratios = match (goal.times_less, goal.times_as_fast, goal.at_most) {
+        (Some(_), ..) => beside(goal, rows, |point| Some(point.error / point.in_time?)),
+        (_, Some(_), _) => beside(goal, rows, |point| Some(point.ns / point.as_exact?)),
+        _ => prices(goal, rows),
+    };
+    let least = ratios.iter().copied().min_by(f64::total_cmp)?;
+    let most = ratios.iter().copied().max_by(f64::total_cmp)?;
+    let met = |wanted: f64| (least, least >= wanted, ratios.len());
+    Some(match (goal.times_less.or(goal.times_as_fast), goal.at_most) {
+        (Some(wanted), _) => met(wanted),
+        (None, Some(bound)) => (most, most <= bound, ratios.len()),
+        (None, None) => return None,
+    })
+}
+
+/// A ratio of every point that the goal is about; 0 where nothing with a promise is as good.
+fn beside(goal: &Goal, rows: &[Row], ratio: impl Fn(&Comparison<'_>) -> Option<f64>) -> Vec<f64> {
+    rows.chunk_by(|a, b| a.problem == b.problem)
+        .filter(|of_problem| goal.is_about(&of_problem[0].problem))
+        .flat_map(comparisons)
+        .filter(|point| point.row.method == goal.method)
+        .filter(|point| goal.value.as_ref().is_none_or(|value| *value == point.row.value))
+        .map(|point| ratio(&point).unwrap_or(0.0))
+        .collect()
+}
+
+/// Times of a method on one problem over those on another, value by value.
+fn prices(goal: &Goal, rows: &[Row]) -> Vec<f64> {
+    let of = |problem: &str| {
+        let problem = problem.to_owned();
+        rows.iter().filter(move |row| row.problem == problem && row.method == goal.method)
+    };
+    let Some([dear, cheap]) = &goal.price else { return Vec::new() };
+    let ratio = |row: &Row| {
+        let other = of(cheap).find(|other| other.value == row.value)?;
+        Some(row.ns_per_grain()? / other.ns_per_grain()?)
+    };
+    of(dear).filter_map(ratio).collect()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn row(problem: &str, method: &str, error: f64, seconds: f64, promised: bool) -> Row {
+        Row {
+            problem: problem.to_owned(),
+            method: method.to_owned(),
+            grains: 1,
+            error: Some(error),
+            seconds: Some(seconds),
+            promised: promised.then_some(1.0),
+            ..Row::default()
+        }
+    }
+
+    fn goal(text: &str) -> Goal {
+        toml::from_str(&format!("text = 't'\n{text}")).unwrap()
+    }
+
+    #[test]
+    fn goals_are_judged_by_their_worst_point() {
+        let rows = [
+            row("a", "p3m", 1e-2, 1.0, true),
+            row("a", "p3m", 1e-3, 2.0, true),
+            row("a", "cut-off", 0.3, 1.5, false),
+            row("b", "p3m", 1e-2, 1.2, true),
+            row("b", "cut-off", 0.2, 3.0, false),
+        ];
+        let judged = |text: &str| verdict(&goal(text), &rows);
+        let near = |found: Option<(f64, bool, usize)>, ratio: f64, met: bool, count: usize| {
+            let (value, is_met, of) = found.unwrap();
+            assert!((value / ratio - 1.0).abs() < 1e-12 && is_met == met && of == count, "{found:?}");
+        };
+        near(judged("method = 'cut-off'\ntimes_less = 25"), 20.0, false, 2);
+        near(judged("method = 'cut-off'\ntimes_less = 25\nproblems = ['a']"), 30.0, true, 1);
+        near(judged("method = 'cut-off'\ntimes_as_fast = 1.4"), 1.5, true, 2);
+        near(judged("method = 'p3m'\nprice = ['b', 'a']\nat_most = 1.5"), 1.2, true, 1);
+        assert_eq!(judged("method = 'FMM3D'\ntimes_as_fast = 5"), None);
+    }
+}
