@@ -161,3 +161,24 @@ fn a_grain_that_leaves_is_exit_4() {
     let answer = bench.run(&["run", "scene.toml", "--out", "gone", "--set", "particles.on_exit=delete"]);
     assert_eq!(answer.code, Some(0), "{}", answer.stderr);
 }
+
+/// A grain falls on a floor with steps four times too long: it is thrown out of it.
+#[test]
+fn a_run_that_is_no_longer_sound_stops_and_names_grain_and_checkpoint() {
+    let scene = "[domain]\nmin_m = [0, 0, 0]\nmax_m = [0.01, 0.01, 0.05]\n[domain.boundary]\nx = 'periodic'\ny = 'periodic'\nz = 'open'\n\
+         [[walls]]\nplane = { point_m = [0, 0, 0], normal = [0, 0, 1] }\nmaterial = 'glass'\n\
+         [[materials]]\nname = 'glass'\ndensity_kg_m3 = 2500.0\nyoung_Pa = 1e7\npoisson = 0.22\nrestitution = 1.0\nfriction = 0.0\n\
+         [particles]\non_exit = 'delete'\nfile = 'grains.csv'\n[time]\nstep_s = 2e-4\nend_s = 0.5\nallow_unstable = true\ngravity_m_s2 = [0, 0, -9.81]\n\
+         [output]\nevery_s = 1e-2\nhistory_every_s = 1e-3\ncheckpoint_every_s = 1e-3\nformats = ['csv']\n";
+    let bench = Bench::new(scene);
+    bench.write(
+        "grains.csv",
+        "id,x_m,y_m,z_m,radius_m,charge_C,material\n7,0.005,0.005,0.002,1e-3,0,glass\n8,0.005,0.005,0.0041,1e-3,0,glass\n",
+    );
+    let answer = bench.run(&["run", "scene.toml", "--out", "out", "--no-progress"]);
+    assert_eq!(answer.code, Some(4), "{}", answer.stderr);
+    for part in ["no longer sound", "grain ", "the last checkpoint before that is out/checkpoints/step_"] {
+        assert!(answer.stderr.contains(part), "no {part:?} in {}", answer.stderr);
+    }
+    assert!(bench.read("out/summary.json").contains("no longer sound"));
+}

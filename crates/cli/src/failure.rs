@@ -63,6 +63,12 @@ impl Failure {
         }
     }
 
+    /// The same failure, with more to say.
+    pub(crate) fn with(mut self, more: &str) -> Self {
+        self.message += more;
+        self
+    }
+
     /// The message.
     pub(crate) fn message(&self) -> &str {
         &self.message

@@ -38,5 +38,5 @@ pub use error::DemError;
 pub use field_stage::{Intervals, Limited};
 pub use guards::Guard;
 pub use setup::{FieldStageSetup, Setup};
-pub use simulation::Simulation;
+pub use simulation::{Deepest, Simulation};
 pub use state::State;

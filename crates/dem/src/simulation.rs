@@ -5,6 +5,8 @@ mod plan;
 mod report;
 mod start;
 
+pub use report::Deepest;
+
 use crate::charging::Charging;
 use crate::error::DemError;
 use crate::field_stage::{Extras, FieldStage};

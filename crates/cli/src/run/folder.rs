@@ -105,6 +105,16 @@ impl RunFolder {
         fs::create_dir_all(&path).map_err(|error| Failure::bad_input(format!("{}: {error}", path.display())))
     }
 
+    /// The newest checkpoint, if there is one.
+    pub(crate) fn newest_checkpoint(&self) -> Option<PathBuf> {
+        let files = fs::read_dir(self.file("checkpoints")).into_iter().flatten().flatten();
+        // Their names count steps with leading zeros.
+        files
+            .map(|file| file.path())
+            .filter(|path| path.extension().is_some_and(|kind| kind == "amber"))
+            .max()
+    }
+
     /// A file of the folder.
     pub(crate) fn file(&self, name: &str) -> PathBuf {
         self.path.join(name)

@@ -1,6 +1,7 @@
 //! A run: its folder, its schedule, its records.
 
 mod folder;
+mod health;
 pub(crate) mod histogram;
 mod name;
 mod record;

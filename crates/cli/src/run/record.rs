@@ -5,7 +5,7 @@ use super::histogram::Histogram;
 use super::schedule::Schedule;
 use crate::failure::Failure;
 use amberfield_core::WallCharging;
-use amberfield_dem::{ElectricEnergy, Facet, Simulation};
+use amberfield_dem::{Energies, Facet, Simulation};
 use amberfield_scene::{
     Cell, FacetCell, History, PvdSeries, Scene, write_facets_vtu, write_particles_csv, write_vtu,
 };
@@ -122,13 +122,16 @@ impl Record {
     }
 
     /// Appends a row to the history, once per step.
-    pub(crate) fn row(&mut self, simulation: &mut Simulation, clock: &Clock) -> Result<(), Failure> {
+    pub(crate) fn row(
+        &mut self,
+        simulation: &Simulation,
+        energies: &Energies,
+        clock: &Clock,
+    ) -> Result<(), Failure> {
         let step = simulation.step_index();
         if self.last_row.replace(step) == Some(step) {
             return Ok(());
         }
-        let energies =
-            simulation.energies(ElectricEnergy::Forecast).map_err(|error| Failure::while_running(&error))?;
         let mut row = vec![
             Cell::Count(step),
             Cell::Number(simulation.time_s()),

@@ -1,6 +1,7 @@
 //! The loop of a run.
 
 use super::folder::RunFolder;
+use super::health::{Allowed, Health};
 use super::record::{Clock, Record};
 use super::schedule::{Every, Schedule};
 use super::summary::{Ending, write_summary};
@@ -33,6 +34,7 @@ pub(crate) struct Session<'a> {
     pub(crate) simulation: Simulation,
     pub(crate) schedule: Schedule,
     pub(crate) record: Record,
+    health: Health,
     /// Seconds of earlier parts of the run.
     pub(crate) earlier: Clock,
     pub(crate) begun: Instant,
@@ -43,24 +45,26 @@ impl<'a> Session<'a> {
     pub(crate) fn start(
         folder: &'a RunFolder,
         scene: &'a Scene,
-        simulation: Simulation,
+        mut simulation: Simulation,
     ) -> Result<Self, Failure> {
         let schedule = schedule(scene, &simulation, None)?;
         let record = Record::create(folder, scene, &simulation)?;
+        let health = health(scene, &mut simulation)?;
         let earlier = Clock { wall_s: 0.0, stages: Vec::new() };
-        Ok(Self { folder, scene, simulation, schedule, record, earlier, begun: Instant::now() })
+        Ok(Self { folder, scene, simulation, schedule, record, health, earlier, begun: Instant::now() })
     }
 
     /// A run that goes on from a checkpoint with its schedule of the history and its clock.
     pub(crate) fn resume(
         folder: &'a RunFolder,
         scene: &'a Scene,
-        simulation: Simulation,
+        mut simulation: Simulation,
         (history, earlier): (Every, Clock),
     ) -> Result<Self, Failure> {
         let schedule = schedule(scene, &simulation, Some(history))?;
         let record = Record::resume(folder, scene, &simulation, &schedule)?;
-        Ok(Self { folder, scene, simulation, schedule, record, earlier, begun: Instant::now() })
+        let health = health(scene, &mut simulation)?;
+        Ok(Self { folder, scene, simulation, schedule, record, health, earlier, begun: Instant::now() })
     }
 
     /// Steps until the end, at most `most` steps, or until the user interrupts; writes what is due and the end.
@@ -69,8 +73,7 @@ impl<'a> Session<'a> {
         let stop =
             most.map_or(self.schedule.total, |most| self.schedule.total.min(first.saturating_add(most)));
         if first == 0 {
-            let clock = self.clock();
-            self.record.row(&mut self.simulation, &clock)?;
+            self.row()?;
             self.record.frame(self.folder, self.scene, &self.simulation)?;
         }
         let before = self.energies()?;
@@ -93,8 +96,7 @@ impl<'a> Session<'a> {
                 return Err(error);
             }
         };
-        let clock = self.clock();
-        self.record.row(&mut self.simulation, &clock)?;
+        self.row()?;
         self.record.frame(self.folder, self.scene, &self.simulation)?;
         self.checkpoint()?;
         write_summary(self, first, &before, ending, None)?;
@@ -104,18 +106,43 @@ impl<'a> Session<'a> {
     fn step(&mut self, progress: &mut Progress) -> Result<(), Failure> {
         self.simulation.step().map_err(|error| Failure::while_running(&error))?;
         let step = self.simulation.step_index();
-        if self.schedule.history.is_due(step) {
-            let clock = self.clock();
-            self.record.row(&mut self.simulation, &clock)?;
+        let (row, checkpoint) = (self.schedule.history.is_due(step), self.schedule.checkpoint_is_due(step));
+        if row {
+            self.row()?;
+        }
+        if row || checkpoint {
+            self.look_after()?;
         }
         if self.schedule.frame_is_due(step) {
             self.record.frame(self.folder, self.scene, &self.simulation)?;
         }
-        if self.schedule.checkpoint_is_due(step) {
+        if checkpoint {
             self.checkpoint()?;
         }
         progress.tell(step, self.simulation.time_s());
         Ok(())
+    }
+
+    fn row(&mut self) -> Result<(), Failure> {
+        let (clock, energies) = (self.clock(), self.forecast_energies()?);
+        self.record.row(&self.simulation, &energies, &clock)
+    }
+
+    /// Ends the run where it is no longer sound, and names the newest checkpoint of when it was.
+    fn look_after(&mut self) -> Result<(), Failure> {
+        let energies = self.forecast_energies()?;
+        self.health.check(&self.simulation, &energies).map_err(|failure| {
+            match self.folder.newest_checkpoint() {
+                Some(path) => {
+                    failure.with(&format!("; the last checkpoint before that is {}", path.display()))
+                }
+                None => failure.with("; there is no checkpoint before that"),
+            }
+        })
+    }
+
+    fn forecast_energies(&mut self) -> Result<Energies, Failure> {
+        self.simulation.energies(ElectricEnergy::Forecast).map_err(|error| Failure::while_running(&error))
     }
 
     /// Path of the checkpoint of the present step.
@@ -156,6 +183,12 @@ impl<'a> Session<'a> {
     pub(crate) fn energies(&mut self) -> Result<Energies, Failure> {
         self.simulation.energies(ElectricEnergy::Evaluated).map_err(|error| Failure::while_running(&error))
     }
+}
+
+fn health(scene: &Scene, simulation: &mut Simulation) -> Result<Health, Failure> {
+    let energies =
+        simulation.energies(ElectricEnergy::Forecast).map_err(|error| Failure::while_running(&error))?;
+    Ok(Health::new(simulation, &energies, Allowed::new(scene)))
 }
 
 fn schedule(scene: &Scene, simulation: &Simulation, history: Option<Every>) -> Result<Schedule, Failure> {

@@ -9,6 +9,19 @@ use crate::guards::Guard;
 use crate::timing::STAGE_NAMES;
 use amberfield_core::{Particles, Plan, Vector3};
 
+/// A contact with a large overlap.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Deepest {
+    /// Id of the grain.
+    pub id: u64,
+    /// Id of the other grain; `None` for a wall.
+    pub other: Option<u64>,
+    /// Overlap [m].
+    pub overlap_m: f64,
+    /// The same over the smaller radius.
+    pub share: f64,
+}
+
 impl Simulation {
     /// Iterations of a field solver of another process, in its last solve for the motion; 0 without one.
     #[must_use]
@@ -108,6 +121,51 @@ impl Simulation {
             gravity: energy::gravity(&self.grains, self.time.gravity_m_s2),
             electric,
         })
+    }
+
+    /// The contact with the largest overlap over the smaller radius; `None` without contacts.
+    #[must_use]
+    pub fn deepest(&self) -> Option<Deepest> {
+        let grains = &self.grains;
+        let id = |i: usize| self.particles.id[grains.original[i] as usize];
+        let mut deepest: Option<Deepest> = None;
+        let mut look = |found: Deepest| {
+            if deepest.is_none_or(|known| found.share > known.share) {
+                deepest = Some(found);
+            }
+        };
+        for pair in self.neighbours.touching() {
+            let (a, b) = (grains.centre[pair.i][3], grains.centre[pair.j][3]);
+            let overlap_m = a + b - pair.offset(grains, &self.neighbours.shifts).norm();
+            let (id, other) = (id(pair.i), Some(id(pair.j)));
+            look(Deepest { id, other, overlap_m, share: overlap_m / a.min(b) });
+        }
+        if let Some(walls) = &self.walls {
+            walls.each_contact(|i, _, overlap_m, _, _| {
+                look(Deepest { id: id(i), other: None, overlap_m, share: overlap_m / grains.centre[i][3] });
+            });
+        }
+        deepest
+    }
+
+    /// Id and speed [m/s] of the fastest grain.
+    #[must_use]
+    pub fn fastest(&self) -> Option<(u64, f64)> {
+        let speeds = self.grains.velocity.iter().map(|velocity| velocity.norm());
+        let (i, speed) = speeds.enumerate().max_by(|a, b| a.1.total_cmp(&b.1))?;
+        Some((self.particles.id[self.grains.original[i] as usize], speed))
+    }
+
+    /// Id of a grain whose position or velocity is not finite.
+    #[must_use]
+    pub fn not_finite(&self) -> Option<u64> {
+        let lost = |i: &usize| {
+            let grains = &self.grains;
+            !grains.position(*i).iter().chain(grains.velocity[*i].iter()).all(|value| value.is_finite())
+        };
+        let ids =
+            (0..self.grains.len()).filter(lost).map(|i| self.particles.id[self.grains.original[i] as usize]);
+        ids.min()
     }
 
     /// Number of touching contacts, of grains and with walls, at the last evaluation.

@@ -1,0 +1,133 @@
+//! Whether a run is still sound: looked at with every row of the history and before every checkpoint.
+
+use crate::failure::Failure;
+use amberfield_core::{Axis, Vector3};
+use amberfield_dem::{Energies, Simulation};
+use amberfield_scene::Scene;
+
+/// Largest overlap over the smaller radius.
+const DEEPEST: f64 = 0.5;
+/// Kinetic energy over all that was ever there to be released; the field of electrodes is counted by half.
+const ENERGY: f64 = 10.0;
+/// Kinetic energy over the sizes of all energies that may be round-off.
+const ROUND_OFF: f64 = 1e-9;
+/// Change of the charge of grains and walls over the sizes of all charges.
+const CHARGE: f64 = 1e-9;
+
+/// What a run had to start with.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Health {
+    grains: usize,
+    /// Kinetic energy at the start [J].
+    kinetic: f64,
+    /// Highest potential energy so far: gravity, contacts, field [J].
+    highest: f64,
+    /// Charge of grains and walls [C].
+    charge: f64,
+    allowed: Allowed,
+}
+
+/// What is no sign of trouble in a scene.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Allowed {
+    /// Deep overlaps.
+    overlap: bool,
+    /// Energy that comes from outside: by contacts that charge, or round and round a period.
+    work: bool,
+}
+
+impl Allowed {
+    pub(crate) fn new(scene: &Scene) -> Self {
+        let gravity = scene.time.as_ref().map_or_else(Vector3::zeros, |time| time.gravity_m_s2);
+        let field = scene.electric_field.as_ref().map(|field| &field.field);
+        let external = field.map_or_else(Vector3::zeros, |field| field.external_field_v_m);
+        let domain = scene.domain.as_ref();
+        let round = Axis::ALL.into_iter().any(|axis| {
+            let pull = gravity[axis.index()].abs() + external[axis.index()].abs();
+            pull > 0.0 && domain.is_some_and(|domain| domain.is_periodic(axis))
+        });
+        Self {
+            overlap: scene.time.as_ref().is_some_and(|time| time.allow_overlap),
+            work: round || scene.charge_transfer.is_some(),
+        }
+    }
+}
+
+impl Health {
+    /// Of a run that begins or goes on now.
+    pub(crate) fn new(simulation: &Simulation, energies: &Energies, allowed: Allowed) -> Self {
+        Self {
+            grains: simulation.len(),
+            kinetic: energies.kinetic,
+            highest: potential(energies),
+            charge: charge(simulation),
+            allowed,
+        }
+    }
+
+    /// Looks at a run; says what is wrong, at which grain.
+    pub(crate) fn check(&mut self, simulation: &Simulation, energies: &Energies) -> Result<(), Failure> {
+        if simulation.len() != self.grains {
+            // Grains that left took their energy and charge along.
+            *self = Self::new(simulation, energies, self.allowed);
+        }
+        let time_s = simulation.time_s();
+        if let Some(id) = simulation.not_finite() {
+            return Err(unsound(
+                format!("grain {id} is nowhere: its position or velocity is no number"),
+                time_s,
+            ));
+        }
+        if let Some(deepest) = simulation.deepest().filter(|d| !self.allowed.overlap && d.share > DEEPEST) {
+            let other = deepest.other.map_or_else(|| "a wall".to_owned(), |id| format!("grain {id}"));
+            return Err(unsound(
+                format!(
+                    "grain {} overlaps {other} by {:.3e} m, {:.2} of its radius: more than {DEEPEST}",
+                    deepest.id, deepest.overlap_m, deepest.share
+                ),
+                time_s,
+            ));
+        }
+        self.highest = self.highest.max(potential(energies));
+        let released = self.kinetic + self.highest - potential(energies);
+        let sizes = energies.gravity.abs() + energies.contact.abs() + energies.electric.unwrap_or(0.0).abs();
+        if !self.allowed.work && energies.kinetic > ENERGY * released.max(0.0) + ROUND_OFF * sizes {
+            let (id, speed) = simulation.fastest().unwrap_or_default();
+            return Err(unsound(
+                format!(
+                    "the grains have {:.3e} J of kinetic energy, more than {ENERGY} times the {released:.3e} J that were there to be released; the fastest is grain {id} with {speed:.3e} m/s",
+                    energies.kinetic
+                ),
+                time_s,
+            ));
+        }
+        let (now, sizes) = (charge(simulation), charge_sizes(simulation));
+        if (now - self.charge).abs() > CHARGE * sizes {
+            return Err(unsound(
+                format!("the charge of grains and walls has gone from {:e} C to {now:e} C", self.charge),
+                time_s,
+            ));
+        }
+        Ok(())
+    }
+}
+
+fn unsound(what: String, time_s: f64) -> Failure {
+    Failure::outside_tolerance(format!(
+        "at t = {time_s:e} s {what}; the motion is no longer sound: make time.step_s smaller, the grains stiffer, or look at what holds this grain"
+    ))
+}
+
+fn potential(energies: &Energies) -> f64 {
+    energies.gravity + energies.contact + energies.electric.unwrap_or(0.0)
+}
+
+fn charge(simulation: &Simulation) -> f64 {
+    let walls = simulation.ledger().map_or(0.0, |ledger| ledger.walls.iter().sum());
+    simulation.particles().net_charge() + walls
+}
+
+fn charge_sizes(simulation: &Simulation) -> f64 {
+    let moved = simulation.ledger().map_or(0.0, |ledger| ledger.moved);
+    simulation.particles().charge.iter().map(|charge| charge.abs()).sum::<f64>() + moved
+}
