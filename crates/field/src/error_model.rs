@@ -7,6 +7,10 @@
 //!
 //! R = 4π χ(k)/k² the cloud's potential, W the window, G = R/W² what makes every wave of the zone exact. The near level
 //! ends where the cloud does and leaves nothing out.
+//!
+//! Charges of one sign have a mean field besides, which is smooth and not random. A potential that falls evenly is gathered with the window's
+//! slope: the wave m of the grid, which the window lets through where it meets a slope, adds 2w_m cos(2πmx/h) of the field along each axis,
+//! w_m = dW/dk at 2πm, times 2πm. So δE² grows by 2 Σ_m w_m² times the square of the grid's part of E.
 
 use crate::grid::window::Window;
 use crate::shapes::Shapes;
@@ -44,6 +48,20 @@ pub(crate) fn error_squared(order: usize, ratio: f64, shapes: Shapes) -> f64 {
         }
     }
     8.0 * sum * step.powi(3) / (2.0 * PI).powi(3)
+}
+
+/// Squared error over the square of the grid's part of E, where that is smooth.
+pub(crate) fn smooth_error_squared(order: usize, window_shape: f64) -> f64 {
+    /// Waves that count.
+    const WAVES_OF_GRID: i32 = 4;
+    /// Step of the difference quotient.
+    const STEP: f64 = 1e-4;
+    let window = Window::new(order, window_shape);
+    let wave = |m: i32| {
+        let k = 2.0 * PI * f64::from(m);
+        k * (window.transform(k + STEP) - window.transform(k - STEP)) / (2.0 * STEP)
+    };
+    2.0 * (1..=WAVES_OF_GRID).map(|m| wave(m).powi(2)).sum::<f64>() / window.transform(0.0).powi(2)
 }
 
 /// Aliases of one wave-number component, the principal one first: k², W².

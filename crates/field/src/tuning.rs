@@ -1,6 +1,6 @@
 //! From a tolerance and a cloud of charges to the parameters of p3m: error model, candidates, timing, check.
 
-use crate::error_model::error_squared;
+use crate::error_model::{error_squared, smooth_error_squared};
 use crate::grid::level::{grid_sizes, widest_spacing};
 use crate::p3m::{P3m, P3mParameters};
 use crate::shapes::{self, ORDERS, Shapes, cutoff_over_spacing_for};
@@ -119,6 +119,15 @@ pub(crate) struct Chosen {
     pub(crate) measured: Option<Measured>,
 }
 
+/// Fields that errors are compared with [V/m].
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Scale {
+    /// What errors are relative to: the larger of E_rms and q_rms n^{2/3}/(4πε).
+    pub(crate) all: f64,
+    /// RMS of the grid's part of E.
+    smooth: f64,
+}
+
 /// The tuner of one scene.
 pub(crate) struct Tuner<'a> {
     domain: &'a Domain,
@@ -152,7 +161,7 @@ impl<'a> Tuner<'a> {
             };
             let scale = coulomb_constant(self.settings.relative_permittivity) * cloud.density.powf(2.0 / 3.0);
             let bound = AIM * self.settings.tolerance * scale;
-            let parameters = self.best_by_model(&cloud, bound)?;
+            let parameters = self.best_by_model(&cloud, bound, 0.0)?;
             return Ok(Chosen { parameters, estimated: None, measured: None });
         }
         let scale = self.scale()?;
@@ -160,11 +169,11 @@ impl<'a> Tuner<'a> {
         let mut aim = AIM * asked;
         let mut best: Option<f64> = None;
         for _ in 0..ROUNDS {
-            let candidates = self.candidates(&self.cloud, aim * scale);
+            let candidates = self.candidates(&self.cloud, aim * scale.all, scale.smooth);
             if candidates.is_empty() {
                 break;
             }
-            let timed = self.fastest(&candidates, aim * scale)?;
+            let timed = self.fastest(&candidates, aim * scale.all, scale.smooth)?;
             let measured = self.measure(timed, scale);
             tracing::debug!(?timed, aim, measured = measured.relative_rms, "p3m candidate");
             if measured.relative_rms <= ACCEPT * asked {
@@ -187,8 +196,8 @@ impl<'a> Tuner<'a> {
     /// The best of each order, cheapest by the cost model first, with errors and times.
     pub(crate) fn table(&self) -> Result<Vec<Candidate>, FieldError> {
         let charged = self.cloud.charge > 0.0;
-        let scale = if charged { self.scale()? } else { self.cloud.floor };
-        let error = AIM * self.settings.tolerance * scale;
+        let scale = if charged { self.scale()? } else { Scale { all: self.cloud.floor, smooth: 0.0 } };
+        let error = AIM * self.settings.tolerance * scale.all;
         let one = |(_, parameters): &(f64, P3mParameters)| {
             Ok(Candidate {
                 choice: Choice::P3m(*parameters),
@@ -197,21 +206,23 @@ impl<'a> Tuner<'a> {
                 seconds: self.time(parameters)?,
             })
         };
-        self.candidates(&self.cloud, error).iter().map(one).collect()
+        self.candidates(&self.cloud, error, scale.smooth).iter().map(one).collect()
     }
 
-    /// What errors are relative to [V/m]: the larger of E_rms and q_rms n^{2/3}/(4πε).
-    pub(crate) fn scale(&self) -> Result<f64, FieldError> {
-        let first = self.best_by_model(&self.cloud, FIRST_LOOK * self.cloud.floor)?;
+    /// A first look at the field.
+    pub(crate) fn scale(&self) -> Result<Scale, FieldError> {
+        let first = self.best_by_model(&self.cloud, FIRST_LOOK * self.cloud.floor, 0.0)?;
         let mut field = FieldValues::default();
         let mut p3m = P3m::new(self.domain, self.settings, first);
-        p3m.evaluate(self.positions, self.charges, Wanted::default(), &mut field)?;
-        let sum: f64 = field.e.iter().map(Vector3::norm_squared).sum();
-        Ok((sum / self.cloud.count).sqrt().max(self.cloud.floor))
+        let wanted = Wanted { components: true, ..Wanted::default() };
+        p3m.evaluate(self.positions, self.charges, wanted, &mut field)?;
+        let rms =
+            |e: &[Vector3<f64>]| (e.iter().map(Vector3::norm_squared).sum::<f64>() / self.cloud.count).sqrt();
+        Ok(Scale { all: rms(&field.e).max(self.cloud.floor), smooth: rms(&field.components.far) })
     }
 
     /// Measures the error of parameters against a second, wider and more exact splitting.
-    pub(crate) fn measure(&self, parameters: P3mParameters, scale: f64) -> Measured {
+    pub(crate) fn measure(&self, parameters: P3mParameters, scale: Scale) -> Measured {
         let step = self.positions.len().div_ceil(SAMPLE).max(1);
         let sample: Vec<usize> = (0..self.positions.len()).step_by(step).collect();
         let second = with_best_shapes(
@@ -225,28 +236,34 @@ impl<'a> Tuner<'a> {
         };
         let (first, second) = (field(parameters), field(second));
         let sum: f64 = first.iter().zip(&second).map(|(a, b)| (a - b).norm_squared()).sum();
-        let relative_rms = (sum / sample.len().max(1) as f64).sqrt() / scale;
+        let relative_rms = (sum / sample.len().max(1) as f64).sqrt() / scale.all;
         Measured { relative_rms, sample: sample.len() }
     }
 
     /// A-priori relative error of parameters.
-    pub(crate) fn estimate(&self, parameters: &P3mParameters, scale: f64) -> f64 {
+    pub(crate) fn estimate(&self, parameters: &P3mParameters, scale: Scale) -> f64 {
+        self.modelled(&self.cloud, parameters, scale.smooth) / scale.all
+    }
+
+    /// Error of parameters by the model [V/m], where the grid's part of E is `smooth` [V/m].
+    fn modelled(&self, cloud: &Cloud, parameters: &P3mParameters, smooth: f64) -> f64 {
         let spacing = widest_spacing(self.domain, parameters.spacing_m);
         let shapes = Shapes { cloud: parameters.cloud_shape, window: parameters.window_shape };
         let coefficient = error_squared(parameters.order, parameters.cutoff_m / spacing, shapes) / spacing;
-        self.cloud.squared_error(self.settings.relative_permittivity, coefficient).sqrt() / scale
+        let random = cloud.squared_error(self.settings.relative_permittivity, coefficient);
+        (random + smooth * smooth * smooth_error_squared(parameters.order, parameters.window_shape)).sqrt()
     }
 
     /// Whether summing every pair with `images` images each costs less than the cheapest grid.
     pub(crate) fn all_pairs_are_cheaper(&self, images: usize) -> bool {
         let error = AIM * self.settings.tolerance * self.cloud.floor;
-        let grid = self.candidates(&self.cloud, error).first().map_or(f64::INFINITY, |(cost, _)| *cost);
+        let grid = self.candidates(&self.cloud, error, 0.0).first().map_or(f64::INFINITY, |(cost, _)| *cost);
         let free = self.settings.cutoff_radius_m.is_none() && self.settings.grid_cells.is_none();
         free && cost::ALL_PAIRS * images as f64 * self.cloud.count * self.cloud.count < grid
     }
 
-    fn best_by_model(&self, cloud: &Cloud, error: f64) -> Result<P3mParameters, FieldError> {
-        self.candidates(cloud, error).first().map(|(_, parameters)| *parameters).ok_or_else(|| {
+    fn best_by_model(&self, cloud: &Cloud, error: f64, smooth: f64) -> Result<P3mParameters, FieldError> {
+        self.candidates(cloud, error, smooth).first().map(|(_, parameters)| *parameters).ok_or_else(|| {
             FieldError::Settings(format!(
                 "no p3m parameters within {MOST_NODES:e} grid nodes meet tolerance {:e} (an error of {error:.1e} V/m); raise electric_field.tolerance{}",
                 self.settings.tolerance,
@@ -271,13 +288,13 @@ impl<'a> Tuner<'a> {
     }
 
     /// Candidates with an error of `error` [V/m], cheapest first by the cost model: the best of each order.
-    fn candidates(&self, cloud: &Cloud, error: f64) -> Vec<(f64, P3mParameters)> {
+    fn candidates(&self, cloud: &Cloud, error: f64, smooth: f64) -> Vec<(f64, P3mParameters)> {
         let mut best: Vec<(f64, P3mParameters)> = Vec::new();
         for order in ORDERS {
             let of_order = self
                 .spacings(cloud)
                 .into_iter()
-                .filter_map(|spacing| self.candidate(cloud, order, spacing, error))
+                .filter_map(|spacing| self.candidate(cloud, order, spacing, error, smooth))
                 .map(|parameters| (self.cost(cloud, &parameters), parameters))
                 .min_by(|a, b| a.0.total_cmp(&b.0));
             best.extend(of_order);
@@ -286,8 +303,33 @@ impl<'a> Tuner<'a> {
         best
     }
 
-    /// The least cut-off, or the fixed one where it is enough, for an error of `error` [V/m] on nodes at most `spacing` apart.
-    fn candidate(&self, cloud: &Cloud, order: usize, spacing: f64, error: f64) -> Option<P3mParameters> {
+    /// The least cut-off, or the fixed one where it is enough, for an error of `error` [V/m] on nodes at most `spacing` apart, where the
+    /// grid's part of E is `smooth` [V/m].
+    fn candidate(
+        &self,
+        cloud: &Cloud,
+        order: usize,
+        spacing: f64,
+        error: f64,
+        smooth: f64,
+    ) -> Option<P3mParameters> {
+        /// Rounds in which the random part makes room for the smooth one, and what is close enough.
+        const MOST: usize = 8;
+        const ENOUGH: f64 = 1.02;
+        let mut random = error;
+        for _ in 0..MOST {
+            let parameters = self.candidate_for(cloud, order, spacing, random)?;
+            let modelled = self.modelled(cloud, &parameters, smooth);
+            if modelled <= ENOUGH * error {
+                return Some(parameters);
+            }
+            random *= (error / modelled).max(0.3);
+        }
+        None
+    }
+
+    /// The same for the random part of the error alone.
+    fn candidate_for(&self, cloud: &Cloud, order: usize, spacing: f64, error: f64) -> Option<P3mParameters> {
         /// A spacing that divides the box stays one when it is rounded.
         const ROUNDING: f64 = 1e-12;
         let coefficient = error * error / cloud.squared_error(self.settings.relative_permittivity, 1.0);
@@ -337,7 +379,12 @@ impl<'a> Tuner<'a> {
 
     /// The candidate with the shortest evaluation, or the cheapest by the model when timing is off. Where near and grid level
     /// balance depends on the processor: around the winner, spacings are tried until none is faster.
-    fn fastest(&self, candidates: &[(f64, P3mParameters)], error: f64) -> Result<P3mParameters, FieldError> {
+    fn fastest(
+        &self,
+        candidates: &[(f64, P3mParameters)],
+        error: f64,
+        smooth: f64,
+    ) -> Result<P3mParameters, FieldError> {
         const WORTH_TIMING: f64 = 2.5;
         const STEPS: [f64; 2] = [1.2, 1.0 / 1.2];
         const MOST_STEPS: usize = 4;
@@ -352,7 +399,9 @@ impl<'a> Tuner<'a> {
         for step in STEPS.into_iter().filter(|_| self.settings.grid_cells.is_none()) {
             for _ in 0..MOST_STEPS {
                 let (seconds, P3mParameters { order, spacing_m, .. }) = best;
-                let Some(next) = self.candidate(&self.cloud, order, spacing_m * step, error) else { break };
+                let Some(next) = self.candidate(&self.cloud, order, spacing_m * step, error, smooth) else {
+                    break;
+                };
                 best = faster(best, (self.time(&next)?, next));
                 if best.0 >= seconds {
                     break;
