@@ -39,7 +39,7 @@ pub(crate) struct Limits {
 pub(crate) struct ElectricLimits {
     /// Pair of touching grains [s].
     pub(crate) pair: f64,
-    /// Grain that touches a conducting face of the domain [s].
+    /// Grain that touches a conducting or insulating face of the domain: images of either sign are as stiff [s].
     pub(crate) wall_image: f64,
     /// Interval between field evaluations at which the cloud is unstable, over the interval's steps [s].
     pub(crate) plasma: f64,
@@ -138,7 +138,7 @@ pub(crate) fn electric_stiffness(
     permittivity: f64,
     pairs: impl Iterator<Item = (usize, usize)>,
 ) -> (f64, f64) {
-    let conductor = domain.faces().iter().flatten().any(|face| face.is_conductor());
+    let mirror = domain.faces().iter().flatten().any(|face| face.is_conductor() || face.is_insulating());
     let charge = |i: usize| {
         let original = grains.original[i] as usize;
         if member[original] { particles.charge[original] } else { 0.0 }
@@ -152,7 +152,7 @@ pub(crate) fn electric_stiffness(
     let (mut pair, mut wall) = (f64::INFINITY, f64::INFINITY);
     for i in 0..grains.len() {
         pair = pair.min(limit(i, i));
-        if conductor {
+        if mirror {
             let k = time_step_limits::wall_image_stiffness(charge(i), permittivity, grains.centre[i][3]);
             wall = wall.min(time_step_limits::stiffness_limit(1.0 / grains.inverse_mass[i], k));
         }

@@ -44,7 +44,10 @@ pub fn write_report(
     let picture = format!("{name}-model");
     draw_model(&pictures, &picture, rows)?;
     page += &model(rows, &picture);
-    page += &failures(rows);
+    page += &failures(rows, motions);
+    if !rows.is_empty() {
+        page += BIAS;
+    }
     let path = folder.join(format!("{name}.md"));
     std::fs::write(&path, page).map_err(|source| StudyError::Write { path: path.clone(), source })?;
     Ok(path)
@@ -172,22 +175,34 @@ fn model(rows: &[Row], picture: &str) -> String {
     )
 }
 
-fn failures(rows: &[Row]) -> String {
+fn failures(rows: &[Row], motions: &[MotionRow]) -> String {
     let mut text = "## What failed\n\n".to_owned();
     let broken = rows.iter().filter(|row| row.breaks_its_bound()).map(|row| {
         let number = |value: Option<f64>| value.unwrap_or(f64::NAN);
         (row, format!("error {:.2e} above {:e}", number(row.error), number(row.bound())))
     });
-    let failed = rows.iter().filter(|row| !row.failure.is_empty()).map(|row| (row, row.failure.clone()));
-    let all: Vec<_> = failed.chain(broken).collect();
+    let broken = broken.map(|(row, reason)| (&row.problem, &row.method, &row.value, reason));
+    let failed = rows.iter().map(|row| (&row.problem, &row.method, &row.value, row.failure.clone()));
+    let of_motions = motions.iter().map(|row| (&row.problem, &row.method, &row.value, row.failure.clone()));
+    let all: Vec<_> =
+        failed.chain(of_motions).filter(|(.., reason)| !reason.is_empty()).chain(broken).collect();
     if all.is_empty() {
         text += "Nothing.\n";
     }
-    for (row, reason) in all {
-        let _infallible = writeln!(text, "* {}, {} {}: {reason}", row.problem, row.method, row.value);
+    for (problem, method, value, reason) in all {
+        let _infallible = writeln!(text, "* {problem}, {method} {value}: {reason}");
     }
     text
 }
+
+/// What may favour whom.
+const BIAS: &str = "\n## Bias\n\n\
+    * Parameters: p3m has those that it chose, and timed, on this machine for these charges and the tolerance asked for. Methods without a promise have what the study gives them, swept. Other programs have the fastest setting of a sweep whose measured error is \
+    within the tolerance.\n\
+    * Time: p3m sorts the grains anew at every evaluation, and that counts. LAMMPS keeps a neighbour list without a skin, which no run could; building it does not count. Programs from a package index are built for any processor of the kind; ours picks its vector instructions when it runs.\n\
+    * Turns: all our points of a problem take turns, so that a busy machine is busy for all; other programs time themselves before that. The spread says how much the machine was disturbed.\n\
+    * Truth: where there are too many grains for the direct sum it is p3m itself with a far smaller tolerance and other parameters, which tests compare with the direct sum. Errors near that tolerance are not told apart from it.\n\
+    * Charges: random, without correlation, unless a problem says otherwise. A bed whose charges shield each other has a smaller E_rms, and relative errors of all methods grow alike.\n";
 
 /// Whether there is anything to draw.
 fn is_drawn(rows: &[Row]) -> bool {
