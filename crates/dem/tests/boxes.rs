@@ -204,7 +204,7 @@ fn guards_are_watched_when_the_field_is_evaluated() {
         scene.time.skin = amberfield_core::Skin::Metres(1.0);
         let settings = FieldSettings {
             method: Method::Direct,
-            coupling_interval: CouplingInterval::Steps(400),
+            coupling_interval: CouplingInterval::Steps(60),
             ..FieldSettings::default()
         };
         scene.field = Some(FieldStageSetup::new(settings, vec![true; 8]));

@@ -85,6 +85,19 @@ fn pair_guard_is_the_edge_for_a_charge_between_two_others() {
 }
 
 #[test]
+fn plasma_guard_is_within_the_edge_for_a_charge_whose_field_is_extrapolated() {
+    // The box around the three makes ω_p nearly the charge's own frequency. No interval is stable for ever; this one's growth is not seen in
+    // thousands of steps.
+    let mut scene = held(&[10.0 + DISPLACED, 10.0 - NEXT, 10.0 + NEXT], Boundary::Open, 0.0);
+    for interval in [4, 20] {
+        let field = scene.field.as_mut().expect("a field");
+        field.settings.coupling_interval = CouplingInterval::Steps(interval);
+        let edge = edge_over("plasma", &scene);
+        assert!(edge > 1.0, "interval {interval}: {edge}");
+    }
+}
+
+#[test]
 fn wall_image_guard_is_the_edge_for_a_charge_that_hovers_over_an_insulator() {
     let height = 0.5 * NEXT;
     let hover = coulomb_constant(1.0) * CHARGE / (NEXT * RADIUS).powi(2);
