@@ -4,6 +4,7 @@
 
 mod boundary_field;
 mod candidates;
+mod charges;
 mod chebyshev;
 mod cutoff;
 mod direct;
