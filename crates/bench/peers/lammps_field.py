@@ -1,6 +1,6 @@
-"""LAMMPS pppm on a cloud: a sweep over cut-off, order, asked accuracy and way of differentiation; CSV on stdout.
+"""LAMMPS pppm or msm on a cloud: a sweep over cut-off, order, asked accuracy and way of differentiation; CSV on stdout.
 
-usage: lammps_field.py CLOUD TOLERANCE CUTOFFS ORDERS SHARES     (lists with commas)
+usage: lammps_field.py CLOUD TOLERANCE CUTOFFS ORDERS SHARES [pppm|msm]     (lists with commas)
 
 CLOUD: little-endian doubles: count, box length, diameter, then x y z q Ex Ey Ez per grain, 4 pi eps = 1.
 A cut-off is in diameters; a share times the tolerance times the RMS force is asked of `kspace_modify force`
@@ -60,6 +60,9 @@ def start(cloud, length):
 
 def main():
     path, tolerance, cutoffs, orders, shares = sys.argv[1:6]
+    style = sys.argv[6] if len(sys.argv) > 6 else "pppm"
+    # Multilevel summation has one way of differentiation.
+    ways = (0, 1) if style == "pppm" else (0,)
     data = numpy.fromfile(path)
     count, length, diameter = int(data[0]), data[1], data[2]
     cloud = data[3:].reshape(count, 7)
@@ -73,9 +76,9 @@ def main():
     for cutoff in map(float, cutoffs.split(",")):
         if cutoff > 0.5 * length / diameter:
             continue
-        settings = itertools.product(map(int, orders.split(",")), map(float, shares.split(",")), (0, 1))
+        settings = itertools.product(map(int, orders.split(",")), map(float, shares.split(",")), ways)
         for order, share, analytic in settings:
-            chosen = (cutoff, order, share * float(tolerance) * scale, analytic)
+            chosen = (style, cutoff, order, share * float(tolerance) * scale, analytic)
             try:
                 prepare(lmp, *chosen)
                 error = relative_error(lmp, exact, scale)
@@ -89,17 +92,18 @@ def main():
         kept = seconds(lmp, evaluations, 3)
         lmp.command("neigh_modify delay 0 every 1 check no")
         anew = seconds(lmp, evaluations, 3)
-        cutoff, order, _, analytic = chosen
+        _, cutoff, order, _, analytic = chosen
         print(f"{cutoff * diameter},{order},{share},{analytic},{error},{kept},{anew}", flush=True)
 
 
-def prepare(lmp, cutoff, order, force, analytic):
+def prepare(lmp, style, cutoff, order, force, analytic):
+    differentiation = f"diff {'ad' if analytic else 'ik'}" if style == "pppm" else ""
     lmp.commands_string(f"""
-        pair_style coul/long {cutoff}
+        pair_style coul/{'long' if style == 'pppm' else 'msm'} {cutoff}
         pair_modify table 0
         pair_coeff * *
-        kspace_style pppm 1e-4
-        kspace_modify order {order} force {force} diff {'ad' if analytic else 'ik'}
+        kspace_style {style} 1e-4
+        kspace_modify order {order} force {force} {differentiation}
         neigh_modify delay 0 every 100000000 check no
         run 0 post no
     """)

@@ -18,28 +18,30 @@ const PRECISIONS: &str = "0.2,5e-2,1e-2,2e-3,5e-4,5e-5,5e-6,5e-7";
 /// Shares of the tolerance asked of LAMMPS.
 const SHARES: &str = "0.8,1.1";
 
-/// Runs `pppm` (LAMMPS, periodic boxes) or `fmm3d` (open space).
+/// Runs `pppm` or `msm` (LAMMPS, periodic boxes) or `fmm3d` (open space).
 pub(super) fn run(program: &str, problem: &Charged, exact: &Exact, tolerance: f64) -> Result<Peer, String> {
     let domain = problem.domain.as_ref().ok_or("the scene has no [domain]")?;
     let all = |face: Boundary| Axis::ALL.iter().all(|axis| domain.faces()[axis.index()] == [face; 2]);
     match program {
-        "pppm" if all(Boundary::Periodic) => lammps(problem, exact, tolerance),
+        "pppm" | "msm" if all(Boundary::Periodic) => lammps(program, problem, exact, tolerance),
         "fmm3d" if all(Boundary::Open) => fmm3d(problem, exact, tolerance),
-        "pppm" | "fmm3d" => Err(format!("{program} has no such boundaries")),
-        other => Err(format!("unknown program {other:?}; give pppm or fmm3d")),
+        "pppm" | "msm" | "fmm3d" => Err(format!("{program} has no such boundaries")),
+        other => Err(format!("unknown program {other:?}; give pppm, msm or fmm3d")),
     }
 }
 
-/// LAMMPS `pppm`, the fastest of a sweep over cut-off, order and way of differentiation, its neighbour list kept.
-fn lammps(problem: &Charged, exact: &Exact, tolerance: f64) -> Result<Peer, String> {
+/// LAMMPS, the fastest of a sweep over cut-off, order and way of differentiation, its neighbour list kept.
+fn lammps(style: &str, problem: &Charged, exact: &Exact, tolerance: f64) -> Result<Peer, String> {
     let (cutoffs, orders) = match tolerance {
+        t if style == "msm" && t > 2e-3 => ("3,4,5,6", "4,6,8,10"),
+        _ if style == "msm" => ("5,6,8", "8,10"),
         t if t > 2e-3 => ("1.5,2,2.5,3,4", "4,5"),
         t if t > 2e-4 => ("2,2.5,3,4", "5,6"),
         t if t > 2e-5 => ("2.5,3,4,5", "5,6"),
         _ => ("4,5,6,7", "7"),
     };
     let points =
-        points("lammps", LAMMPS, problem, exact, &[&tolerance.to_string(), cutoffs, orders, SHARES])?;
+        points("lammps", LAMMPS, problem, exact, &[&tolerance.to_string(), cutoffs, orders, SHARES, style])?;
     let meets = points.iter().filter(|point| point.len() == 7 && point[4] <= tolerance);
     let fastest =
         meets.min_by(|a, b| a[5].total_cmp(&b[5])).ok_or("no setting of the sweep meets the tolerance")?;
