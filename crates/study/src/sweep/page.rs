@@ -16,7 +16,8 @@ const WITHIN: f64 = 2.0;
 /// Share of the points at which it should be.
 const SHARE: f64 = 0.9;
 
-/// Writes the page of a study and its pictures (SVG and PNG) into a folder; rows in the order of the study. Where the page is.
+/// Writes the page of a study and its pictures (SVG and PNG) into a folder; rows in the order of the study, those of other problems are left out.
+/// Where the page is.
 ///
 /// # Errors
 /// A file that cannot be written.
@@ -26,6 +27,12 @@ pub fn write_report(
     (rows, motions): (&[Row], &[MotionRow]),
     repeat: &str,
 ) -> Result<PathBuf, StudyError> {
+    // A swept problem has its value behind its name.
+    let known = |row: &&Row| study.problems.iter().any(|problem| row.problem.starts_with(&problem.name));
+    let rows: Vec<Row> = rows.iter().filter(known).cloned().collect();
+    let known = |row: &&MotionRow| study.motions.iter().any(|motion| row.problem == motion.name);
+    let motions: Vec<MotionRow> = motions.iter().filter(known).cloned().collect();
+    let (rows, motions) = (&rows[..], &motions[..]);
     let pictures = folder.join("pictures");
     std::fs::create_dir_all(&pictures)
         .map_err(|source| StudyError::Write { path: pictures.clone(), source })?;
