@@ -160,7 +160,9 @@ impl<'a> Tuner<'a> {
         p3m.evaluate(self.positions, self.charges, wanted, &mut field)?;
         let rms =
             |e: &[Vector3<f64>]| (e.iter().map(Vector3::norm_squared).sum::<f64>() / self.cloud.count).sqrt();
-        Ok(Scale { all: rms(&field.e).max(self.cloud.floor), smooth: rms(&field.components.far) })
+        // Over a field solver's mesh the grid carries what lies between two clouds, and no mean field.
+        let smooth = if self.longest.is_finite() { 0.0 } else { rms(&field.components.far) };
+        Ok(Scale { all: rms(&field.e).max(self.cloud.floor), smooth })
     }
 
     /// Measures the error of parameters against a second, wider and more exact splitting.

@@ -29,6 +29,7 @@ fn floor_of(mesh: bool) -> FoamBox {
         .replace("[particles]", &solids)
         .replace("[electric_field]", "[electric_field]\nenable_collision_charge_transfer = true")
         .replace("end_s = 1e-3", "end_s = 4e-3")
+        .replace("on_exit = 'delete'", "on_exit = 'delete'\nallow_overlap = true")
         // A tenth of the fall's time.
         .replace("-9.81]", "-981.0]\n[output]\nhistory_every_s = 1e-4\nevery_s = 4e-3\nformats = ['csv']");
     scene.bench.write("scene.toml", text);
