@@ -260,6 +260,9 @@ impl<'a> Tuner<'a> {
         /// Rounds in which the random part makes room for the smooth one, and what is close enough.
         const MOST: usize = 8;
         const ENOUGH: f64 = 1.02;
+        if smooth == 0.0 {
+            return self.candidate_for(cloud, order, spacing, error);
+        }
         let mut random = error;
         for _ in 0..MOST {
             let parameters = self.candidate_for(cloud, order, spacing, random)?;
