@@ -3,7 +3,7 @@
 use crate::arguments::ExplainOptions;
 use crate::failure::Failure;
 use crate::print::line;
-use crate::run::{connect_solver, domain_of, field_of, members, scene_name, setup_of};
+use crate::run::{Charges, charges_of, connect_solver, domain_of, field_of, scene_name, setup_of};
 use crate::{machine, not_built, plan_text};
 use amberfield_core::{Axis, Boundary, Domain, Side};
 use amberfield_dem::Simulation;
@@ -115,18 +115,13 @@ fn explain_field(scene: &Scene, solver: Option<Connect>) -> Result<(), Failure> 
         return Ok(());
     };
     let domain = domain_of(scene)?;
-    let member = members(scene);
-    let chosen = |index: &usize| member[*index];
-    let indices: Vec<usize> = (0..scene.particles.len()).filter(chosen).collect();
-    let positions: Vec<_> =
-        indices.iter().map(|index| domain.wrap(scene.particles.position[*index])).collect();
-    let charges: Vec<_> = indices.iter().map(|index| scene.particles.charge[*index]).collect();
-    let field = field_of(domain, &settings.field, solver, &positions, &charges)?;
+    let Charges { position, charge, .. } = charges_of(scene);
+    let field = field_of(domain, &settings.field, solver, &position, &charge)?;
     for text in plan_text::lines(&field.plan()) {
         line(format_args!("{text}"));
     }
     print_error(scene, &field);
-    print_memory(positions.len() * 4 * size_of::<f64>(), Some(&field));
+    print_memory(position.len() * 4 * size_of::<f64>(), Some(&field));
     Ok(())
 }
 

@@ -2,7 +2,7 @@
 
 use crate::arguments::FieldOptions;
 use crate::failure::Failure;
-use crate::run::{connect_solver, domain_of, field_of, members, parameters, scene_name};
+use crate::run::{Charges, charges_of, connect_solver, domain_of, field_of, parameters, scene_name};
 use crate::{not_built, print};
 use amberfield_core::{Method, Vector3};
 use amberfield_field::{ElectricField, FieldValues, Wanted};
@@ -25,12 +25,7 @@ pub(crate) fn field(options: &FieldOptions) -> Result<(), Failure> {
     let solver = connect_solver(&mut scene)?;
     let settings = scene.electric_field.as_ref().expect("the purpose needs it");
     let domain = domain_of(&scene)?;
-    let member = members(&scene);
-    let select = |index: &usize| member[*index];
-    let indices: Vec<usize> = (0..scene.particles.len()).filter(select).collect();
-    let positions: Vec<_> =
-        indices.iter().map(|index| domain.wrap(scene.particles.position[*index])).collect();
-    let charges: Vec<_> = indices.iter().map(|index| scene.particles.charge[*index]).collect();
+    let Charges { index: indices, position: positions, charge: charges } = charges_of(&scene);
     let mut field = field_of(domain, &settings.field, solver, &positions, &charges)?;
     let wanted = Wanted { potential: true, components: options.components };
     let mut values = FieldValues::default();

@@ -4,7 +4,7 @@ use crate::arguments::TuneOptions;
 use crate::failure::Failure;
 use crate::not_built;
 use crate::print::line;
-use crate::run::{domain_of, members, scene_name};
+use crate::run::{Charges, charges_of, domain_of, scene_name};
 use amberfield_core::constants::coulomb_constant;
 use amberfield_core::{Domain, FieldSettings, Method, Tuning, Vector3};
 use amberfield_field::{Candidate, Choice, ElectricField, FieldError, FieldValues, Wanted};
@@ -34,10 +34,7 @@ pub(crate) fn tune(options: &TuneOptions) -> Result<(), Failure> {
     let mut settings = scene.electric_field.as_ref().expect("the purpose needs it").field.clone();
     settings.tuning = Tuning::Timed;
     let domain = domain_of(&scene)?;
-    let member = members(&scene);
-    let indices = || (0..scene.particles.len()).filter(|&index| member[index]);
-    let positions: Vec<_> = indices().map(|index| domain.wrap(scene.particles.position[index])).collect();
-    let charges: Vec<_> = indices().map(|index| scene.particles.charge[index]).collect();
+    let Charges { position: positions, charge: charges, .. } = charges_of(&scene);
     if charges.is_empty() {
         return Err(Failure::bad_input(
             "no grain takes part in the field: there is nothing to tune; add grains to [particles] or change electric_field.particle_group",

@@ -60,7 +60,7 @@ impl Health {
             grains: simulation.len(),
             kinetic: energies.kinetic,
             highest: potential(energies),
-            charge: charge(simulation),
+            charge: charge(simulation).0,
             allowed,
         }
     }
@@ -101,7 +101,7 @@ impl Health {
                 time_s,
             ));
         }
-        let (now, sizes) = (charge(simulation), charge_sizes(simulation));
+        let (now, sizes) = charge(simulation);
         if (now - self.charge).abs() > CHARGE * sizes {
             return Err(unsound(
                 format!("the charge of grains and walls has gone from {:e} C to {now:e} C", self.charge),
@@ -122,12 +122,11 @@ fn potential(energies: &Energies) -> f64 {
     energies.gravity + energies.contact + energies.electric.unwrap_or(0.0)
 }
 
-fn charge(simulation: &Simulation) -> f64 {
-    let walls = simulation.ledger().map_or(0.0, |ledger| ledger.walls.iter().sum());
-    simulation.particles().net_charge() + walls
-}
-
-fn charge_sizes(simulation: &Simulation) -> f64 {
-    let moved = simulation.ledger().map_or(0.0, |ledger| ledger.moved);
-    simulation.particles().charge.iter().map(|charge| charge.abs()).sum::<f64>() + moved
+/// Charge of grains and walls, and the sizes of all charges [C].
+fn charge(simulation: &Simulation) -> (f64, f64) {
+    let particles = simulation.particles();
+    let (walls, moved) =
+        simulation.ledger().map_or((0.0, 0.0), |ledger| (ledger.walls.iter().sum(), ledger.moved));
+    let sizes: f64 = particles.charge.iter().map(|charge| charge.abs()).sum();
+    (particles.net_charge() + walls, sizes + moved)
 }

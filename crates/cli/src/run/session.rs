@@ -107,11 +107,12 @@ impl<'a> Session<'a> {
         self.simulation.step().map_err(|error| Failure::while_running(&error))?;
         let step = self.simulation.step_index();
         let (row, checkpoint) = (self.schedule.history.is_due(step), self.schedule.checkpoint_is_due(step));
-        if row {
-            self.row()?;
-        }
         if row || checkpoint {
-            self.look_after()?;
+            let energies = forecast_energies(&mut self.simulation)?;
+            if row {
+                self.record.row(&self.simulation, &energies, &self.clock())?;
+            }
+            self.look_after(&energies)?;
         }
         if self.schedule.frame_is_due(step) {
             self.record.frame(self.folder, self.scene, &self.simulation)?;
@@ -124,14 +125,13 @@ impl<'a> Session<'a> {
     }
 
     fn row(&mut self) -> Result<(), Failure> {
-        let (clock, energies) = (self.clock(), self.forecast_energies()?);
-        self.record.row(&self.simulation, &energies, &clock)
+        let energies = forecast_energies(&mut self.simulation)?;
+        self.record.row(&self.simulation, &energies, &self.clock())
     }
 
     /// Ends the run where it is no longer sound, and names the newest checkpoint of when it was.
-    fn look_after(&mut self) -> Result<(), Failure> {
-        let energies = self.forecast_energies()?;
-        self.health.check(&self.simulation, &energies).map_err(|failure| {
+    fn look_after(&mut self, energies: &Energies) -> Result<(), Failure> {
+        self.health.check(&self.simulation, energies).map_err(|failure| {
             match self.folder.newest_checkpoint() {
                 Some(path) => {
                     failure.with(&format!("; the last checkpoint before that is {}", path.display()))
@@ -139,10 +139,6 @@ impl<'a> Session<'a> {
                 None => failure.with("; there is no checkpoint before that"),
             }
         })
-    }
-
-    fn forecast_energies(&mut self) -> Result<Energies, Failure> {
-        self.simulation.energies(ElectricEnergy::Forecast).map_err(|error| Failure::while_running(&error))
     }
 
     /// Path of the checkpoint of the present step.
@@ -185,9 +181,12 @@ impl<'a> Session<'a> {
     }
 }
 
+fn forecast_energies(simulation: &mut Simulation) -> Result<Energies, Failure> {
+    simulation.energies(ElectricEnergy::Forecast).map_err(|error| Failure::while_running(&error))
+}
+
 fn health(scene: &Scene, simulation: &mut Simulation) -> Result<Health, Failure> {
-    let energies =
-        simulation.energies(ElectricEnergy::Forecast).map_err(|error| Failure::while_running(&error))?;
+    let energies = forecast_energies(simulation)?;
     Ok(Health::new(simulation, &energies, Allowed::new(scene)))
 }
 

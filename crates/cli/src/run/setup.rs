@@ -20,6 +20,31 @@ pub(crate) fn members(scene: &Scene) -> Vec<bool> {
     scene.particles.group.iter().map(|id| group == "all" || index == Some(usize::from(id.0))).collect()
 }
 
+/// Who makes and feels the field.
+pub(crate) struct Charges {
+    /// Numbers of the grains in the scene.
+    pub(crate) index: Vec<usize>,
+    /// Positions, inside the domain where it is known [m].
+    pub(crate) position: Vec<Vector3<f64>>,
+    /// [C].
+    pub(crate) charge: Vec<f64>,
+}
+
+/// The members of a scene's field.
+pub(crate) fn charges_of(scene: &Scene) -> Charges {
+    let member = members(scene);
+    let index: Vec<usize> = (0..scene.particles.len()).filter(|&index| member[index]).collect();
+    let wrapped = |&index: &usize| {
+        let position = scene.particles.position[index];
+        scene.domain.as_ref().map_or(position, |domain| domain.wrap(position))
+    };
+    Charges {
+        position: index.iter().map(wrapped).collect(),
+        charge: index.iter().map(|&index| scene.particles.charge[index]).collect(),
+        index,
+    }
+}
+
 /// The parameters of a choice as one flat object; `built` names its kind.
 pub(crate) fn parameters(choice: &Choice) -> Value {
     match serde_json::to_value(choice) {

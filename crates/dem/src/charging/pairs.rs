@@ -55,6 +55,13 @@ struct Trading {
     growth: f64,
 }
 
+impl Trading {
+    /// αΔA.
+    fn relaxes(&self) -> f64 {
+        self.drive.decay * self.growth
+    }
+}
+
 impl Charging {
     /// Moves what is due between pairs of grains. `charge` is by the set-up's order [C].
     pub(crate) fn trade_pairs(
@@ -122,14 +129,11 @@ impl Charging {
                     list.growth[pair.entry].settle();
                     return false;
                 };
-                let relaxes = trading.drive.decay * trading.growth;
-                if self.lag + relaxes > LAG_SEEN {
+                if self.lag + trading.relaxes() > LAG_SEEN {
                     return true;
                 }
                 list.growth[pair.entry].settle();
-                let moved = self.allowed(trading.drive, trading.work, trading.drive.transfer(trading.growth));
-                give(held, i, j, moved);
-                traded = traded.and(Traded { moved: moved.abs(), largest: relaxes });
+                traded = traded.and(self.carry_out(&trading, held, i, j));
                 false
             });
             list.grown = grown;
@@ -151,7 +155,6 @@ impl Charging {
         }
         let grains = traders.grains;
         self.around.build(grains, neighbours);
-        let now = |held: &[Held], grain: usize| held[grain].unwrap_or(0.0);
         let chunks = neighbours.lists.len();
         for k in 0..chunks {
             let k = if self.backwards { chunks - 1 - k } else { k };
@@ -169,13 +172,10 @@ impl Charging {
                 let [one, other] = [i, j].map(|grain| grains.centre[grain][3]);
                 let reach = one - 0.5 * (one + other - offset.norm());
                 let partner = Toucher { grain: j, offset };
-                let charges = |grain| now(held, grain);
+                let charges = |grain: usize| held[grain].unwrap_or(0.0);
                 let gained = self.gained_beside(grains, i, &partner, offset.normalize(), reach, charges);
                 trading.drive.drive += self.permittivity * gained;
-                let moved = self.allowed(trading.drive, trading.work, trading.drive.transfer(trading.growth));
-                give(held, i, j, moved);
-                let relaxes = trading.drive.decay * trading.growth;
-                traded = traded.and(Traded { moved: moved.abs(), largest: relaxes });
+                traded = traded.and(self.carry_out(&trading, held, i, j));
             }
             grown.clear();
             neighbours.lists[k].grown = grown;
@@ -209,6 +209,15 @@ impl Charging {
         })
     }
 
+    /// Moves charge from i to j.
+    #[inline(always)]
+    fn carry_out(&self, trading: &Trading, held: &mut [Held], i: usize, j: usize) -> Traded {
+        let moved = self.allowed(trading.drive, trading.work, trading.drive.transfer(trading.growth));
+        held[i] = held[i].map(|charge| charge - moved);
+        held[j] = held[j].map(|charge| charge + moved);
+        Traded { moved: moved.abs(), largest: trading.relaxes() }
+    }
+
     /// Every listed pair of members that touches or is nearer than `margin` [m].
     pub(super) fn pairs_within(
         traders: Traders<'_>,
@@ -226,10 +235,4 @@ impl Charging {
             }
         }
     }
-}
-
-/// Moves a charge [C] from i to j.
-fn give(held: &mut [Held], i: usize, j: usize, moved: f64) {
-    held[i] = held[i].map(|charge| charge - moved);
-    held[j] = held[j].map(|charge| charge + moved);
 }

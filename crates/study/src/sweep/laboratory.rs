@@ -17,8 +17,6 @@ pub struct Exact {
 /// One evaluation.
 #[derive(Clone, Debug, Default)]
 pub struct Evaluation {
-    /// E at the grains [V/m].
-    pub e: Vec<Vector3<f64>>,
     /// Seconds in all.
     pub seconds: f64,
     /// Stages and their seconds.
@@ -140,6 +138,9 @@ pub trait Laboratory {
     /// # Errors
     /// Why it cannot be run.
     fn simulate(&mut self, scene: &Path, set: &[String], nudge: f64, looks: usize) -> Result<Moved, String>;
+
+    /// E at the grains of the last evaluation [V/m].
+    fn e<'m>(&self, method: &'m Self::Method) -> &'m [Vector3<f64>];
 
     /// Evaluates the field once.
     ///

@@ -1,9 +1,9 @@
 //! Whole runs in the report.
 
 use super::motion::MotionRow;
-use super::page::write_both;
+use super::page::{by_method, write_both};
 use crate::StudyError;
-use crate::plot::{Plot, Scale, Series};
+use crate::plot::{Plot, Scale};
 use std::fmt::Write as _;
 use std::path::Path;
 
@@ -58,17 +58,8 @@ pub(super) fn section(rows: &[MotionRow], name: &str) -> String {
 /// Draws error against wall-clock time.
 pub(super) fn draw(folder: &Path, rows: &[MotionRow], name: &str) -> Result<(), StudyError> {
     for (number, of_motion) in rows.chunk_by(|a, b| a.problem == b.problem).enumerate() {
-        let mut series: Vec<Series> = Vec::new();
-        for row in of_motion {
-            let (Some(error), Some(seconds)) = (row.position_error, row.seconds) else { continue };
-            if error <= 0.0 {
-                continue;
-            }
-            match series.iter_mut().find(|series| series.name == row.method) {
-                Some(series) => series.points.push((error, seconds)),
-                None => series.push(Series { name: row.method.clone(), points: vec![(error, seconds)] }),
-            }
-        }
+        let point = |row: &MotionRow| Some((row.position_error.filter(|error| *error > 0.0)?, row.seconds?));
+        let series = by_method(of_motion.iter().filter_map(|row| Some((row.method.as_str(), point(row)?))));
         if series.is_empty() {
             continue;
         }

@@ -220,16 +220,9 @@ fn draw(folder: &Path, name: &str, rows: &[Row]) -> Result<(), StudyError> {
     if !is_drawn(rows) {
         return Ok(());
     }
-    let mut series: Vec<Series> = Vec::new();
-    for row in rows {
-        let (Some(error), Some(ns)) = (row.error, row.ns_per_grain()) else { continue };
-        match series.iter_mut().find(|series| series.name == row.method) {
-            Some(series) => series.points.push((error, ns)),
-            None => series.push(Series { name: row.method.clone(), points: vec![(error, ns)] }),
-        }
-    }
-    let points: Vec<(f64, f64)> =
-        rows.iter().filter_map(|row| Some((row.error?, row.ns_per_grain()?))).collect();
+    let point = |row: &Row| Some((row.error?, row.ns_per_grain()?));
+    let series = by_method(rows.iter().filter_map(|row| Some((row.method.as_str(), point(row)?))));
+    let points: Vec<(f64, f64)> = rows.iter().filter_map(point).collect();
     let title = rows.first().map_or("", |row| &row.problem);
     let ringed: Vec<(f64, f64)> = front(&points).into_iter().map(|index| points[index]).collect();
     let plot = Plot {
@@ -241,6 +234,18 @@ fn draw(folder: &Path, name: &str, rows: &[Row]) -> Result<(), StudyError> {
         ringed: &ringed,
     };
     write_both(folder, name, &plot)
+}
+
+/// A curve for each method, in the order in which they come.
+pub(super) fn by_method<'r>(points: impl Iterator<Item = (&'r str, (f64, f64))>) -> Vec<Series> {
+    let mut series: Vec<Series> = Vec::new();
+    for (name, point) in points {
+        match series.iter_mut().find(|series| series.name == name) {
+            Some(series) => series.points.push(point),
+            None => series.push(Series { name: name.to_owned(), points: vec![point] }),
+        }
+    }
+    series
 }
 
 fn draw_model(folder: &Path, name: &str, rows: &[Row]) -> Result<(), StudyError> {

@@ -147,11 +147,12 @@ fn checked<L: Laboratory>(
     });
     let running = match built {
         Ok((problem, method, evaluation)) => {
-            let norms = ErrorNorms::new(&evaluation.e, &exact.e, exact.scale);
+            let e = laboratory.e(&method);
+            let norms = ErrorNorms::new(e, &exact.e, exact.scale);
             row.error = Some(norms.relative_rms);
             row.p99 = Some(norms.p99);
             row.worst = Some(norms.worst);
-            row.bias = Some(bias(&evaluation.e, &exact.e));
+            row.bias = Some(bias(e, &exact.e));
             row.estimated = evaluation.estimated;
             row.promised = evaluation.promised;
             row.memory_bytes = Some(evaluation.memory_bytes);

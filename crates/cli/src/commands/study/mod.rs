@@ -6,10 +6,10 @@ mod peers;
 use crate::arguments::StudyOptions;
 use crate::failure::Failure;
 use crate::print::line;
-use crate::run::{connect_solver, domain_of, field_of, members, parameters};
+use crate::run::{Charges, charges_of, connect_solver, domain_of, field_of, parameters};
 use crate::{machine, not_built};
 use amberfield_core::constants::coulomb_constant;
-use amberfield_core::{Domain, FieldSettings, Method, Tuning, Vector3};
+use amberfield_core::{FieldSettings, Method, Tuning, Vector3};
 use amberfield_field::{ElectricField, FieldValues, Wanted};
 use amberfield_oracle::field_scale;
 use amberfield_scene::{Purpose, Scene, read_scene, read_table, write_table};
@@ -115,7 +115,6 @@ struct Bench;
 /// A scene's charges.
 struct Charged {
     scene: Scene,
-    domain: Option<Domain>,
     settings: FieldSettings,
     positions: Vec<Vector3<f64>>,
     charges: Vec<f64>,
@@ -144,18 +143,11 @@ impl Laboratory for Bench {
         let scene = read_scene(scene, set, Purpose::Field).map_err(|error| error.to_string())?;
         not_built::refuse(&scene).map_err(|failure| failure.message().to_owned())?;
         let settings = scene.electric_field.as_ref().expect("the purpose needs it").field.clone();
-        let member = members(&scene);
-        let indices = || (0..scene.particles.len()).filter(|&index| member[index]);
-        let wrapped = |index: usize| {
-            let position = scene.particles.position[index];
-            scene.domain.as_ref().map_or(position, |domain| domain.wrap(position))
-        };
-        let positions: Vec<_> = indices().map(wrapped).collect();
+        let Charges { position: positions, charge: charges, .. } = charges_of(&scene);
         if positions.is_empty() {
             return Err("no grain takes part in the field".to_owned());
         }
-        let charges = indices().map(|index| scene.particles.charge[index]).collect();
-        Ok(Charged { domain: scene.domain.clone(), settings, positions, charges, scene })
+        Ok(Charged { settings, positions, charges, scene })
     }
 
     fn grains(&self, problem: &Charged) -> usize {
@@ -165,6 +157,7 @@ impl Laboratory for Bench {
     fn exact(&mut self, problem: &Charged, direct_up_to: usize) -> Result<Exact, String> {
         let Charged { positions, charges, .. } = problem;
         let domain = problem
+            .scene
             .domain
             .as_ref()
             .ok_or("the scene has no [domain], whose box would be the truth; add it")?;
@@ -221,6 +214,10 @@ impl Laboratory for Bench {
         motion::simulate(scene, set, nudge, looks)
     }
 
+    fn e<'m>(&self, method: &'m Built) -> &'m [Vector3<f64>] {
+        &method.values.e
+    }
+
     fn evaluate(&mut self, problem: &Charged, method: &mut Built) -> Result<Evaluation, String> {
         let Built { field, values } = method;
         let begun = Instant::now();
@@ -231,7 +228,6 @@ impl Laboratory for Bench {
         let statistics = field.statistics();
         let promises = problem.settings.method == Method::P3m;
         Ok(Evaluation {
-            e: values.e.clone(),
             seconds,
             stages: statistics.seconds.into_iter().map(|(stage, s)| (stage.to_owned(), s)).collect(),
             memory_bytes: field.memory_bytes(),

@@ -20,7 +20,7 @@ const SHARES: &str = "0.8,1.1";
 
 /// Runs `pppm` or `msm` (LAMMPS, periodic boxes) or `fmm3d` (open space).
 pub(super) fn run(program: &str, problem: &Charged, exact: &Exact, tolerance: f64) -> Result<Peer, String> {
-    let domain = problem.domain.as_ref().ok_or("the scene has no [domain]")?;
+    let domain = problem.scene.domain.as_ref().ok_or("the scene has no [domain]")?;
     let all = |face: Boundary| Axis::ALL.iter().all(|axis| domain.faces()[axis.index()] == [face; 2]);
     match program {
         "pppm" | "msm" if all(Boundary::Periodic) => lammps(program, problem, exact, tolerance),
@@ -95,7 +95,7 @@ fn points(
 
 /// The charges as the scripts read them: count, edge, diameter, then x y z q Ex Ey Ez with 4πε = 1.
 fn write(path: &Path, problem: &Charged, exact: &Exact) -> std::io::Result<()> {
-    let domain = problem.domain.as_ref().expect("checked before");
+    let domain = problem.scene.domain.as_ref().expect("checked before");
     let coulomb = coulomb_constant(problem.settings.relative_permittivity);
     let largest = problem.scene.particles.radius.iter().copied().fold(0.0, f64::max);
     let mut writer = std::io::BufWriter::new(std::fs::File::create(path)?);
