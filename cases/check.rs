@@ -17,6 +17,8 @@ mod coupled_settling_bed;
 mod electrode_channel;
 #[path = "error-vs-runtime/check.rs"]
 mod error_vs_runtime;
+#[path = "extremes/check.rs"]
+mod extremes;
 #[path = "grounded-plane/check.rs"]
 mod grounded_plane;
 #[path = "grounded-sphere/check.rs"]

@@ -125,13 +125,16 @@ impl<'a> Tuner<'a> {
             best = Some(best.unwrap_or(f64::INFINITY).min(measured.relative_rms));
             aim *= (AIM * asked / measured.relative_rms).clamp(0.05, 0.8);
         }
-        Err(FieldError::Tolerance {
-            asked,
-            reached: best.unwrap_or(f64::NAN),
-            advice: format!(
-                "raise electric_field.tolerance{}, or use method = \"direct\"",
-                self.fixed_keys()
-            ),
+        Err(match best {
+            Some(reached) => FieldError::Tolerance {
+                asked,
+                reached,
+                advice: format!(
+                    "raise electric_field.tolerance{}, or use method = \"direct\"",
+                    self.fixed_keys()
+                ),
+            },
+            None => self.no_parameters(aim * scale.all),
         })
     }
 
@@ -207,13 +210,17 @@ impl<'a> Tuner<'a> {
     }
 
     fn best_by_model(&self, cloud: &Cloud, error: f64, smooth: f64) -> Result<P3mParameters, FieldError> {
-        self.candidates(cloud, error, smooth).first().map(|(_, parameters)| *parameters).ok_or_else(|| {
-            FieldError::Settings(format!(
-                "no p3m parameters within {MOST_NODES:e} grid nodes meet tolerance {:e} (an error of {error:.1e} V/m); raise electric_field.tolerance{}",
-                self.settings.tolerance,
-                self.fixed_keys()
-            ))
-        })
+        let candidates = self.candidates(cloud, error, smooth);
+        candidates.first().map(|(_, parameters)| *parameters).ok_or_else(|| self.no_parameters(error))
+    }
+
+    /// That nothing has an error of at most `error` [V/m].
+    fn no_parameters(&self, error: f64) -> FieldError {
+        FieldError::Settings(format!(
+            "no p3m parameters within {MOST_NODES:e} grid nodes meet tolerance {:e} (an error of {error:.1e} V/m); raise electric_field.tolerance{}, or use method = \"direct\"",
+            self.settings.tolerance,
+            self.fixed_keys()
+        ))
     }
 
     /// With cut-off radii up to one [m].

@@ -2,7 +2,7 @@
 
 use crate::failure::Failure;
 use amberfield_core::{Axis, Vector3};
-use amberfield_dem::{Energies, Simulation};
+use amberfield_dem::{ElectricEnergy, Energies, Simulation};
 use amberfield_scene::Scene;
 
 /// Largest overlap over the smaller radius.
@@ -32,7 +32,7 @@ pub(crate) struct Health {
 pub(crate) struct Allowed {
     /// Deep overlaps.
     overlap: bool,
-    /// Energy that comes from outside: by contacts that charge, or round and round a period.
+    /// Energy that comes from outside: by contacts that charge, forces that are limited, or round and round a period.
     work: bool,
 }
 
@@ -46,9 +46,10 @@ impl Allowed {
             let pull = gravity[axis.index()].abs() + external[axis.index()].abs();
             pull > 0.0 && domain.is_some_and(|domain| domain.is_periodic(axis))
         });
+        let limited = field.is_some_and(|field| field.force_limit.is_some());
         Self {
             overlap: scene.time.as_ref().is_some_and(|time| time.allow_overlap),
-            work: round || scene.charge_transfer.is_some(),
+            work: round || limited || scene.charge_transfer.is_some(),
         }
     }
 }
@@ -65,8 +66,8 @@ impl Health {
         }
     }
 
-    /// Looks at a run; says what is wrong, at which grain.
-    pub(crate) fn check(&mut self, simulation: &Simulation, energies: &Energies) -> Result<(), Failure> {
+    /// Looks at a run; says what is wrong, at which grain. The energies may be forecasts: what looks wrong by them is looked at again.
+    pub(crate) fn check(&mut self, simulation: &mut Simulation, energies: &Energies) -> Result<(), Failure> {
         if simulation.len() != self.grains {
             // Grains that left took their energy and charge along.
             *self = Self::new(simulation, energies, self.allowed);
@@ -89,17 +90,21 @@ impl Health {
             ));
         }
         self.highest = self.highest.max(potential(energies));
-        let released = self.kinetic + self.highest - potential(energies);
-        let sizes = energies.gravity.abs() + energies.contact.abs() + energies.electric.unwrap_or(0.0).abs();
-        if !self.allowed.work && energies.kinetic > ENERGY * released.max(0.0) + ROUND_OFF * sizes {
-            let (id, speed) = simulation.fastest().unwrap_or_default();
-            return Err(unsound(
-                format!(
-                    "the grains have {:.3e} J of kinetic energy, more than {ENERGY} times the {released:.3e} J that were there to be released; the fastest is grain {id} with {speed:.3e} m/s",
-                    energies.kinetic
-                ),
-                time_s,
-            ));
+        if self.is_too_fast(energies) {
+            let exact = simulation
+                .energies(ElectricEnergy::Evaluated)
+                .map_err(|error| Failure::while_running(&error))?;
+            if self.is_too_fast(&exact) {
+                let (id, speed) = simulation.fastest().unwrap_or_default();
+                return Err(unsound(
+                    format!(
+                        "the grains have {:.3e} J of kinetic energy, more than {ENERGY} times the {:.3e} J that were there to be released; the fastest is grain {id} with {speed:.3e} m/s",
+                        exact.kinetic,
+                        self.released(&exact)
+                    ),
+                    time_s,
+                ));
+            }
         }
         let (now, sizes) = charge(simulation);
         if (now - self.charge).abs() > CHARGE * sizes {
@@ -109,6 +114,17 @@ impl Health {
             ));
         }
         Ok(())
+    }
+
+    /// What the grains had, and could have got by now [J].
+    fn released(&self, energies: &Energies) -> f64 {
+        (self.kinetic + self.highest - potential(energies)).max(0.0)
+    }
+
+    fn is_too_fast(&self, energies: &Energies) -> bool {
+        let sizes = energies.gravity.abs() + energies.contact.abs() + energies.electric.unwrap_or(0.0).abs();
+        let most = ENERGY * self.released(energies) + ROUND_OFF * sizes;
+        !self.allowed.work && energies.kinetic > most
     }
 }
 

@@ -131,7 +131,7 @@ impl<'a> Session<'a> {
 
     /// Ends the run where it is no longer sound, and names the newest checkpoint of when it was.
     fn look_after(&mut self, energies: &Energies) -> Result<(), Failure> {
-        self.health.check(&self.simulation, energies).map_err(|failure| {
+        self.health.check(&mut self.simulation, energies).map_err(|failure| {
             match self.folder.newest_checkpoint() {
                 Some(path) => {
                     failure.with(&format!("; the last checkpoint before that is {}", path.display()))

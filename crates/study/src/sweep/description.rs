@@ -30,6 +30,9 @@ pub struct Study {
     /// Whole runs.
     #[serde(default)]
     pub motions: Vec<Motion>,
+    /// Scenes pushed to an end.
+    #[serde(default)]
+    pub extremes: Vec<Extreme>,
     /// What should come out.
     #[serde(default)]
     pub goals: Vec<Goal>,
@@ -109,6 +112,93 @@ pub struct Motion {
     pub variants: Vec<Method>,
 }
 
+/// A scene pushed to an end, and what should become of it.
+#[derive(Clone, Debug, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct Extreme {
+    /// What is pushed.
+    pub name: String,
+    /// What should happen, in words.
+    pub expect: String,
+    /// Scene file, beside the study.
+    pub scene: PathBuf,
+    /// Overrides of the scene, `KEY=VALUE`.
+    #[serde(default)]
+    pub set: Vec<String>,
+    /// One key with several values: a run for each.
+    pub sweep: Option<Sweep>,
+    /// How the command should end.
+    #[serde(default)]
+    pub ends: Ends,
+    /// What its last message should contain.
+    pub says: Option<String>,
+    /// Most that the energy rises above that at the start, over the largest that is turned over.
+    pub most_gain: Option<f64>,
+    /// Most that it falls below, likewise.
+    pub most_loss: Option<f64>,
+    /// Most kinetic energy per grain at the end [J].
+    pub most_kinetic_j: Option<f64>,
+    /// Most relative RMS error of E at the grains against the direct sum; the field of the scene is evaluated then, and nothing moves.
+    pub most_error: Option<f64>,
+    /// Most change of the charge of grains and walls over the sizes of all charges; round-off unless grains may leave.
+    #[serde(default = "round_off")]
+    pub most_charge: f64,
+    /// Whether forces should be limited.
+    pub limited: Option<bool>,
+    /// Longest time that it may take [s].
+    #[serde(default = "two_minutes")]
+    pub most_s: f64,
+}
+
+impl Extreme {
+    /// The command that it is about.
+    #[must_use]
+    pub fn command(&self) -> &'static str {
+        if self.most_error.is_some() { "field" } else { "run" }
+    }
+}
+
+/// How a command can end.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Deserialize)]
+#[serde(rename_all = "snake_case")]
+pub enum Ends {
+    /// With all that was asked for.
+    #[default]
+    Well,
+    /// Before anything runs, as bad input.
+    Refused,
+    /// With an answer outside its tolerance, or a motion that is no longer sound.
+    Unsound,
+}
+
+impl Ends {
+    /// The exit code.
+    pub(super) fn code(self) -> i32 {
+        match self {
+            Self::Well => 0,
+            Self::Refused => 2,
+            Self::Unsound => 4,
+        }
+    }
+
+    pub(super) fn word(self) -> &'static str {
+        match self {
+            Self::Well => "well",
+            Self::Refused => "refused",
+            Self::Unsound => "unsound",
+        }
+    }
+
+    /// An exit code in words.
+    pub(super) fn told(code: Option<i32>) -> String {
+        let known = [Self::Well, Self::Refused, Self::Unsound];
+        match known.into_iter().find(|ends| Some(ends.code()) == code) {
+            Some(ends) => ends.word().to_owned(),
+            None => code.map_or_else(|| "did not end".to_owned(), |code| format!("code {code}")),
+        }
+    }
+}
+
 /// What should come out of a study. Exactly one of `times_less`, `times_as_fast` and `at_most` says what.
 #[derive(Clone, Debug, Deserialize)]
 #[serde(deny_unknown_fields)]
@@ -158,6 +248,14 @@ fn tenth() -> f64 {
     0.1
 }
 
+fn round_off() -> f64 {
+    1e-12
+}
+
+fn two_minutes() -> f64 {
+    120.0
+}
+
 fn ten_thousand() -> usize {
     10_000
 }
@@ -186,13 +284,16 @@ impl Study {
         if !(self.least_s >= 0.0 && self.least_s < 3600.0) {
             return Err(format!("least_s = {}: give seconds from 0 to 3600", self.least_s));
         }
-        if (self.problems.is_empty() || self.methods.is_empty()) && self.motions.is_empty() {
+        let points = !self.problems.is_empty() && !self.methods.is_empty();
+        if !points && self.motions.is_empty() && self.extremes.is_empty() {
             return Err(
-                "a study needs [[problems]] and [[methods]], or [[motions]]; add at least one of each"
+                "a study needs [[problems]] and [[methods]], or [[motions]], or [[extremes]]; add at least one of each"
                     .to_owned(),
             );
         }
-        let sweeps = self.problems.iter().map(|p| &p.sweep).chain(self.methods.iter().map(|m| &m.sweep));
+        let of_problems = self.problems.iter().map(|problem| &problem.sweep);
+        let of_methods = self.methods.iter().map(|method| &method.sweep);
+        let sweeps = of_problems.chain(of_methods).chain(self.extremes.iter().map(|extreme| &extreme.sweep));
         let of_motion = |m: &'_ Motion| {
             std::iter::once(m.replicas.clone())
                 .chain(m.variants.iter().map(|v| v.sweep.clone()))

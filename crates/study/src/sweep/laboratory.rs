@@ -1,5 +1,6 @@
 //! What a study needs of whoever computes fields.
 
+use super::description::Extreme;
 use amberfield_core::Vector3;
 use std::path::Path;
 
@@ -74,6 +75,47 @@ impl Moved {
     }
 }
 
+/// What became of a command.
+#[derive(Clone, Debug, Default)]
+pub struct Endured {
+    /// Its exit code; none if it did not end in time or was killed.
+    pub code: Option<i32>,
+    /// Its last message, if it did not end well.
+    pub said: String,
+    /// Wall-clock time [s].
+    pub seconds: f64,
+    /// Grains.
+    pub grains: usize,
+    /// Sum of the sizes of all charges [C], those that contacts have moved among them.
+    pub charges_c: f64,
+    /// Looks at the run, in time.
+    pub looks: Vec<Look>,
+    /// Relative RMS error of E against the direct sum.
+    pub error: Option<f64>,
+}
+
+/// A look at a run.
+#[derive(Clone, Copy, Debug, Default)]
+pub struct Look {
+    /// Time [s].
+    pub time_s: f64,
+    /// Kinetic energy [J].
+    pub kinetic_j: f64,
+    /// Energy of gravity, contacts and field [J].
+    pub potential_j: f64,
+    /// Charge of grains and walls [C].
+    pub charge_c: f64,
+    /// Grains whose force was limited.
+    pub limited: Option<u64>,
+}
+
+impl Look {
+    /// All energy [J].
+    pub(super) fn total_j(&self) -> f64 {
+        self.kinetic_j + self.potential_j
+    }
+}
+
 /// Where a study was made.
 #[derive(Clone, Debug, Default)]
 pub struct Machine {
@@ -138,6 +180,9 @@ pub trait Laboratory {
     /// # Errors
     /// Why it cannot be run.
     fn simulate(&mut self, scene: &Path, set: &[String], nudge: f64, looks: usize) -> Result<Moved, String>;
+
+    /// Sends a scene through the command that an extreme is about, as a user would.
+    fn endure(&mut self, scene: &Path, set: &[String], extreme: &Extreme) -> Endured;
 
     /// E at the grains of the last evaluation [V/m].
     fn e<'m>(&self, method: &'m Self::Method) -> &'m [Vector3<f64>];

@@ -5,6 +5,8 @@
 
 mod comparison;
 mod description;
+mod extremes;
+mod extremes_page;
 mod front;
 mod laboratory;
 mod motion;
@@ -13,9 +15,10 @@ mod page;
 mod points;
 mod row;
 
-pub use description::{Goal, Method, Motion, Problem, Study, Sweep, Truth};
-pub use laboratory::{Evaluation, Exact, Laboratory, Machine, Moved, Peer};
+pub use description::{Ends, Extreme, Goal, Method, Motion, Problem, Study, Sweep, Truth};
+pub use extremes::{EnergyRow, ExtremeRow, run_extremes};
+pub use laboratory::{Endured, Evaluation, Exact, Laboratory, Look, Machine, Moved, Peer};
 pub use motion::{MotionRow, run_motions};
-pub use page::write_report;
+pub use page::{Results, write_report};
 pub use points::run;
 pub use row::Row;

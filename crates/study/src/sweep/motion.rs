@@ -60,9 +60,8 @@ pub fn run_motions<L: Laboratory>(
     folder: &Path,
     laboratory: &mut L,
     mut done: impl FnMut(&MotionRow),
-) -> Vec<MotionRow> {
+) {
     let machine = laboratory.machine();
-    let mut rows = Vec::new();
     for motion in &study.motions {
         let scene = folder.join(&motion.scene);
         match Truth::find(motion, &scene, laboratory) {
@@ -79,15 +78,13 @@ pub fn run_motions<L: Laboratory>(
                         Err(failure) => MotionRow { failure, ..row },
                     };
                     done(&row);
-                    rows.push(row);
                 }
             }
             Err(reason) => {
-                rows.push(MotionRow { failure: format!("no truth: {reason}"), ..row(&machine, motion) });
+                done(&MotionRow { failure: format!("no truth: {reason}"), ..row(&machine, motion) });
             }
         }
     }
-    rows
 }
 
 fn row(machine: &Machine, motion: &Motion) -> MotionRow {

@@ -2,6 +2,8 @@
 
 use super::comparison::{Comparison, comparisons, verdict};
 use super::description::Study;
+use super::extremes::{EnergyRow, ExtremeRow};
+use super::extremes_page;
 use super::front::front;
 use super::motion::MotionRow;
 use super::motion_page;
@@ -16,6 +18,19 @@ const WITHIN: f64 = 2.0;
 /// Share of the points at which it should be.
 const SHARE: f64 = 0.9;
 
+/// What a study has found.
+#[derive(Clone, Debug, Default)]
+pub struct Results {
+    /// Points.
+    pub points: Vec<Row>,
+    /// Whole runs.
+    pub motions: Vec<MotionRow>,
+    /// Scenes pushed to an end.
+    pub extremes: Vec<ExtremeRow>,
+    /// Their energies over time.
+    pub energies: Vec<EnergyRow>,
+}
+
 /// Writes the page of a study and its pictures (SVG and PNG) into a folder; rows in the order of the study, those of other problems are left out.
 /// Where the page is.
 ///
@@ -24,20 +39,21 @@ const SHARE: f64 = 0.9;
 pub fn write_report(
     folder: &Path,
     study: &Study,
-    (rows, motions): (&[Row], &[MotionRow]),
+    results: &Results,
     repeat: &str,
 ) -> Result<PathBuf, StudyError> {
     // A swept problem has its value behind its name.
     let known = |row: &&Row| study.problems.iter().any(|problem| row.problem.starts_with(&problem.name));
-    let rows: Vec<Row> = rows.iter().filter(known).cloned().collect();
+    let rows: Vec<Row> = results.points.iter().filter(known).cloned().collect();
     let known = |row: &&MotionRow| study.motions.iter().any(|motion| row.problem == motion.name);
-    let motions: Vec<MotionRow> = motions.iter().filter(known).cloned().collect();
+    let motions: Vec<MotionRow> = results.motions.iter().filter(known).cloned().collect();
     let (rows, motions) = (&rows[..], &motions[..]);
+    let (extremes, energies) = (&results.extremes[..], &results.energies[..]);
     let pictures = folder.join("pictures");
     std::fs::create_dir_all(&pictures)
         .map_err(|source| StudyError::Write { path: pictures.clone(), source })?;
     let name = &study.name;
-    let mut page = format!("# {}\n\n{}", study.title, setting(study, (rows, motions), repeat));
+    let mut page = format!("# {}\n\n{}", study.title, setting(study, results, repeat));
     if !rows.is_empty() {
         page += &conclusions(study, rows);
     }
@@ -48,10 +64,14 @@ pub fn write_report(
     }
     motion_page::draw(&pictures, motions, name)?;
     page += &motion_page::section(motions, name);
+    extremes_page::draw(&pictures, study, extremes, energies)?;
+    page += &extremes_page::section(study, extremes, energies);
     let picture = format!("{name}-model");
     draw_model(&pictures, &picture, rows)?;
     page += &model(rows, &picture);
-    page += &failures(rows, motions);
+    if extremes.is_empty() {
+        page += &failures(rows, motions);
+    }
     if !rows.is_empty() {
         page += BIAS;
     }
@@ -60,10 +80,14 @@ pub fn write_report(
     Ok(path)
 }
 
-fn setting(study: &Study, (rows, motions): (&[Row], &[MotionRow]), repeat: &str) -> String {
+fn setting(study: &Study, results: &Results, repeat: &str) -> String {
+    let Results { points: rows, motions, extremes, .. } = results;
     let of_row = rows.first().map(|row| (&row.date, &row.version, &row.processor, row.threads));
     let of_motion = motions.first().map(|row| (&row.date, &row.version, &row.processor, row.threads));
-    let Some((date, version, processor, threads)) = of_row.or(of_motion) else { return String::new() };
+    let of_extreme = extremes.first().map(|row| (&row.date, &row.version, &row.processor, row.threads));
+    let Some((date, version, processor, threads)) = of_row.or(of_motion).or(of_extreme) else {
+        return String::new();
+    };
     let plural = if threads == 1 { "" } else { "s" };
     let mut text =
         format!("Measured {date} with amberfield {version} on {processor}, {threads} thread{plural}. ");

@@ -9,14 +9,8 @@ use std::path::Path;
 use std::time::Instant;
 
 /// Measures every point, in the study's order; `done` hears of each problem's rows as soon as they are there. `folder` is the study's.
-pub fn run<L: Laboratory>(
-    study: &Study,
-    folder: &Path,
-    laboratory: &mut L,
-    mut done: impl FnMut(&[Row]),
-) -> Vec<Row> {
+pub fn run<L: Laboratory>(study: &Study, folder: &Path, laboratory: &mut L, mut done: impl FnMut(&[Row])) {
     let machine = laboratory.machine();
-    let mut rows = Vec::new();
     for problem in &study.problems {
         for (swept, value) in Sweep::overrides(problem.sweep.as_ref()) {
             let set = [problem.set.clone(), swept].concat();
@@ -33,12 +27,9 @@ pub fn run<L: Laboratory>(
             let methods = study.methods.iter().filter(|method| {
                 method.problems.as_ref().is_none_or(|problems| problems.contains(&problem.name))
             });
-            let of_problem = setting.measure(laboratory, methods);
-            done(&of_problem);
-            rows.extend(of_problem);
+            done(&setting.measure(laboratory, methods));
         }
     }
-    rows
 }
 
 /// One problem.

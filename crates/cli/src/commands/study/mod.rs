@@ -1,5 +1,6 @@
 //! `amberfield study`.
 
+mod extremes;
 mod motion;
 mod peers;
 
@@ -14,7 +15,7 @@ use amberfield_field::{ElectricField, FieldValues, Wanted};
 use amberfield_oracle::field_scale;
 use amberfield_scene::{Purpose, Scene, read_scene, read_table, write_table};
 use amberfield_study::sweep::{
-    self, Evaluation, Exact, Laboratory, Machine, MotionRow, Moved, Peer, Row, Study,
+    self, Endured, Evaluation, Exact, Extreme, Laboratory, Machine, Moved, Peer, Results, Row, Study,
 };
 use serde::de::DeserializeOwned;
 use std::path::{Path, PathBuf};
@@ -31,59 +32,83 @@ pub(crate) fn study(options: &StudyOptions) -> Result<(), Failure> {
     let data = out.join("data");
     std::fs::create_dir_all(&data)
         .map_err(|error| Failure::bad_input(format!("cannot make {}: {error}", data.display())))?;
-    let (rows, motions) = if options.page {
-        (newest(&data, &study.name)?, newest(&data, &format!("{}-motions", study.name))?)
+    let results = if options.page {
+        let newest_of = |kind: &str| format!("{}{kind}", study.name);
+        Results {
+            points: newest(&data, &newest_of(""))?,
+            motions: newest(&data, &newest_of("-motions"))?,
+            extremes: newest(&data, &newest_of("-extremes"))?,
+            energies: newest(&data, &newest_of("-energies"))?,
+        }
     } else {
         measured(options, &study, &data)?
     };
     let repeat = format!("amberfield study {}", options.study.display());
-    let page = sweep::write_report(&out, &study, (&rows, &motions), &repeat)
-        .map_err(|error| Failure::of_study(&error))?;
-    line(format_args!("{} points, {} runs; page: {}", rows.len(), motions.len(), page.display()));
-    let broken: Vec<_> = rows.iter().filter(|row| row.breaks_its_bound()).collect();
+    let page =
+        sweep::write_report(&out, &study, &results, &repeat).map_err(|error| Failure::of_study(&error))?;
+    let Results { points, motions, extremes, .. } = &results;
+    line(format_args!(
+        "{} points, {} runs, {} extremes; page: {}",
+        points.len(),
+        motions.len(),
+        extremes.len(),
+        page.display()
+    ));
+    let broken: Vec<_> = points.iter().filter(|row| row.breaks_its_bound()).map(told).collect();
+    if let Some(first) = broken.first() {
+        return Err(Failure::outside_tolerance(format!(
+            "{} of {} points have an error above their bound; the first: {first}",
+            broken.len(),
+            points.len(),
+        )));
+    }
+    let broken: Vec<_> = extremes.iter().filter(|row| !row.broken.is_empty()).collect();
     match broken.first() {
         None => Ok(()),
         Some(first) => Err(Failure::outside_tolerance(format!(
-            "{} of {} points have an error above their bound; the first: {}",
+            "{} of {} extremes are not as expected; the first: {} {}: {}",
             broken.len(),
-            rows.len(),
-            told(first)
+            extremes.len(),
+            first.extreme,
+            first.value,
+            first.broken
         ))),
     }
 }
 
 /// Measures all; what is known is on the disk, should the rest never come.
-fn measured(
-    options: &StudyOptions,
-    study: &Study,
-    data: &Path,
-) -> Result<(Vec<Row>, Vec<MotionRow>), Failure> {
+fn measured(options: &StudyOptions, study: &Study, data: &Path) -> Result<Results, Failure> {
     let folder = options.study.parent().unwrap_or_else(|| Path::new(""));
-    let table = |name: &str| data.join(format!("{}-{name}.csv", machine::today()));
-    let (of_points, of_motions) = (table(&study.name), table(&format!("{}-motions", study.name)));
-    let (mut known, mut unwritten) = (Vec::new(), Ok(()));
-    let rows = sweep::run(study, folder, &mut Bench, |rows| {
+    let table = |kind: &str| data.join(format!("{}-{}{kind}.csv", machine::today(), study.name));
+    let mut known = Results::default();
+    let mut unwritten = Ok(());
+    sweep::run(study, folder, &mut Bench, |rows| {
         for row in rows {
             tracing::info!("{}", told(row));
         }
-        known.extend_from_slice(rows);
-        unwritten = write_table(&of_points, &known);
+        known.points.extend_from_slice(rows);
+        unwritten = write_table(&table(""), &known.points);
     });
     unwritten?;
-    let (mut known, mut unwritten) = (Vec::new(), Ok(()));
-    let motions = sweep::run_motions(study, folder, &mut Bench, |row| {
-        tracing::info!(
-            "{}, {} {}: {:.2} s",
-            row.problem,
-            row.method,
-            row.value,
-            row.seconds.unwrap_or(f64::NAN)
-        );
-        known.push(row.clone());
-        unwritten = write_table(&of_motions, &known);
+    let mut unwritten = Ok(());
+    sweep::run_motions(study, folder, &mut Bench, |row| {
+        let seconds = row.seconds.unwrap_or(f64::NAN);
+        tracing::info!("{}, {} {}: {seconds:.2} s", row.problem, row.method, row.value);
+        known.motions.push(row.clone());
+        unwritten = write_table(&table("-motions"), &known.motions);
     });
     unwritten?;
-    Ok((rows, motions))
+    let mut unwritten = Ok(());
+    sweep::run_extremes(study, folder, &mut Bench, |row, energies| {
+        let verdict = if row.broken.is_empty() { "as expected" } else { &row.broken };
+        tracing::info!("{} {}: {}, {verdict}", row.extreme, row.value, row.ended);
+        known.extremes.push(row.clone());
+        known.energies.extend_from_slice(energies);
+        unwritten = write_table(&table("-extremes"), &known.extremes)
+            .and_then(|()| write_table(&table("-energies"), &known.energies));
+    });
+    unwritten?;
+    Ok(known)
 }
 
 /// The newest rows of a name; none where there is no such file.
@@ -212,6 +237,10 @@ impl Laboratory for Bench {
 
     fn simulate(&mut self, scene: &Path, set: &[String], nudge: f64, looks: usize) -> Result<Moved, String> {
         motion::simulate(scene, set, nudge, looks)
+    }
+
+    fn endure(&mut self, scene: &Path, set: &[String], extreme: &Extreme) -> Endured {
+        extremes::endure(scene, set, extreme)
     }
 
     fn e<'m>(&self, method: &'m Built) -> &'m [Vector3<f64>] {
