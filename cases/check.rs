@@ -19,6 +19,8 @@ mod electrode_channel;
 mod error_vs_runtime;
 #[path = "extremes/check.rs"]
 mod extremes;
+#[path = "falling-in-air/check.rs"]
+mod falling_in_air;
 #[path = "grounded-plane/check.rs"]
 mod grounded_plane;
 #[path = "grounded-sphere/check.rs"]

@@ -30,13 +30,13 @@ fn bad_values_name_file_line_key_and_value() {
 }
 
 #[test]
-fn what_is_not_built_is_refused_by_name() {
+fn what_charge_transfer_and_gas_need_is_said_by_name() {
     let transfer = "enable_collision_charge_transfer = true";
     refused("tuning = \"model\"", transfer, &["materials[0].work_function_eV"]);
     refused(
         "rolling_friction = 0.01",
-        &format!("work_function_eV = 4.5\n[gas]\n# {transfer}"),
-        &["this version has no coupled gas flow"],
+        "[gas]\ndrag = \"ergun\"",
+        &["gas.drag", "schiller_naumann", "gidaspow"],
     );
 }
 

@@ -2,8 +2,10 @@
 
 #![expect(clippy::unwrap_used, reason = "helpers of tests fail as tests do")]
 
+mod any_bytes;
 mod bad_input;
 mod explain_and_doctor;
+mod faults;
 mod field;
 mod host_library;
 mod interrupt;

@@ -177,7 +177,13 @@ fn a_run_that_is_no_longer_sound_stops_and_names_grain_and_checkpoint() {
     );
     let answer = bench.run(&["run", "scene.toml", "--out", "out", "--no-progress"]);
     assert_eq!(answer.code, Some(4), "{}", answer.stderr);
-    for part in ["no longer sound", "grain ", "the last checkpoint before that is out/checkpoints/step_"] {
+    for part in [
+        "no longer sound",
+        "grain ",
+        " m/s)",
+        "the last files in particles/ show that moment",
+        "the last checkpoint before that is out/checkpoints/step_",
+    ] {
         assert!(answer.stderr.contains(part), "no {part:?} in {}", answer.stderr);
     }
     assert!(bench.read("out/summary.json").contains("no longer sound"));

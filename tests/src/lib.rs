@@ -1,5 +1,6 @@
 //! Running the `amberfield` binary in a folder of its own.
 
+pub mod any_bytes;
 mod bench;
 mod foam_box;
 pub mod foam_case;

@@ -5,7 +5,7 @@ use amberfield_core::{
     Vector3,
 };
 use amberfield_dem::{Setup, Simulation};
-use amberfield_oracle::rms;
+use amberfield_oracle::{rms, rms_difference};
 use rand::{RngExt as _, SeedableRng as _};
 use rand_chacha::ChaCha8Rng;
 
@@ -109,6 +109,7 @@ fn jittered(count: usize, fraction: f64, jitter: f64) -> Setup {
             on_exit: OnExit::Stop,
             allow_overlap: true,
         },
+        gas: None,
         field: None,
     }
 }
@@ -153,11 +154,6 @@ impl Cloud {
         head.into_iter()
             .chain(grains.flat_map(move |((x, &q), e)| [x.x, x.y, x.z, q, e.x / k, e.y / k, e.z / k]))
     }
-}
-
-/// RMS of the difference of two fields.
-pub(crate) fn rms_difference(a: &[Vector3<f64>], b: &[Vector3<f64>]) -> f64 {
-    rms(&a.iter().zip(b).map(|(a, b)| a - b).collect::<Vec<_>>())
 }
 
 /// RMS of the difference of two fields over the RMS of the second.

@@ -1,4 +1,5 @@
 //! The `amberfield` command.
+#![forbid(unsafe_code)]
 
 mod arguments;
 mod commands;
@@ -6,7 +7,6 @@ mod failure;
 mod interrupt;
 mod logging;
 mod machine;
-mod not_built;
 mod plan_text;
 mod print;
 mod progress;

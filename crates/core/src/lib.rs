@@ -3,11 +3,13 @@
 //!
 //! SI units everywhere, angles in radians. Electric field `E` in V/m points away from positive charge;
 //! potential `V` in volts with `E = −∇V`.
+#![forbid(unsafe_code)]
 
 mod charge_transfer;
 pub mod constants;
 mod domain;
 mod field_settings;
+mod gas;
 mod material;
 mod particles;
 mod plan;
@@ -17,6 +19,7 @@ mod wall;
 pub use charge_transfer::ChargeTransfer;
 pub use domain::{Axis, Boundary, Domain, DomainError, Side};
 pub use field_settings::{CouplingInterval, FieldSettings, ForceLimit, Method, Tuning};
+pub use gas::{DragLaw, Gas};
 pub use material::{Material, MaterialId};
 pub use nalgebra::{Matrix3, Vector3};
 pub use particles::{Grain, GroupId, Particles};

@@ -188,8 +188,14 @@ impl RemoteSolver {
         for (e, field) in values.e[first..].iter_mut().zip(field) {
             *e = Vector3::from(*field);
         }
-        for (known, &cell) in values.cells.iter_mut().zip(cells).filter(|(_, cell)| **cell != u64::MAX) {
-            *known = u32::try_from(first as u64 + cell).unwrap_or(u32::MAX);
+        for (place, (known, &cell)) in values.cells.iter_mut().zip(cells).enumerate() {
+            if cell == u64::MAX {
+                continue;
+            }
+            if cell >= count as u64 {
+                return Err(WireError::Index { section: Section::Cells, place, value: cell, count });
+            }
+            *known = first as u32 + cell as u32;
         }
         values.outside += answer[1] as u64;
         values.iterations = values.iterations.max(answer[2] as u64);
@@ -221,10 +227,12 @@ impl RemoteSolver {
             let rank = self.read(&message, values).map_err(of_solver)?;
             missing -= u32::from(!std::mem::replace(&mut seen[rank], true));
         }
-        if let Some(cell) = values.potential.iter().position(|potential| !potential.is_finite()) {
+        let sound = |(potential, e): (&f64, &Vector3<f64>)| (potential + e.sum()).is_finite();
+        if let Some(cell) = values.potential.iter().zip(&values.e).position(|answer| !sound(answer)) {
             return Err(CouplingError::Mesh(FieldError::Solver(format!(
-                "the field solver's potential in cell {cell} is {}; look at its log",
-                values.potential[cell]
+                "the field solver's answer in cell {cell} is {} V, {:?} V/m; look at its log",
+                values.potential[cell],
+                values.e[cell].as_slice()
             ))));
         }
         Ok(())

@@ -6,7 +6,7 @@ use crate::mesh_message::{MeshPart, mesh_header, own_cells};
 use crate::run_root::RunRoot;
 use amberfield_core::Vector3;
 use amberfield_field::far::{FarMesh, SmoothDensity};
-use amberfield_wire::{Header, Layout, MessageKind, Section, WireError};
+use amberfield_wire::{Header, Layout, MessageKind, Section, Sections, WireError};
 use std::time::{Duration, Instant};
 
 /// How long a field process waits for the run's services, and looks for the DEM process between messages.
@@ -25,6 +25,31 @@ pub struct Asked {
     pub neutralising_background: bool,
     /// Time of the charges [s].
     pub time_s: f64,
+}
+
+impl Asked {
+    /// What a message asks for.
+    ///
+    /// # Errors
+    /// Another kind of message, numbers that are missing or no numbers, a permittivity that is not positive.
+    pub fn read(header: &Header, sections: &Sections<'_>) -> Result<Self, WireError> {
+        if header.kind != MessageKind::Charges as u32 {
+            let Header { kind, solve, rank, ranks, .. } = *header;
+            return Err(WireError::Unexpected { kind, solve, rank, ranks });
+        }
+        let numbers = sections.exactly::<f64>(Section::Request, 6)?;
+        let sound = |place: usize, number: f64| number.is_finite() && (place > 0 || number > 0.0);
+        if let Some(place) = (0..numbers.len()).find(|&place| !sound(place, numbers[place])) {
+            return Err(WireError::Number { section: Section::Request, place, value: numbers[place] });
+        }
+        Ok(Self {
+            solve: header.solve,
+            permittivity: numbers[0],
+            tolerance: numbers[3],
+            neutralising_background: numbers[4] != 0.0,
+            time_s: numbers[5],
+        })
+    }
 }
 
 /// What a rank answers.
@@ -119,7 +144,7 @@ impl FieldSide {
                 return Err(error);
             }
         };
-        let asked = read(&message).map_err(of_dem)?;
+        let asked = Asked::read(message.header(), &message.sections()).map_err(of_dem)?;
         self.asked = Some(message);
         Ok(Some(asked))
     }
@@ -276,21 +301,6 @@ impl FieldSide {
     fn section<T: amberfield_wire::Element>(&self, section: Section) -> Result<&[T], CouplingError> {
         self.asked.as_ref().ok_or_else(no_request)?.sections().get(section).map_err(of_dem)
     }
-}
-
-fn read(message: &Message) -> Result<Asked, WireError> {
-    let header = message.header();
-    if message.kind != MessageKind::Charges {
-        return Err(WireError::Unexpected { kind: header.kind, solve: header.solve, rank: 0, ranks: 1 });
-    }
-    let numbers = message.sections().exactly::<f64>(Section::Request, 6)?;
-    Ok(Asked {
-        solve: header.solve,
-        permittivity: numbers[0],
-        tolerance: numbers[3],
-        neutralising_background: numbers[4] != 0.0,
-        time_s: numbers[5],
-    })
 }
 
 fn of_dem(error: WireError) -> CouplingError {

@@ -20,6 +20,6 @@ pub use error::CouplingError;
 pub use field_side::{Asked, FieldSide, Reply};
 pub use launch::solver_program;
 pub use mesh_arrays::MeshArrays;
-pub use mesh_message::MeshPart;
+pub use mesh_message::{MeshPart, assemble};
 pub use patient::PatientSolver;
 pub use run_root::{RunRoot, stale_runs};

@@ -59,7 +59,6 @@ impl SideOf {
 #[derive(Debug)]
 pub(crate) struct Message {
     sample: Sample,
-    pub(crate) kind: MessageKind,
 }
 
 impl Message {
@@ -226,7 +225,7 @@ impl Link {
             if let Some(sample) = said(self.subscriber.receive())? {
                 let kind = sample.user_header().check(self.run);
                 let kind = kind.map_err(|error| CouplingError::Wire { peer, error })?;
-                let message = Message { sample, kind };
+                let message = Message { sample };
                 if kind == MessageKind::End {
                     return Err(CouplingError::Ended { peer, reason: message.sections().text() });
                 }

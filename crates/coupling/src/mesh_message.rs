@@ -78,7 +78,10 @@ impl MeshPart<'_> {
     }
 
     /// A part that arrived, in place.
-    pub(crate) fn read<'a>(sections: &Sections<'a>) -> Result<MeshPart<'a>, WireError> {
+    ///
+    /// # Errors
+    /// A section that is missing or does not fit the others.
+    pub fn read<'a>(sections: &Sections<'a>) -> Result<MeshPart<'a>, WireError> {
         let numbers = sections.exactly::<f64>(Section::MeshNumbers, MESH_NUMBERS)?;
         let corner = |from: usize| [numbers[from], numbers[from + 1], numbers[from + 2]];
         let centres = sections.get::<[f64; 3]>(Section::Centres)?;
@@ -105,8 +108,14 @@ pub(crate) fn mesh_header(run: u64, rank: u32, ranks: u32) -> Header {
     Header { rank, ranks, ..Header::new(MessageKind::Mesh, run, 0) }
 }
 
-/// Puts the parts together, in the order of the ranks.
-pub(crate) fn assemble(parts: &[MeshPart<'_>]) -> Result<FarMesh, CouplingError> {
+/// Puts the parts of all ranks together, in their order.
+///
+/// # Errors
+/// The first part or number that makes no sense.
+///
+/// # Panics
+/// Without any part.
+pub fn assemble(parts: &[MeshPart<'_>]) -> Result<FarMesh, CouplingError> {
     let mut whole = FarMeshParts {
         domain: domain_of(&parts[0])?,
         centres: Vec::new(),
@@ -118,18 +127,23 @@ pub(crate) fn assemble(parts: &[MeshPart<'_>]) -> Result<FarMesh, CouplingError>
     for part in parts {
         let first = whole.centres.len();
         let (first_face, first_boundary) = (whole.faces.len() as u64, whole.boundary.len() as i64);
+        let face_from = |face: &u64| {
+            let face = first_face.saturating_add(*face);
+            u32::try_from(face).map_err(|_| broken(format!("a face's number is {face}")))
+        };
         if part.first_cell != first as u64 {
             return Err(broken(format!("a rank's cells begin at {} instead of {first}", part.first_cell)));
         }
         whole.centres.extend(part.centres.iter().map(|&centre| Vector3::from(centre)));
         whole.volumes.extend(part.volumes);
-        whole.first_face.extend(part.first_face[1..].iter().map(|&face| (first_face + face) as u32));
+        let ends: Result<Vec<u32>, _> = part.first_face[1..].iter().map(face_from).collect();
+        whole.first_face.extend(ends?);
         for (face, &neighbour) in part.face_neighbours.iter().enumerate() {
             let neighbour = if neighbour >= 0 {
                 let shift = Vector3::from(part.face_shifts[face]);
                 Neighbour::Cell { cell: index(neighbour)?, shift }
             } else {
-                Neighbour::Boundary(index(first_boundary - 1 - neighbour)?)
+                Neighbour::Boundary(index(first_boundary.saturating_add(-1 - neighbour))?)
             };
             let normal = Vector3::from(part.face_normals[face]);
             whole.faces.push(CellFace { normal, offset: part.face_offsets[face], neighbour });
@@ -141,7 +155,7 @@ pub(crate) fn assemble(parts: &[MeshPart<'_>]) -> Result<FarMesh, CouplingError>
                 normal: Vector3::new(nx, ny, nz),
                 area,
                 spread: Matrix3::new(xx, xy, xz, xy, yy, yz, xz, yz, zz),
-                cell: index(first as i64 + cell as i64)?,
+                cell: index((first as i64).saturating_add(cell as i64))?,
                 condition: if kind == 0.0 { Condition::Slope(value) } else { Condition::Potential(value) },
             });
         }

@@ -58,9 +58,17 @@ impl RunRoot {
             return Err(CouplingError::SharedMemory(format!("'{name}' is not the name of a run")));
         };
         let root = Self { name: name.to_owned(), run, owned: false };
-        match std::fs::read_dir(root.path()) {
-            Ok(_) => Ok(root),
-            Err(error) => Err(CouplingError::SharedMemory(format!("cannot open run {name}: {error}"))),
+        let cannot = |why: &dyn std::fmt::Display| {
+            Err(CouplingError::SharedMemory(format!("cannot open run {name}: {why}")))
+        };
+        if let Err(error) = std::fs::read_dir(root.path()) {
+            return cannot(&error);
+        }
+        // What somebody else made under this name is not the DEM process's.
+        match rustix::fs::lstat(root.path()) {
+            Ok(place) if place.st_uid == rustix::process::getuid().as_raw() => Ok(root),
+            Ok(place) => cannot(&format_args!("it belongs to user {}", place.st_uid)),
+            Err(error) => cannot(&error),
         }
     }
 
@@ -195,4 +203,22 @@ fn own_runs() -> Vec<String> {
     let mut runs: Vec<String> = names.filter(|name| name.starts_with(&mine) && !name.contains('.')).collect();
     runs.sort();
     runs
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_place_that_somebody_else_made_is_refused() {
+        let root = RunRoot::create().unwrap();
+        assert!(RunRoot::open(root.name()).is_ok());
+        // Only root can make what belongs to somebody else.
+        if rustix::process::getuid().is_root() {
+            std::os::unix::fs::chown(root.path(), Some(12345), None).unwrap();
+            let error = RunRoot::open(root.name()).unwrap_err().to_string();
+            assert!(error.contains("it belongs to user 12345"), "{error}");
+        }
+        assert!(RunRoot::open("amberfield-0-../x-1").is_err());
+    }
 }

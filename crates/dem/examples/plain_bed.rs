@@ -57,6 +57,7 @@ fn bed() -> Setup {
             on_exit: OnExit::Stop,
             allow_overlap: false,
         },
+        gas: None,
         field: None,
     }
 }

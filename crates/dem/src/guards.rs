@@ -1,6 +1,7 @@
 //! Limits on the time step: computed at the start, watched while running.
 
 use crate::error::DemError;
+use crate::gas_stage::GasStage;
 use crate::grains::Grains;
 use crate::material_pairs::PairTable;
 use amberfield_core::{Domain, Material, Particles};
@@ -15,7 +16,7 @@ const CONTACT_TIME_FRACTION: f64 = 0.25;
 /// A limit on the time step.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Guard {
-    /// Name: `rayleigh`, `hertz`, `electric pair`, `wall image` or `plasma`.
+    /// Name: `rayleigh`, `hertz`, `gas response`, `electric pair`, `wall image` or `plasma`.
     pub name: &'static str,
     /// Largest step [s]; infinite when nothing limits it at present.
     pub limit_s: f64,
@@ -30,6 +31,8 @@ pub(crate) struct Limits {
     rayleigh: f64,
     /// min over grains of contact time · speed^{1/5} [s·(m/s)^{1/5}] for two equal grains.
     hertz: f64,
+    /// Gas that slows the grains.
+    gas: Option<GasStage>,
     /// Electric limits; `None` without charges.
     electric: Option<ElectricLimits>,
 }
@@ -50,7 +53,7 @@ impl Limits {
         particles: &Particles,
         materials: &[Material],
         table: &PairTable,
-        electric: Option<ElectricLimits>,
+        gas: Option<GasStage>,
     ) -> Self {
         let (mut rayleigh, mut hertz) = (f64::INFINITY, f64::INFINITY);
         for i in 0..particles.len() {
@@ -62,7 +65,7 @@ impl Limits {
             let mass = particles.mass(i);
             hertz = hertz.min(hertz_mindlin::contact_time(young, 0.5 * radius, 0.5 * mass, 1.0));
         }
-        Self { rayleigh, hertz, electric }
+        Self { rayleigh, hertz, gas, electric: None }
     }
 
     /// Takes the plasma limit of a new evaluation of the field.
@@ -82,8 +85,10 @@ impl Limits {
         let electric = self
             .electric
             .map(|e| [("electric pair", e.pair), ("wall image", e.wall_image), ("plasma", e.plasma)]);
+        let gas = self.gas.map(|gas| ("gas response", gas.limit(speed)));
         [("rayleigh", self.rayleigh), ("hertz", hertz)]
             .into_iter()
+            .chain(gas)
             .chain(electric.into_iter().flatten())
             .map(move |(name, limit_s)| Guard { name, limit_s, margin: limit_s / step })
     }

@@ -2,6 +2,7 @@
 //!
 //! A scene is a [`Setup`]; [`Simulation::new`] checks it, compiles it into stages and [`Simulation::step`]
 //! runs them. Results are bit-identical for any number of threads of the caller's rayon pool.
+#![forbid(unsafe_code)]
 
 mod cells;
 mod charging;
@@ -11,6 +12,7 @@ mod contact_law;
 mod energy;
 mod error;
 mod field_stage;
+mod gas_stage;
 mod grains;
 mod guards;
 mod integrate;

@@ -2,7 +2,7 @@
 
 use crate::field_crate::Choice;
 use crate::field_crate::far::Connect;
-use amberfield_core::{ChargeTransfer, Domain, FieldSettings, Material, Particles, TimeSettings, Wall};
+use amberfield_core::{ChargeTransfer, Domain, FieldSettings, Gas, Material, Particles, TimeSettings, Wall};
 
 /// The electric field of a scene.
 #[derive(Clone, Debug)]
@@ -42,6 +42,8 @@ pub struct Setup {
     pub walls: Vec<Wall>,
     /// Step, gravity, skin and rules of the run.
     pub time: TimeSettings,
+    /// Gas around the grains; `None`: none.
+    pub gas: Option<Gas>,
     /// Electric field; `None`: plain DEM.
     pub field: Option<FieldStageSetup>,
 }

@@ -10,6 +10,7 @@ pub use report::Deepest;
 use crate::charging::Charging;
 use crate::error::DemError;
 use crate::field_stage::{Extras, FieldStage};
+use crate::gas_stage::GasStage;
 use crate::grains::Grains;
 use crate::guards::{ElectricLimits, Limits, electric_stiffness, electric_stiffness_bound};
 use crate::integrate::{Bounds, ChunkMotion, drift, kick};
@@ -44,6 +45,7 @@ pub struct Simulation {
     grains: Grains,
     neighbours: Neighbours,
     walls: Option<Walls>,
+    gas: Option<GasStage>,
     field: Option<FieldStage>,
     charging: Option<Charging>,
     extras: Extras,
@@ -97,7 +99,7 @@ impl Simulation {
         self.rescued.take()
     }
 
-    /// Contact, wall and field forces at the present positions, into `new_force` and `new_torque`; pushes
+    /// Contact, wall, gas and field forces at the present positions, into `new_force` and `new_torque`; pushes
     /// across chunks wait in the outboxes.
     fn forces(&mut self, step: f64) -> Result<(), DemError> {
         let follow = self.charging.as_ref().map(|charging| charging.follow(self.step_index));
@@ -115,6 +117,10 @@ impl Simulation {
             let (force, torque) = (&mut self.new_force, &mut self.new_torque);
             walls.forces(&self.grains, &self.table, self.features, step, force, torque);
             self.watch.lap(Stage::Walls);
+        }
+        if let Some(gas) = &self.gas {
+            gas.add_forces(&self.grains, &mut self.new_force);
+            self.watch.lap(Stage::Gas);
         }
         self.charge_contacts(step);
         // The forces at the start come with a step of zero: the field was evaluated just before.

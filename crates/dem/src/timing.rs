@@ -9,18 +9,19 @@ pub(crate) enum Stage {
     Neighbours,
     Contacts,
     Walls,
+    Gas,
     Charging,
     Field,
 }
 
 /// Names as in `history.csv`'s `wall_s_<stage>`.
-pub(crate) const STAGE_NAMES: [&str; 6] =
-    ["integrate", "neighbours", "contacts", "walls", "charging", "field"];
+pub(crate) const STAGE_NAMES: [&str; 7] =
+    ["integrate", "neighbours", "contacts", "walls", "gas", "charging", "field"];
 
 /// A stopwatch that results never depend on.
 #[derive(Debug, Default)]
 pub(crate) struct Stopwatch {
-    pub(crate) seconds: [f64; 6],
+    pub(crate) seconds: [f64; 7],
     last: Option<Instant>,
 }
 

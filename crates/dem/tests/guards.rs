@@ -4,7 +4,9 @@
 mod common;
 
 use amberfield_core::constants::coulomb_constant;
-use amberfield_core::{Boundary, CouplingInterval, Domain, FieldSettings, Method, Skin, Step, Vector3};
+use amberfield_core::{
+    Boundary, CouplingInterval, Domain, DragLaw, FieldSettings, Gas, Method, Skin, Step, Vector3,
+};
 use amberfield_dem::{FieldStageSetup, Setup, Simulation};
 use common::{RADIUS, grain, material, setup};
 
@@ -104,6 +106,23 @@ fn wall_image_guard_is_the_edge_for_a_charge_that_hovers_over_an_insulator() {
     let insulator = Boundary::Insulating { normal_field_v_m: 0.0 };
     let scene = held(&[height + DISPLACED], insulator, -hover);
     let edge = edge_over("wall image", &scene);
+    assert!((edge - 1.0).abs() < AGREEMENT, "{edge}");
+}
+
+#[test]
+fn gas_guard_is_the_edge_for_a_grain_that_is_slowed() {
+    let mut scene = held(&[10.0], Boundary::Open, 0.0);
+    scene.field = None;
+    // It comes to rest within much less than the growth that is none.
+    scene.particles.velocity[0].x = 1e-10;
+    scene.gas = Some(Gas {
+        drag: DragLaw::Stokes,
+        density_kg_m3: 1.2,
+        viscosity_pa_s: 1.8e-5,
+        velocity_m_s: Vector3::zeros(),
+        magnus_lift: false,
+    });
+    let edge = edge_over("gas response", &scene);
     assert!((edge - 1.0).abs() < AGREEMENT, "{edge}");
 }
 

@@ -1,6 +1,7 @@
 //! Exact and manufactured solutions, reference fields, norms and observed orders of convergence.
 //!
 //! Nothing here shares code with what it judges: this crate never uses the laws or the field.
+#![forbid(unsafe_code)]
 
 mod charged_ball;
 mod collision;
@@ -23,6 +24,6 @@ pub use grounded_plane::GroundedPlane;
 pub use grounded_sphere::{GroundedSphere, grounded_cavity};
 pub use madelung::{MADELUNG_NACL, rock_salt};
 pub use manufactured::Manufactured;
-pub use norms::{ErrorNorms, field_scale, observed_order, rms, rms_scalar};
+pub use norms::{ErrorNorms, field_scale, observed_order, rms, rms_difference, rms_scalar};
 pub use parallel_plates::ParallelPlates;
 pub use point_charge::{coulomb_field, coulomb_potential, open_sum};

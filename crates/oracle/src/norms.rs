@@ -8,6 +8,12 @@ pub fn rms(vectors: &[Vector3<f64>]) -> f64 {
     mean_root(vectors.iter().map(Vector3::norm_squared), vectors.len())
 }
 
+/// Root of the mean square of the differences; 0 for empty slices. Unit of the vectors.
+#[must_use]
+pub fn rms_difference(a: &[Vector3<f64>], b: &[Vector3<f64>]) -> f64 {
+    mean_root(a.iter().zip(b).map(|(a, b)| (a - b).norm_squared()), a.len())
+}
+
 /// Root of the mean square; 0 for an empty slice. Unit of the values.
 #[must_use]
 pub fn rms_scalar(values: &[f64]) -> f64 {

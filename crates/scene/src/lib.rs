@@ -1,6 +1,7 @@
 //! Scene file to validated description; reads particles and STL, writes VTK, CSV and checkpoints.
 //!
 //! Every bad value is refused with its place, its key, itself and what to do: see [`SceneError`].
+#![forbid(unsafe_code)]
 
 mod error;
 mod generate;

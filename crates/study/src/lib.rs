@@ -2,12 +2,14 @@
 //!
 //! [`sweep`] runs studies. Pictures carry their font with them and need nothing from the machine. The feature `plots` (on by default) holds
 //! all of it.
+#![forbid(unsafe_code)]
 
 #[cfg(feature = "plots")]
 mod colour;
 mod error;
 #[cfg(feature = "plots")]
 mod font;
+pub mod peers;
 #[cfg(feature = "plots")]
 mod picture;
 #[cfg(feature = "plots")]

@@ -76,4 +76,26 @@ pub enum WireError {
         /// Blocks of the payload.
         blocks: usize,
     },
+    /// A number that cannot be used.
+    #[error("element {place} of section {section:?} is {value}: not a number that can be used")]
+    Number {
+        /// The section.
+        section: Section,
+        /// Which element.
+        place: usize,
+        /// Its value.
+        value: f64,
+    },
+    /// A number that names nothing.
+    #[error("element {place} of section {section:?} is {value}, which is not below {count}")]
+    Index {
+        /// The section.
+        section: Section,
+        /// Which element.
+        place: usize,
+        /// Its value.
+        value: u64,
+        /// What it counts in.
+        count: usize,
+    },
 }

@@ -1,13 +1,16 @@
-//! Developer commands: `cargo xtask check`, `tidy`, `test`, `deny`, `bench`, `leaving-out`, `openfoam`, `header`.
+//! Developer commands: `cargo xtask check`, `tidy`, `test`, `deny`, `bench`, `leaving-out`, `openfoam`, `images`,
+//! `fuzz`, `sanitize`, `header`.
 #![expect(clippy::print_stdout, reason = "a program for developers that reports to the terminal")]
 
 mod bench;
 mod check;
 mod debian;
 mod deny;
+mod fuzz;
 mod images;
 mod leaving_out;
 mod openfoam;
+mod sanitize;
 mod shell;
 mod test;
 mod tidy;
@@ -31,6 +34,10 @@ cargo xtask openfoam                  builds openfoam-solver/; installs OpenFOAM
                                       are missing
 cargo xtask images                    builds the container images of docker/; installs and starts an engine where there is none,
                                       and makes their base with debootstrap where no registry can be reached
+cargo xtask fuzz [--seconds N] [TARGET…]
+                                      any bytes at everything that is read, by cargo-fuzz, ten minutes a target unless told; installs
+                                      cargo-fuzz where it is missing
+cargo xtask sanitize                  the address sanitizer over the crates with unsafe code and over the field solver
 cargo xtask header                    writes the C library's header
 cargo xtask leaving-out               what a plain scene pays for the field: instructions with and without the field
                                       crate under callgrind; installs valgrind where it is missing";
@@ -61,6 +68,8 @@ fn run() -> Result<()> {
         ["leaving-out"] => leaving_out::run(root),
         ["openfoam"] => openfoam::run(root),
         ["images"] => images::run(root),
+        ["fuzz", rest @ ..] => fuzz::run(root, rest),
+        ["sanitize"] => sanitize::run(root),
         ["header"] => execute(
             cargo(root, &["test", "-p", "amberfield-capi", "--test", "header"])
                 .env("AMBERFIELD_WRITE_HEADER", "1"),

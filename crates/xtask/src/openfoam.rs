@@ -18,23 +18,31 @@ const PROJECT: (&str, &str) = ("WM_PROJECT_DIR", "/usr/share/openfoam");
 
 /// Installs what is missing, fetches the headers, builds the C library, the solver and its self-test, and runs that.
 pub(crate) fn run(root: &Path) -> Result<()> {
+    build(root, "build", &[]).map(drop)
+}
+
+/// The same into a folder of `openfoam-solver/`, with more to tell cmake; where the programs are.
+pub(crate) fn build(root: &Path, folder: &str, flags: &[&str]) -> Result<PathBuf> {
     debian::provide(&PACKAGES)?;
     let headers = provide_headers(root)?;
     execute(&mut cargo(root, &["build", "--release", "-p", "amberfield-capi"]))?;
-    let (source, build) = (root.join("openfoam-solver"), root.join("openfoam-solver/build"));
+    let source = root.join("openfoam-solver");
+    let build = source.join(folder);
     let library = root.join("target/release/libamberfield_capi.a");
     execute(
         Command::new("cmake")
             .args(["-S".as_ref(), source.as_os_str(), "-B".as_ref(), build.as_os_str()])
             .arg(format!("-DFOAM_SRC={}", headers.display()))
-            .arg(format!("-DAMBERFIELD_LIB={}", library.display())),
+            .arg(format!("-DAMBERFIELD_LIB={}", library.display()))
+            .args(flags),
     )?;
     execute(Command::new("cmake").arg("--build").arg(&build).args(["--parallel", "2"]))?;
     let mut test = Command::new(build.join("selfTest"));
     if std::env::var_os(PROJECT.0).is_none() {
         test.env(PROJECT.0, PROJECT.1);
     }
-    execute(&mut test).context("the build computes wrong numbers; is -D__restrict__= among the flags?")
+    execute(&mut test).context("the build computes wrong numbers; is -D__restrict__= among the flags?")?;
+    Ok(build)
 }
 
 /// The `src` folder of the headers.

@@ -5,6 +5,7 @@ mod failures;
 mod fields;
 mod function_object;
 mod meshes;
+mod sharing;
 
 use amberfield_tests::Answer;
 

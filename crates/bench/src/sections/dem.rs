@@ -6,6 +6,7 @@ use crate::page::{Table, figure, verdict};
 use crate::store::Store;
 use crate::timing::{median, on_threads};
 use amberfield_dem::{Setup, Simulation};
+use amberfield_study::peers::{Script, fastest};
 use anyhow::Result;
 use serde::{Deserialize, Serialize};
 use std::time::Instant;
@@ -111,9 +112,8 @@ fn peer(
     let grain_numbers = bed.flat_map(|(x, v)| [x.x, x.y, x.z, v.x, v.y, v.z]);
     let file = peers.file("bed.bin", head.into_iter().chain(grain_numbers))?;
     let steps_text = steps.to_string();
-    let points = peers.run("lammps_dem.py", threads, &[&file, &steps_text, "0.05,0.1,0.2,0.4"])?;
-    let fastest = points.iter().filter(|point| point.len() == 2).min_by(|a, b| a[1].total_cmp(&b[1]));
-    Ok(fastest.map(|point| Row {
+    let points = peers.run(Script::LammpsDem, threads, &[&file, &steps_text, "0.05,0.1,0.2,0.4"])?;
+    Ok(fastest(Script::LammpsDem, &points, 0.0).map(|point| Row {
         program: PEER.to_owned(),
         fraction,
         grains,

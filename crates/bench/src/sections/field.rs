@@ -8,6 +8,7 @@ use crate::timing::{median_seconds, on_threads};
 use amberfield_core::{Boundary, FieldSettings, Method, Tuning, Vector3};
 use amberfield_field::{ElectricField, FieldValues, Wanted};
 use amberfield_study::Series;
+use amberfield_study::peers::{SHARES, Script, fastest, pppm_sweep};
 use anyhow::Result;
 use serde::{Deserialize, Serialize};
 
@@ -182,17 +183,15 @@ fn peer(
             around.iter().map(|factor| (factor * best.cutoff).to_string()).collect::<Vec<_>>().join(","),
             best.order.to_string(),
         ),
-        None if tolerance > 2e-3 => ("1.5,2,2.5,3,4".to_owned(), "4,5".to_owned()),
-        None if tolerance > 2e-4 => ("2,2.5,3,4".to_owned(), "5,6".to_owned()),
-        None if tolerance > 2e-5 => ("2.5,3,4,5".to_owned(), "5,6".to_owned()),
-        None => ("4,5,6,7".to_owned(), "7".to_owned()),
+        None => {
+            let (cutoffs, orders) = pppm_sweep(tolerance);
+            (cutoffs.to_owned(), orders.to_owned())
+        }
     };
     let tolerance_text = tolerance.to_string();
-    let arguments = [file.as_str(), &tolerance_text, &cutoffs, &orders, "0.8,1.1"];
-    let points = peers.run("lammps_field.py", 1, &arguments)?;
-    let meets = points.iter().filter(|point| point.len() == 7 && point[4] <= tolerance);
-    let fastest = meets.min_by(|a, b| a[5].total_cmp(&b[5]));
-    Ok(fastest.map(|point| Row {
+    let arguments = [file.as_str(), &tolerance_text, &cutoffs, &orders, SHARES];
+    let points = peers.run(Script::LammpsField, 1, &arguments)?;
+    Ok(fastest(Script::LammpsField, &points, tolerance).map(|point| Row {
         program: PEER.to_owned(),
         faces: "periodic".to_owned(),
         fraction,

@@ -8,6 +8,7 @@ use crate::store::Store;
 use crate::timing::on_threads;
 use amberfield_core::{Boundary, FieldSettings, Method};
 use amberfield_study::Series;
+use amberfield_study::peers::{Script, fastest};
 use anyhow::Result;
 use serde::{Deserialize, Serialize};
 
@@ -55,15 +56,14 @@ pub(crate) fn measure(context: &Context) -> Result<()> {
         let points = match &context.peers {
             Some(peers) => {
                 let file = peers.file("cloud.bin", cloud.numbers(&exact))?;
-                peers.run("fmm3d.py", 1, &[&file, PRECISIONS])?
+                peers.run(Script::Fmm3d, 1, &[&file, PRECISIONS])?
             }
             None => Vec::new(),
         };
         for tolerance in TOLERANCES {
             let field::Measured { error, ns_per_grain, settings } = field::ours(&cloud, &exact, tolerance)?;
             rows.push(Row { program: OURS.to_owned(), grains, tolerance, error, ns_per_grain, settings });
-            let meets = points.iter().filter(|point| point.len() == 3 && point[1] <= tolerance);
-            rows.extend(meets.min_by(|a, b| a[2].total_cmp(&b[2])).map(|point| Row {
+            rows.extend(fastest(Script::Fmm3d, &points, tolerance).map(|point| Row {
                 program: PEER.to_owned(),
                 grains,
                 tolerance,

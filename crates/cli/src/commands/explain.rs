@@ -4,7 +4,7 @@ use crate::arguments::ExplainOptions;
 use crate::failure::Failure;
 use crate::print::line;
 use crate::run::{Charges, charges_of, connect_solver, domain_of, field_of, scene_name, setup_of};
-use crate::{machine, not_built, plan_text};
+use crate::{machine, plan_text};
 use amberfield_core::{Axis, Boundary, Domain, Side};
 use amberfield_dem::Simulation;
 use amberfield_field::ElectricField;
@@ -25,7 +25,6 @@ pub(crate) fn explain(options: &ExplainOptions) -> Result<(), Failure> {
     for warning in &scene.warnings {
         line(format_args!("warning: {warning}"));
     }
-    not_built::refuse(&scene)?;
     let solver = connect_solver(&mut scene)?;
     if scene.time.is_some() { explain_run(&scene, solver) } else { explain_field(&scene, solver) }
 }

@@ -2,8 +2,8 @@
 
 use crate::arguments::FieldOptions;
 use crate::failure::Failure;
+use crate::print;
 use crate::run::{Charges, charges_of, connect_solver, domain_of, field_of, parameters, scene_name};
-use crate::{not_built, print};
 use amberfield_core::{Method, Vector3};
 use amberfield_field::{ElectricField, FieldValues, Wanted};
 use amberfield_scene::{
@@ -18,7 +18,6 @@ use std::time::Instant;
 pub(crate) fn field(options: &FieldOptions) -> Result<(), Failure> {
     let out = out_file(options)?;
     let mut scene = read_scene(&options.scene, &overrides(options), Purpose::Field)?;
-    not_built::refuse(&scene)?;
     for warning in &scene.warnings {
         tracing::warn!("{warning}");
     }

@@ -5,9 +5,10 @@ use crate::failure::Failure;
 use crate::logging::Log;
 use crate::progress::Progress;
 use crate::run::{
-    Clock, Ending, Existing, RunFolder, Saved, Session, connect_solver, histogram, scene_name, setup_of,
+    Clock, Ending, Existing, RunFolder, Saved, Session, checkpoints, connect_solver, histogram, scene_name,
+    setup_of,
 };
-use crate::{interrupt, not_built, plan_text, print};
+use crate::{interrupt, plan_text, print};
 use amberfield_dem::Simulation;
 use amberfield_scene::{Purpose, read_checkpoint, read_scene, write_json, write_text};
 use std::path::{Path, PathBuf};
@@ -25,16 +26,11 @@ pub(crate) fn run(options: &RunOptions, common: &Common, log: &Log) -> Result<()
     let out = out_folder(options)?;
     RunFolder::check(&out, existing, &options.scene)?;
     let mut scene = read_scene(&options.scene, &options.set, Purpose::Run)?;
-    not_built::refuse(&scene)?;
     for warning in &scene.warnings {
         tracing::warn!("{warning}");
     }
     interrupt::watch()?;
-    let saved = options
-        .resume
-        .as_ref()
-        .map(|checkpoint| read_checkpoint::<Saved>(checkpoint, scene.hash()))
-        .transpose()?;
+    let saved = options.resume.as_ref().map(|checkpoint| read_saved(checkpoint, scene.hash())).transpose()?;
     let solver = match &saved {
         Some(saved) if scene.solver.is_some() && saved.state.has_lost_solver() => {
             tracing::warn!("the field solver was lost before this checkpoint; the internal grid goes on");
@@ -70,6 +66,19 @@ pub(crate) fn run(options: &RunOptions, common: &Common, log: &Log) -> Result<()
         session.go(options.steps, &mut progress)?
     };
     finish(&session, &options.scene, first, ending)
+}
+
+/// Reads a checkpoint; where it cannot be used, an older one that can is named.
+fn read_saved(checkpoint: &Path, hash: u64) -> Result<Saved, Failure> {
+    read_checkpoint(checkpoint, hash).map_err(|error| {
+        let folder = checkpoint.parent().unwrap_or_else(|| Path::new(""));
+        let older = checkpoints(folder).into_iter().rev().filter(|other| other.as_path() < checkpoint);
+        let sound = older.filter(|older| read_checkpoint::<Saved>(older, hash).is_ok());
+        match sound.into_iter().next() {
+            Some(older) => Failure::from(error).with(&format!("; go on with --resume {}", older.display())),
+            None => error.into(),
+        }
+    })
 }
 
 /// The run folder that was named, that the checkpoint lies in, or one named after the scene.

@@ -2,7 +2,6 @@
 
 use crate::arguments::TuneOptions;
 use crate::failure::Failure;
-use crate::not_built;
 use crate::print::line;
 use crate::run::{Charges, charges_of, domain_of, scene_name};
 use amberfield_core::constants::coulomb_constant;
@@ -22,7 +21,6 @@ pub(crate) fn tune(options: &TuneOptions) -> Result<(), Failure> {
     let mut set = options.set.clone();
     set.extend(options.tolerance.map(|tolerance| format!("electric_field.tolerance={tolerance:?}")));
     let scene = read_scene(&options.scene, &set, Purpose::Field)?;
-    not_built::refuse(&scene)?;
     for warning in &scene.warnings {
         tracing::warn!("{warning}");
     }

@@ -91,10 +91,9 @@ impl RunFolder {
         }
         fs::create_dir_all(path.join("particles")).map_err(failed)?;
         fs::create_dir_all(path.join("checkpoints")).map_err(failed)?;
-        let lock = path.join(LOCK);
-        // A lock that is left belongs to a process that is gone: `check` looked.
-        let _ = fs::remove_file(&lock);
-        let mut file = fs::File::create_new(&lock).map_err(failed)?;
+        // What is left belongs to a process that is gone: `check` looked.
+        remove_leftovers(path).map_err(failed)?;
+        let mut file = fs::File::create_new(path.join(LOCK)).map_err(failed)?;
         write!(file, "{}", std::process::id()).map_err(failed)?;
         Ok(Self { path: path.to_path_buf() })
     }
@@ -107,12 +106,7 @@ impl RunFolder {
 
     /// The newest checkpoint, if there is one.
     pub(crate) fn newest_checkpoint(&self) -> Option<PathBuf> {
-        let files = fs::read_dir(self.file("checkpoints")).into_iter().flatten().flatten();
-        // Their names count steps with leading zeros.
-        files
-            .map(|file| file.path())
-            .filter(|path| path.extension().is_some_and(|kind| kind == "amber"))
-            .max()
+        checkpoints(&self.file("checkpoints")).pop()
     }
 
     /// A file of the folder.
@@ -130,6 +124,16 @@ impl Drop for RunFolder {
     fn drop(&mut self) {
         let _ = fs::remove_file(self.path.join(LOCK));
     }
+}
+
+/// The checkpoints in a folder, oldest first.
+pub(crate) fn checkpoints(folder: &Path) -> Vec<PathBuf> {
+    let files = fs::read_dir(folder).into_iter().flatten().flatten().map(|file| file.path());
+    let mut files: Vec<_> =
+        files.filter(|path| path.extension().is_some_and(|kind| kind == "amber")).collect();
+    // Their names count steps with leading zeros.
+    files.sort();
+    files
 }
 
 fn owner(folder: &Path) -> Option<i32> {

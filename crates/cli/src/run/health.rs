@@ -32,7 +32,7 @@ pub(crate) struct Health {
 pub(crate) struct Allowed {
     /// Deep overlaps.
     overlap: bool,
-    /// Energy that comes from outside: by contacts that charge, forces that are limited, or round and round a period.
+    /// Energy that comes from outside: by contacts that charge, forces that are limited, a gas, or round and round a period.
     work: bool,
 }
 
@@ -49,7 +49,7 @@ impl Allowed {
         let limited = field.is_some_and(|field| field.force_limit.is_some());
         Self {
             overlap: scene.time.as_ref().is_some_and(|time| time.allow_overlap),
-            work: round || limited || scene.charge_transfer.is_some(),
+            work: round || limited || scene.gas.is_some() || scene.charge_transfer.is_some(),
         }
     }
 }
@@ -83,8 +83,11 @@ impl Health {
             let other = deepest.other.map_or_else(|| "a wall".to_owned(), |id| format!("grain {id}"));
             return Err(unsound(
                 format!(
-                    "grain {} overlaps {other} by {:.3e} m, {:.2} of its radius: more than {DEEPEST}",
-                    deepest.id, deepest.overlap_m, deepest.share
+                    "grain {} {} overlaps {other} by {:.3e} m, {:.2} of its radius: more than {DEEPEST}",
+                    deepest.id,
+                    whereabouts(simulation, deepest.id),
+                    deepest.overlap_m,
+                    deepest.share
                 ),
                 time_s,
             ));
@@ -95,12 +98,13 @@ impl Health {
                 .energies(ElectricEnergy::Evaluated)
                 .map_err(|error| Failure::while_running(&error))?;
             if self.is_too_fast(&exact) {
-                let (id, speed) = simulation.fastest().unwrap_or_default();
+                let (id, _) = simulation.fastest().unwrap_or_default();
                 return Err(unsound(
                     format!(
-                        "the grains have {:.3e} J of kinetic energy, more than {ENERGY} times the {:.3e} J that were there to be released; the fastest is grain {id} with {speed:.3e} m/s",
+                        "the grains have {:.3e} J of kinetic energy, more than {ENERGY} times the {:.3e} J that were there to be released; the fastest is grain {id} {}",
                         exact.kinetic,
-                        self.released(&exact)
+                        self.released(&exact),
+                        whereabouts(simulation, id)
                     ),
                     time_s,
                 ));
@@ -132,6 +136,19 @@ fn unsound(what: String, time_s: f64) -> Failure {
     Failure::outside_tolerance(format!(
         "at t = {time_s:e} s {what}; the motion is no longer sound: make time.step_s smaller, the grains stiffer, or look at what holds this grain"
     ))
+}
+
+/// Place and velocity of a grain, in words.
+fn whereabouts(simulation: &Simulation, id: u64) -> String {
+    let particles = simulation.particles();
+    let index = particles.id.iter().position(|known| *known == id);
+    index.map_or_else(String::new, |index| {
+        let [x, v] = [particles.position[index], particles.velocity[index]];
+        format!(
+            "(at ({:.4e}, {:.4e}, {:.4e}) m with ({:.3e}, {:.3e}, {:.3e}) m/s)",
+            x.x, x.y, x.z, v.x, v.y, v.z
+        )
+    })
 }
 
 fn potential(energies: &Energies) -> f64 {

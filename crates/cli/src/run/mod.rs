@@ -12,7 +12,7 @@ mod setup;
 mod solver;
 mod summary;
 
-pub(crate) use folder::{Existing, RunFolder, is_stale, remove_leftovers};
+pub(crate) use folder::{Existing, RunFolder, checkpoints, is_stale, remove_leftovers};
 pub(crate) use name::scene_name;
 pub(crate) use record::Clock;
 pub(crate) use session::{Saved, Session};

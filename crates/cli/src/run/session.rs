@@ -92,7 +92,12 @@ impl<'a> Session<'a> {
                     self.save(state)?;
                     tracing::warn!("the state before it is saved; go on with --resume {}", path.display());
                 }
-                write_summary(self, first, &before, Ending::Failed, Some(error.message()))?;
+                // What made it fail may forbid to write this too, and is what must be said.
+                if let Err(unwritten) =
+                    write_summary(self, first, &before, Ending::Failed, Some(error.message()))
+                {
+                    tracing::warn!("{}", unwritten.message());
+                }
                 return Err(error);
             }
         };
@@ -105,6 +110,16 @@ impl<'a> Session<'a> {
 
     fn step(&mut self, progress: &mut Progress) -> Result<(), Failure> {
         self.simulation.step().map_err(|error| Failure::while_running(&error))?;
+        self.write_what_is_due().map_err(|failure| match self.folder.newest_checkpoint() {
+            Some(path) => failure.with(&format!("; the last checkpoint before that is {}", path.display())),
+            None => failure.with("; there is no checkpoint before that"),
+        })?;
+        progress.tell(self.simulation.step_index(), self.simulation.time_s());
+        Ok(())
+    }
+
+    /// Writes what is due after a step, and looks whether the run is still sound.
+    fn write_what_is_due(&mut self) -> Result<(), Failure> {
         let step = self.simulation.step_index();
         let (row, checkpoint) = (self.schedule.history.is_due(step), self.schedule.checkpoint_is_due(step));
         if row || checkpoint {
@@ -112,7 +127,10 @@ impl<'a> Session<'a> {
             if row {
                 self.record.row(&self.simulation, &energies, &self.clock())?;
             }
-            self.look_after(&energies)?;
+            if let Err(failure) = self.health.check(&mut self.simulation, &energies) {
+                self.record.frame(self.folder, self.scene, &self.simulation)?;
+                return Err(failure.with("; the last files in particles/ show that moment"));
+            }
         }
         if self.schedule.frame_is_due(step) {
             self.record.frame(self.folder, self.scene, &self.simulation)?;
@@ -120,25 +138,12 @@ impl<'a> Session<'a> {
         if checkpoint {
             self.checkpoint()?;
         }
-        progress.tell(step, self.simulation.time_s());
         Ok(())
     }
 
     fn row(&mut self) -> Result<(), Failure> {
         let energies = forecast_energies(&mut self.simulation)?;
         self.record.row(&self.simulation, &energies, &self.clock())
-    }
-
-    /// Ends the run where it is no longer sound, and names the newest checkpoint of when it was.
-    fn look_after(&mut self, energies: &Energies) -> Result<(), Failure> {
-        self.health.check(&mut self.simulation, energies).map_err(|failure| {
-            match self.folder.newest_checkpoint() {
-                Some(path) => {
-                    failure.with(&format!("; the last checkpoint before that is {}", path.display()))
-                }
-                None => failure.with("; there is no checkpoint before that"),
-            }
-        })
     }
 
     /// Path of the checkpoint of the present step.

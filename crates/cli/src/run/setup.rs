@@ -83,6 +83,7 @@ pub(crate) fn setup_of(
         particles: scene.particles.clone(),
         walls: scene.walls.clone(),
         time,
+        gas: scene.gas,
         field,
     })
 }

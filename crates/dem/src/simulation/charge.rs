@@ -153,6 +153,7 @@ mod tests {
                 on_exit: OnExit::Stop,
                 allow_overlap: false,
             },
+            gas: None,
             field: Some(field),
         };
         Simulation::new(setup).expect("a good scene")

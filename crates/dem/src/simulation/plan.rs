@@ -1,5 +1,6 @@
 //! Which stages a scene has, and why.
 
+use crate::gas_stage::GasStage;
 use crate::material_pairs::Features;
 use amberfield_core::{ChargeTransfer, Plan};
 
@@ -7,7 +8,7 @@ use amberfield_core::{ChargeTransfer, Plan};
 pub(super) fn plan(
     features: Features,
     periodic: bool,
-    walls: usize,
+    (walls, gas): (usize, Option<&GasStage>),
     levels: usize,
     field_asked: bool,
     transfer: Option<&ChargeTransfer>,
@@ -44,6 +45,8 @@ pub(super) fn plan(
         "nothing can turn a grain",
     );
     plan.decide(periodic, "periodic images", "an axis is periodic".to_owned(), "no axis is periodic");
+    let drag = gas.map_or("", GasStage::drag);
+    plan.decide(gas.is_some(), "gas", format!("drag ({drag}) and buoyancy of every grain alone"), "no [gas]");
     plan_charging(&mut plan, transfer);
     let reason = if field_asked {
         "every charge in the particle group is zero and nothing makes one"

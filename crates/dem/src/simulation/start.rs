@@ -5,6 +5,7 @@ use crate::cells::{Cells, levels_of, shifts};
 use crate::charging::Charging;
 use crate::error::DemError;
 use crate::field_stage::{Extras, FieldStage};
+use crate::gas_stage::GasStage;
 use crate::grains::Grains;
 use crate::guards::Limits;
 use crate::integrate::{Bounds, kick};
@@ -108,7 +109,7 @@ impl Simulation {
     }
 
     fn assemble(setup: Setup, skin: f64, state: Option<&State>) -> Result<Self, DemError> {
-        let Setup { domain, materials, particles, walls, time, field } = setup;
+        let Setup { domain, materials, particles, walls, time, gas, field } = setup;
         let table = PairTable::new(&materials);
         let transfer = field.as_ref().and_then(|field| field.transfer);
         let features = Features { charging: transfer.is_some(), ..table.features() };
@@ -131,13 +132,14 @@ impl Simulation {
             }
             _ => None,
         };
-        let limits = Limits::new(&particles, &materials, &table, None);
+        let gas = gas.map(|gas| GasStage::new(gas, time.gravity_m_s2, &particles));
+        let limits = Limits::new(&particles, &materials, &table, gas);
         let neighbours = Neighbours::new(Cells::new(level_radius, skin), shifts, features);
         let periodic = Axis::ALL.into_iter().any(|axis| domain.is_periodic(axis));
         let plan = super::plan::plan(
             features,
             periodic,
-            wall_count,
+            (wall_count, gas.as_ref()),
             neighbours.level_count(),
             asked_for,
             transfer.as_ref(),
@@ -159,6 +161,7 @@ impl Simulation {
             grains,
             neighbours,
             walls,
+            gas,
             field,
             charging,
             extras: Extras::default(),
@@ -304,6 +307,7 @@ mod tests {
                 on_exit: OnExit::Stop,
                 allow_overlap: false,
             },
+            gas: None,
             field: None,
         };
         let mut run = Simulation::new(setup).expect("a good scene");

@@ -65,6 +65,7 @@ pub(crate) fn setup(grains: Vec<Grain>, material: Material, step_s: f64) -> Setu
         particles: grains.into_iter().collect(),
         walls: Vec::new(),
         time: time(step_s),
+        gas: None,
         field: None,
     }
 }

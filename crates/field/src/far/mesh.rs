@@ -240,6 +240,9 @@ impl FarMesh {
     }
 }
 
+/// What a unit vector's length may differ from 1 by.
+const UNIT: f64 = 1e-6;
+
 fn check(parts: &FarMeshParts) -> Result<(), FieldError> {
     let bad = |what: &str, place: usize, value: &dyn Display| {
         Err(FieldError::Settings(format!("the mesh's {what} {place} is {value}; the mesh is broken")))
@@ -262,20 +265,22 @@ fn check(parts: &FarMeshParts) -> Result<(), FieldError> {
     if parts.first_face[0] != 0 || !ascending || parts.first_face[cells] as usize != parts.faces.len() {
         return bad("count of faces up to cell", cells, &parts.first_face[cells]);
     }
+    // `!(a <= b)`: what is not a number is no unit vector either.
+    let is_unit = |normal: &Vector3<f64>| (normal.norm() - 1.0).abs() <= UNIT;
     for (place, face) in parts.faces.iter().enumerate() {
-        let (index, count) = match face.neighbour {
-            Neighbour::Cell { cell, .. } => (cell as usize, cells),
-            Neighbour::Boundary(face) => (face as usize, parts.boundary.len()),
+        let (index, count, moved) = match face.neighbour {
+            Neighbour::Cell { cell, shift } => (cell as usize, cells, shift.norm()),
+            Neighbour::Boundary(face) => (face as usize, parts.boundary.len(), 0.0),
         };
-        if index >= count || !face.offset.is_finite() || (face.normal.norm() - 1.0).abs() > 1e-6 {
+        if index >= count || !(face.offset + moved).is_finite() || !is_unit(&face.normal) {
             return bad("face", place, &format!("{face:?}"));
         }
     }
     for (place, face) in parts.boundary.iter().enumerate() {
         let finite = face.condition.value().is_finite()
             && face.area > 0.0
-            && face.centre.iter().all(|x| x.is_finite());
-        if face.cell as usize >= cells || !finite || (face.normal.norm() - 1.0).abs() > 1e-6 {
+            && (face.area + face.centre.norm() + face.spread.norm()).is_finite();
+        if face.cell as usize >= cells || !finite || !is_unit(&face.normal) {
             return bad("boundary face", place, &format!("{face:?}"));
         }
     }

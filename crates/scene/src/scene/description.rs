@@ -1,6 +1,6 @@
 //! What a scene says, validated.
 
-use amberfield_core::{Domain, FieldSettings, Material, Particles, TimeSettings, Wall};
+use amberfield_core::{Domain, FieldSettings, Gas, Material, Particles, TimeSettings, Wall};
 use serde::{Deserialize, Serialize};
 use std::path::PathBuf;
 
@@ -41,8 +41,8 @@ pub struct Scene {
     pub charge_transfer: Option<ChargeTransferSettings>,
     /// External field solver.
     pub solver: Option<SolverSettings>,
-    /// Whether the scene has a `[gas]` section.
-    pub gas: bool,
+    /// Gas around the grains; absent: none.
+    pub gas: Option<Gas>,
     /// Outputs.
     pub output: OutputSettings,
     /// What the user should know though nothing is wrong.

@@ -4,7 +4,7 @@ use super::description::{Purpose, Scene};
 use super::domain::read_domain;
 use super::electric_field::read_electric_field;
 use super::materials::{Materials, read_materials};
-use super::others::{read_charge_transfer, read_output, read_solver};
+use super::others::{read_charge_transfer, read_gas, read_output, read_solver};
 use super::particles::read_section;
 use super::source::{Source, read_text};
 use super::time::read_time;
@@ -76,6 +76,7 @@ fn read_sections(document: &Table<'_>, source: &mut Source, purpose: Purpose) ->
     let field = problems.keep(read_electric_field(document));
     let charge_transfer = problems.keep(read_charge_transfer(document));
     let solver = problems.keep(read_solver(document, source));
+    let gas = problems.keep(read_gas(document));
     let output = problems.keep(read_output(document));
     let time_alone = problems.keep(read_time(document, Default::default(), false));
     // What follows reads files and places grains; it would only repeat what is wrong so far.
@@ -85,10 +86,11 @@ fn read_sections(document: &Table<'_>, source: &mut Source, purpose: Purpose) ->
         Some(electric_field),
         Some(charge_transfer),
         Some(solver),
+        Some(gas),
         Some(output),
         Some(_),
         Some(()),
-    ) = (domain, list, field, charge_transfer, solver, output, time_alone, sections)
+    ) = (domain, list, field, charge_transfer, solver, gas, output, time_alone, sections)
     else {
         return Err(problems.finish().expect_err("a section was refused"));
     };
@@ -108,7 +110,7 @@ fn read_sections(document: &Table<'_>, source: &mut Source, purpose: Purpose) ->
         electric_field,
         charge_transfer,
         solver,
-        gas: document.has("gas"),
+        gas,
         output,
         warnings: walls.warnings,
         resolved: String::new(),

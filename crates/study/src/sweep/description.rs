@@ -334,7 +334,7 @@ impl Sweep {
     pub(super) fn overrides(sweep: Option<&Self>) -> Vec<(Vec<String>, String)> {
         let Some(Self { key, values, times }) = sweep else { return vec![(Vec::new(), String::new())] };
         let shown = |value: &toml::Value| match value.as_float() {
-            Some(number) if number != 0.0 && number.abs() < 1e-2 => format!("{number:e}"),
+            Some(number) if number != 0.0 && !(1e-2..1e4).contains(&number.abs()) => format!("{number:e}"),
             _ => value.to_string(),
         };
         let scaled = |value: &toml::Value| {

@@ -3,7 +3,7 @@
 use super::description::{Motion, Study, Sweep};
 use super::laboratory::{Laboratory, Machine, Moved};
 use super::points::command;
-use amberfield_core::Vector3;
+use amberfield_oracle::{rms_difference, rms_scalar};
 use serde::{Deserialize, Serialize};
 use std::path::Path;
 
@@ -126,7 +126,7 @@ impl Truth {
         let reference = laboratory.simulate(scene, &set, 0.0, LOOKS)?;
         let nudged = laboratory.simulate(scene, &set, NUDGE, LOOKS)?;
         let apart: Vec<f64> =
-            reference.positions.iter().zip(&nudged.positions).map(|(a, b)| rms(a, b)).collect();
+            reference.positions.iter().zip(&nudged.positions).map(|(a, b)| rms_difference(a, b)).collect();
         let within = apart.iter().take_while(|distance| **distance <= GROWTH * apart[0]).count();
         let mut statistics = vec![reference.statistics()];
         for (seed, _) in Sweep::overrides(motion.replicas.as_ref()) {
@@ -147,8 +147,8 @@ impl Truth {
         if moved.positions.get(at).is_none_or(|places| places.len() != reference.positions[at].len()) {
             return MotionRow { failure: "other grains than in the reference".to_owned(), ..row };
         }
-        let way = rms(&reference.positions[at], &reference.positions[0]);
-        let exchanged = rms_scalar(&reference.charges[at], &reference.charges[0]);
+        let way = rms_difference(&reference.positions[at], &reference.positions[0]);
+        let exchanged = rms_change(&reference.charges[at], &reference.charges[0]);
         let statistics = moved.statistics();
         let [height, kinetic, contacts] = [0, 1, 2].map(|k| {
             let (mean, deviation) = self.spread[k];
@@ -159,9 +159,9 @@ impl Truth {
             steps: Some(moved.steps),
             evaluations: Some(moved.evaluations),
             horizon_s: Some(reference.end_s * at as f64 / LOOKS as f64),
-            position_error: Some(rms(&moved.positions[at], &reference.positions[at]) / way),
+            position_error: Some(rms_difference(&moved.positions[at], &reference.positions[at]) / way),
             charge_error: (exchanged > 0.0)
-                .then(|| rms_scalar(&moved.charges[at], &reference.charges[at]) / exchanged),
+                .then(|| rms_change(&moved.charges[at], &reference.charges[at]) / exchanged),
             height,
             kinetic,
             contacts,
@@ -170,12 +170,6 @@ impl Truth {
     }
 }
 
-fn rms(a: &[Vector3<f64>], b: &[Vector3<f64>]) -> f64 {
-    let square: f64 = a.iter().zip(b).map(|(a, b)| (a - b).norm_squared()).sum();
-    (square / a.len().max(1) as f64).sqrt()
-}
-
-fn rms_scalar(a: &[f64], b: &[f64]) -> f64 {
-    let square: f64 = a.iter().zip(b).map(|(a, b)| (a - b).powi(2)).sum();
-    (square / a.len().max(1) as f64).sqrt()
+fn rms_change(a: &[f64], b: &[f64]) -> f64 {
+    rms_scalar(&a.iter().zip(b).map(|(a, b)| a - b).collect::<Vec<_>>())
 }

@@ -30,6 +30,7 @@ impl Bed {
             particles: scene.particles,
             walls: scene.walls,
             time: time.clone(),
+            gas: None,
             field: None,
         };
         Ok(Self { plain, settings, end_s: time.end_s })

@@ -2,9 +2,9 @@
 
 use super::Rows;
 use super::bed::Bed;
-use crate::beds::rms_difference;
 use amberfield_core::{CouplingInterval, Particles};
 use amberfield_dem::{Setup, Simulation};
+use amberfield_oracle::rms_difference;
 use anyhow::Result;
 use std::path::Path;
 

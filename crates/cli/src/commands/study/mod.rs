@@ -6,9 +6,9 @@ mod peers;
 
 use crate::arguments::StudyOptions;
 use crate::failure::Failure;
+use crate::machine;
 use crate::print::line;
 use crate::run::{Charges, charges_of, connect_solver, domain_of, field_of, parameters};
-use crate::{machine, not_built};
 use amberfield_core::constants::coulomb_constant;
 use amberfield_core::{FieldSettings, Method, Tuning, Vector3};
 use amberfield_field::{ElectricField, FieldValues, Wanted};
@@ -166,7 +166,6 @@ impl Laboratory for Bench {
 
     fn problem(&mut self, scene: &Path, set: &[String]) -> Result<Charged, String> {
         let scene = read_scene(scene, set, Purpose::Field).map_err(|error| error.to_string())?;
-        not_built::refuse(&scene).map_err(|failure| failure.message().to_owned())?;
         let settings = scene.electric_field.as_ref().expect("the purpose needs it").field.clone();
         let Charges { position: positions, charge: charges, .. } = charges_of(&scene);
         if positions.is_empty() {

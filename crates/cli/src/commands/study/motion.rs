@@ -1,6 +1,5 @@
 //! A run of a study.
 
-use crate::not_built;
 use crate::run::{connect_solver, setup_of};
 use amberfield_core::Vector3;
 use amberfield_dem::{ElectricEnergy, Simulation};
@@ -13,7 +12,6 @@ use std::time::Instant;
 pub(super) fn simulate(scene: &Path, set: &[String], nudge: f64, looks: usize) -> Result<Moved, String> {
     let mut scene = read_scene(scene, set, Purpose::Run).map_err(|error| error.to_string())?;
     let said = |failure: crate::failure::Failure| failure.message().to_owned();
-    not_built::refuse(&scene).map_err(said)?;
     let particles = &mut scene.particles;
     for (index, (position, radius)) in particles.position.iter_mut().zip(&particles.radius).enumerate() {
         let way = nudge * radius;

@@ -1,0 +1,74 @@
+//! Forces of a gas on the grains: drag, buoyancy, lift of spinning ones.
+
+use crate::chunks::{CHUNK, is_parallel};
+use crate::grains::Grains;
+use amberfield_core::{DragLaw, Gas, Particles, Vector3};
+use amberfield_laws::particle_reynolds::Slip;
+use amberfield_laws::{
+    beetstra_drag, di_felice_drag, gidaspow_drag, magnus_lift, schiller_naumann_drag, stokes_drag,
+};
+use rayon::prelude::*;
+use std::f64::consts::PI;
+
+/// A gas that the grains do not disturb: each one is alone in it.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct GasStage {
+    gas: Gas,
+    gravity: Vector3<f64>,
+    /// Smallest diameter [m] and lowest density [kg/m³] of the grains.
+    finest: (f64, f64),
+}
+
+impl GasStage {
+    pub(crate) fn new(gas: Gas, gravity: Vector3<f64>, particles: &Particles) -> Self {
+        let least = |values: &[f64]| values.iter().copied().fold(f64::INFINITY, f64::min);
+        Self { gas, gravity, finest: (2.0 * least(&particles.radius), least(&particles.density)) }
+    }
+
+    /// Name of the drag law.
+    pub(crate) fn drag(&self) -> &'static str {
+        self.gas.drag.name()
+    }
+
+    /// Adds the forces on the grains at their present velocities [N].
+    pub(crate) fn add_forces(&self, grains: &Grains, total: &mut [Vector3<f64>]) {
+        let Gas { density_kg_m3: density, velocity_m_s: velocity, .. } = self.gas;
+        let spins = self.gas.magnus_lift && !grains.angular.is_empty();
+        let add = |(i, total): (usize, &mut Vector3<f64>)| {
+            let diameter = 2.0 * grains.centre[i][3];
+            let slip = velocity - grains.velocity[i];
+            let displaced = density * PI / 6.0 * diameter.powi(3);
+            *total += slip * self.coefficient(diameter, slip.norm()) - self.gravity * displaced;
+            if spins {
+                *total += magnus_lift::force(-slip, grains.angular[i], Vector3::zeros(), diameter, density);
+            }
+        };
+        if is_parallel(grains.len()) {
+            let chunks = total.par_chunks_mut(CHUNK).enumerate();
+            chunks.for_each(|(k, chunk)| (k * CHUNK..).zip(chunk).for_each(add));
+        } else {
+            total.iter_mut().enumerate().for_each(add);
+        }
+    }
+
+    /// Shortest time in which any grain's slip decays, at grains' speeds up to `speed` [m/s] (exact for grains of one density): steps beyond it are
+    /// unstable, since the force is that at the velocity predicted for the end of the step, v + Δt a.
+    pub(crate) fn limit(&self, speed: f64) -> f64 {
+        let (diameter, density) = self.finest;
+        let slip = speed + self.gas.velocity_m_s.norm();
+        density * PI / 6.0 * diameter.powi(3) / self.coefficient(diameter, slip)
+    }
+
+    /// β of F = β (u − v) [kg/s].
+    fn coefficient(&self, diameter: f64, speed: f64) -> f64 {
+        let Gas { density_kg_m3: density, viscosity_pa_s: viscosity, .. } = self.gas;
+        let slip = Slip { speed, void_fraction: 1.0, diameter, density, viscosity };
+        match self.gas.drag {
+            DragLaw::Stokes => stokes_drag::coefficient(diameter, viscosity),
+            DragLaw::SchillerNaumann => schiller_naumann_drag::coefficient(&slip),
+            DragLaw::DiFelice => di_felice_drag::coefficient(&slip),
+            DragLaw::Gidaspow => gidaspow_drag::coefficient(&slip),
+            DragLaw::Beetstra => beetstra_drag::coefficient(&slip),
+        }
+    }
+}

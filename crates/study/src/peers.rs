@@ -1,0 +1,128 @@
+//! Other programs that compute the same, in a Python environment of their own; the scripts that drive them stand in `peers/`.
+
+use std::io::Write as _;
+use std::path::{Path, PathBuf};
+use std::process::{Command, Stdio};
+
+/// A script: a program and what it is asked for. Its first argument names a file of numbers, see [`write_numbers`].
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Script {
+    /// Steps of LAMMPS' granular package.
+    LammpsDem,
+    /// E by LAMMPS' `pppm` or `msm`. Every line has cut-off [m], order, share of the tolerance asked for, 1 for analytic differentiation, error, seconds
+    /// with the neighbour list kept, seconds with it built anew.
+    LammpsField,
+    /// E by FMM3D. Every line has precision, error, seconds.
+    Fmm3d,
+}
+
+impl Script {
+    fn text(self) -> &'static str {
+        match self {
+            Self::LammpsDem => include_str!("../peers/lammps_dem.py"),
+            Self::LammpsField => include_str!("../peers/lammps_field.py"),
+            Self::Fmm3d => include_str!("../peers/fmm3d.py"),
+        }
+    }
+
+    /// The Python module that it needs.
+    #[must_use]
+    pub fn module(self) -> &'static str {
+        match self {
+            Self::LammpsDem | Self::LammpsField => "lammps",
+            Self::Fmm3d => "fmm3dpy",
+        }
+    }
+}
+
+/// An environment with the programs.
+#[derive(Clone, Debug)]
+pub struct Environment(PathBuf);
+
+impl Environment {
+    /// The environment in a folder; `None` where there is none.
+    #[must_use]
+    pub fn at(folder: &Path) -> Option<Self> {
+        folder.join("bin/python").exists().then(|| Self(folder.to_path_buf()))
+    }
+
+    /// Runs a script on so many ranks: its lines of numbers.
+    ///
+    /// # Errors
+    /// A program that is not there or fails, with the last line that it said.
+    pub fn run(&self, script: Script, ranks: usize, arguments: &[&str]) -> Result<Vec<Vec<f64>>, String> {
+        let bin = self.0.join("bin");
+        let mut command = if ranks > 1 {
+            let mut mpi = Command::new(bin.join("mpirun"));
+            mpi.arg("-n").arg(ranks.to_string()).arg(bin.join("python"));
+            mpi
+        } else {
+            Command::new(bin.join("python"))
+        };
+        command.args(["-c", script.text()]).args(arguments);
+        command.env("LD_LIBRARY_PATH", self.0.join("lib")).env("OMP_NUM_THREADS", "1").stdin(Stdio::null());
+        let module = script.module();
+        let output = command.output().map_err(|error| format!("cannot start {module}: {error}"))?;
+        if !output.status.success() {
+            let said = String::from_utf8_lossy(&output.stderr);
+            return Err(format!("{module} failed: {}", said.lines().last().unwrap_or("without a word")));
+        }
+        let numbers = |line: &str| line.split(',').map(str::parse).collect::<Result<Vec<f64>, _>>().ok();
+        Ok(String::from_utf8_lossy(&output.stdout).lines().filter_map(numbers).collect())
+    }
+}
+
+/// Cut-offs [diameters] and orders of a sweep over LAMMPS' settings, with commas.
+#[must_use]
+pub fn pppm_sweep(tolerance: f64) -> (&'static str, &'static str) {
+    match tolerance {
+        t if t > 2e-3 => ("1.5,2,2.5,3,4", "4,5"),
+        t if t > 2e-4 => ("2,2.5,3,4", "5,6"),
+        t if t > 2e-5 => ("2.5,3,4,5", "5,6"),
+        _ => ("4,5,6,7", "7"),
+    }
+}
+
+/// Shares of a tolerance asked of LAMMPS, whose estimate of its error is not its error.
+pub const SHARES: &str = "0.8,1.1";
+
+/// The line with the shortest time among those of the script's width whose error is at most a tolerance.
+#[must_use]
+pub fn fastest(script: Script, lines: &[Vec<f64>], tolerance: f64) -> Option<&[f64]> {
+    let (width, error, seconds) = match script {
+        Script::LammpsDem => (2, None, 1),
+        Script::LammpsField => (7, Some(4), 5),
+        Script::Fmm3d => (3, Some(1), 2),
+    };
+    let meets = |line: &&Vec<f64>| line.len() == width && error.is_none_or(|error| line[error] <= tolerance);
+    lines.iter().filter(meets).min_by(|a, b| a[seconds].total_cmp(&b[seconds])).map(Vec::as_slice)
+}
+
+/// Writes numbers as scripts read them: eight bytes each, little endian.
+///
+/// # Errors
+/// What the system says.
+pub fn write_numbers(path: &Path, numbers: impl IntoIterator<Item = f64>) -> std::io::Result<()> {
+    let mut writer = std::io::BufWriter::new(std::fs::File::create(path)?);
+    for number in numbers {
+        writer.write_all(&number.to_le_bytes())?;
+    }
+    writer.flush()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn fastest_line_meets_the_tolerance() {
+        let lines = [vec![0.1, 2e-2, 1.0], vec![0.01, 5e-3, 3.0], vec![0.001, 1e-3, 2.0], vec![1.0]];
+        assert_eq!(fastest(Script::Fmm3d, &lines, 1e-2), Some(&[0.001, 1e-3, 2.0][..]));
+        assert_eq!(fastest(Script::Fmm3d, &lines, 1e-4), None);
+    }
+
+    #[test]
+    fn environment_is_there_or_not() {
+        assert!(Environment::at(Path::new("/nowhere")).is_none());
+    }
+}

@@ -1,0 +1,28 @@
+//! The address sanitizer over unsafe code: Rust's tests of it, and the field solver's.
+
+use crate::shell::{cargo, run as execute};
+use crate::{debian, openfoam};
+use anyhow::Result;
+use std::path::Path;
+
+/// Crates with unsafe code.
+const CRATES: [&str; 4] = ["amberfield-wire", "amberfield-field", "amberfield-coupling", "amberfield-capi"];
+/// The sanitizer needs the target named, so that build scripts do without it.
+const TARGET: &str = "x86_64-unknown-linux-gnu";
+
+/// Builds and runs both.
+pub(crate) fn run(root: &Path) -> Result<()> {
+    let mut test = cargo(root, &["test", "--lib", "--tests", "--target", TARGET]);
+    test.args(CRATES.iter().flat_map(|name| ["-p", name]));
+    test.env("CARGO_TARGET_DIR", root.join("target/sanitize"));
+    // A flag that stable compilers know, and hide.
+    execute(test.env("RUSTC_BOOTSTRAP", "1").env("RUSTFLAGS", "-Zsanitizer=address"))?;
+
+    debian::provide(&["libasan8"])?;
+    let flags = "-DCMAKE_CXX_FLAGS=-fsanitize=address -fno-omit-frame-pointer -g";
+    let build = openfoam::build(root, "build-sanitize", &[flags])?;
+    let mut tests = cargo(root, &["test", "-p", "amberfield-tests", "--test", "commands", "--", "openfoam"]);
+    tests.env("AMBERFIELD_SOLVER", build.join("electricFieldFoam"));
+    // OpenFOAM keeps what it made until the process ends.
+    execute(tests.env("ASAN_OPTIONS", "detect_leaks=0"))
+}

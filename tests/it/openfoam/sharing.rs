@@ -1,0 +1,134 @@
+//! What a run shares with the field solver: with whom, and how much of it after many steps.
+
+use amberfield_tests::{FoamBox, Table};
+use rustix::process::{Pid, Signal, kill_process};
+use std::process::Stdio;
+use std::time::Duration;
+
+/// Growth of a process's memory that is none [bytes].
+const FLAT: u64 = 4 << 20;
+/// Change of a net charge that is round-off: 100 grains of 1 pC [C].
+const ROUND_OFF: f64 = 1e-24;
+/// Kinetic energy of a bed at rest over the most that it had.
+const RESTING: f64 = 1e-6;
+
+#[test]
+fn what_a_run_shares_is_its_users_alone() {
+    use std::os::unix::fs::MetadataExt as _;
+    let scene = FoamBox::grounded();
+    let mut run = scene.endless();
+    let solver = scene.solver();
+    let shared: Vec<_> = std::fs::read_dir("/dev/shm")
+        .unwrap()
+        .flatten()
+        .filter(|entry| entry.file_name().to_string_lossy().starts_with("amberfield-"))
+        .collect();
+    let me = rustix::process::getuid().as_raw();
+    assert!(!shared.is_empty());
+    for entry in &shared {
+        // Those of other tests come and go.
+        let Ok(known) = entry.metadata() else { continue };
+        assert!(known.uid() == me && known.mode() & 0o077 == 0, "{entry:?}: mode {:o}", known.mode());
+    }
+    for process in [Pid::from_child(&run), solver] {
+        let inodes = sockets_of(process);
+        for table in ["tcp", "tcp6", "udp", "udp6"] {
+            let text = std::fs::read_to_string(format!("/proc/net/{table}")).unwrap_or_default();
+            let known = text.lines().skip(1).filter_map(|line| line.split_whitespace().nth(9));
+            assert!(known.clone().all(|inode| !inodes.contains(&inode.to_owned())), "{table}: {inodes:?}");
+        }
+    }
+    kill_process(Pid::from_child(&run), Signal::INT).unwrap();
+    run.wait().unwrap();
+}
+
+/// Numbers of a process's sockets.
+fn sockets_of(process: Pid) -> Vec<String> {
+    let folder = format!("/proc/{}/fd", process.as_raw_nonzero());
+    let files = std::fs::read_dir(folder).unwrap().flatten();
+    let links = files.filter_map(|file| std::fs::read_link(file.path()).ok());
+    let numbers = links.filter_map(|link| {
+        let text = link.to_string_lossy().into_owned();
+        Some(text.strip_prefix("socket:[")?.strip_suffix(']')?.to_owned())
+    });
+    numbers.collect()
+}
+
+/// What two processes hold.
+#[derive(Clone, Copy, Debug, PartialEq)]
+struct Held {
+    step: u64,
+    /// Memory of the run and of the solver [bytes].
+    memory: [u64; 2],
+    /// Open files of both.
+    files: [usize; 2],
+    /// Files in shared memory, and their bytes.
+    shared: (usize, u64),
+}
+
+fn held(run: &str, step: u64, processes: [Pid; 2]) -> Option<Held> {
+    let of = |process: Pid, name: &str| format!("/proc/{}/{name}", process.as_raw_nonzero());
+    let memory = |process| {
+        let text = std::fs::read_to_string(of(process, "statm")).ok()?;
+        Some(4096 * text.split(' ').nth(1)?.parse::<u64>().ok()?)
+    };
+    let files = |process| Some(std::fs::read_dir(of(process, "fd")).ok()?.count());
+    let ours = std::fs::read_dir("/dev/shm").ok()?.flatten();
+    let ours = ours.filter(|entry| entry.file_name().to_string_lossy().starts_with(run));
+    let sizes: Vec<u64> = ours.filter_map(|entry| Some(entry.metadata().ok()?.len())).collect();
+    let [dem, solver] = processes;
+    Some(Held {
+        step,
+        memory: [memory(dem)?, memory(solver)?],
+        files: [files(dem)?, files(solver)?],
+        shared: (sizes.len(), sizes.iter().sum()),
+    })
+}
+
+/// A small bed at rest: a million steps with `AMBERFIELD_CASES=full`, twenty thousand otherwise; an exchange every twenty.
+#[test]
+fn a_long_run_holds_no_more_at_its_end_than_early_on() {
+    let steps: u64 =
+        if std::env::var("AMBERFIELD_CASES").is_ok_and(|size| size == "full") { 1_000_000 } else { 20_000 };
+    let scene = FoamBox::grounded();
+    let text = scene.bench.read("scene.toml");
+    let text = text
+        .replace("count = 3000", "count = 100")
+        .replace("[time]", "coupling_interval = 20\n[[walls]]\nplane = { point_m = [0, 0, 1e-5], normal = [0, 0, 1] }\n[time]")
+        .replace("'auto'\nend_s = 1e-3", &format!("1e-5\nend_s = {}", steps as f64 * 1e-5))
+        + &format!("[output]\nevery_s = 1e3\nhistory_every_s = {}\n", steps as f64 * 1e-5 / 50.0);
+    scene.bench.write("scene.toml", text);
+    let mut command = scene.bench.command(&["run", "scene.toml", "--out", "out", "--no-progress"]);
+    let mut run = command.stdout(Stdio::null()).stderr(Stdio::null()).spawn().unwrap();
+    scene.wait_until_it_steps(&mut run);
+    let processes = [Pid::from_child(&run), scene.solver()];
+    let line = std::fs::read(format!("/proc/{}/cmdline", processes[1].as_raw_nonzero())).unwrap();
+    let line = String::from_utf8_lossy(&line).into_owned();
+    let name = line.split('\0').find(|word| word.starts_with("amberfield-")).unwrap().to_owned();
+    let mut seen: Vec<Held> = Vec::new();
+    while run.try_wait().unwrap().is_none() {
+        let history = std::fs::read_to_string(scene.bench.path("out/history.csv")).unwrap();
+        let step = history.lines().rfind(|line| line.matches(',').count() > 2);
+        let step = step.and_then(|line| line.split(',').next()?.parse().ok()).unwrap_or(0);
+        seen.extend(held(&name, step, processes));
+        std::thread::sleep(Duration::from_millis(20));
+    }
+    assert!(run.wait().unwrap().success());
+    // While a process leaves, what it holds goes.
+    let early = *seen.iter().find(|held| held.step >= steps / 10).unwrap();
+    let last = *seen.iter().rfind(|held| held.step <= steps * 98 / 100).unwrap();
+    println!("{early:?}\n{last:?}");
+    assert!(last.step > steps / 2, "{last:?}");
+    assert_eq!((last.files, last.shared), (early.files, early.shared));
+    for (early, last) in early.memory.iter().zip(last.memory) {
+        assert!(last <= early + FLAT, "{early} bytes early on, {last} at the end");
+    }
+    let history = Table::parse(&scene.bench.read("out/history.csv"));
+    let charges = history.numbers("net_charge_C");
+    assert!(charges.iter().all(|charge| (charge - charges[0]).abs() <= ROUND_OFF), "{charges:?}");
+    // At rest, and not heated by the field that is followed between exchanges.
+    let kinetic = history.numbers("kinetic_J");
+    let (most, last) = (kinetic.iter().copied().fold(0.0, f64::max), kinetic[kinetic.len() - 1]);
+    println!("kinetic energy: most {most:e} J, at the end {last:e} J");
+    assert!(steps < 1_000_000 || last <= RESTING * most, "{last:e} J of at most {most:e} J");
+}

@@ -1,0 +1,237 @@
+//! Any bytes at everything that is read: an answer, never a panic. For the fuzzer (`cargo xtask fuzz`) and for the test that sends its corpora and
+//! changes of them through.
+
+use amberfield_core::{Boundary, Domain, Vector3};
+use amberfield_coupling::{Asked, MeshArrays, MeshPart, assemble};
+use amberfield_field::far::{FarMesh, FarMeshParts};
+use amberfield_scene::{Purpose, read_checkpoint, read_scene, write_checkpoint};
+use amberfield_wire::{Block64, Header, Section, SectionEntry, Sections};
+use std::path::PathBuf;
+use std::sync::OnceLock;
+
+/// What bytes are sent to, by name.
+pub const TARGETS: [(&str, fn(&[u8])); 6] = [
+    ("scene", scene),
+    ("grains", grains),
+    ("surface", surface),
+    ("checkpoint", checkpoint),
+    ("message", message),
+    ("mesh", mesh),
+];
+
+/// A scene with every kind of section, and its files.
+const SCENE: &str = include_str!("../fuzz/good/scene.toml");
+const GRAINS: &str = include_str!("../fuzz/good/grains.csv");
+const SURFACE: &str = include_str!("../fuzz/good/surface.stl");
+/// Fingerprint that checkpoints are read with.
+const HASH: u64 = 42;
+/// Sections' numbers, past the last.
+const SECTIONS: [Section; 21] = [
+    Section::Text,
+    Section::Positions,
+    Section::Charges,
+    Section::ImagePositions,
+    Section::ImageCharges,
+    Section::Boundary,
+    Section::Request,
+    Section::Potential,
+    Section::Field,
+    Section::Cells,
+    Section::Answer,
+    Section::Centres,
+    Section::Volumes,
+    Section::FirstFace,
+    Section::FaceNormals,
+    Section::FaceOffsets,
+    Section::FaceNeighbours,
+    Section::FaceShifts,
+    Section::BoundaryFaces,
+    Section::Guess,
+    Section::MeshNumbers,
+];
+
+/// A folder of this process with a good scene, one file of it replaced.
+fn read_with(name: &str, bytes: &[u8]) {
+    static FOLDER: OnceLock<tempfile::TempDir> = OnceLock::new();
+    let folder = FOLDER.get_or_init(|| tempfile::tempdir().expect("a folder"));
+    // Threads of a test each have a folder of their own.
+    let own: PathBuf = folder.path().join(format!("{:?}", std::thread::current().id()));
+    std::fs::create_dir_all(&own).expect("a folder");
+    for (good, text) in [("scene.toml", SCENE), ("grains.csv", GRAINS), ("surface.stl", SURFACE)] {
+        let content = if good == name { bytes } else { text.as_bytes() };
+        std::fs::write(own.join(good), content).expect("a file");
+    }
+    let scene = read_scene(&own.join("scene.toml"), &[], Purpose::Explain);
+    if let Ok(scene) = scene {
+        let finite = scene.particles.position.iter().flatten().all(|number| number.is_finite());
+        assert!(finite, "grains are somewhere");
+    }
+}
+
+/// A scene file.
+fn scene(bytes: &[u8]) {
+    // Fills of millions of grains are no mistake, but take their time.
+    if !bytes.windows(8).any(|word| word == b"generate") {
+        read_with("scene.toml", bytes);
+    }
+}
+
+/// A CSV file of grains.
+fn grains(bytes: &[u8]) {
+    read_with("grains.csv", bytes);
+}
+
+/// An STL file.
+fn surface(bytes: &[u8]) {
+    read_with("surface.stl", bytes);
+}
+
+/// A checkpoint: the bytes as a file, and behind a header that fits them.
+fn checkpoint(bytes: &[u8]) {
+    type State = (u64, Vec<f64>, String, Option<[f64; 3]>);
+    static FOLDER: OnceLock<tempfile::TempDir> = OnceLock::new();
+    let folder = FOLDER.get_or_init(|| tempfile::tempdir().expect("a folder"));
+    let path = folder.path().join(format!("{:?}.amber", std::thread::current().id()));
+    std::fs::write(&path, bytes).expect("a file");
+    let _answer = read_checkpoint::<State>(&path, HASH);
+    write_checkpoint(&path, HASH, &Raw(bytes)).expect("a file");
+    let _answer = read_checkpoint::<State>(&path, HASH);
+}
+
+/// Bytes that encode as themselves.
+struct Raw<'a>(&'a [u8]);
+
+impl serde::Serialize for Raw<'_> {
+    fn serialize<S: serde::Serializer>(&self, serializer: S) -> Result<S::Ok, S::Error> {
+        use serde::ser::SerializeTuple as _;
+        let mut tuple = serializer.serialize_tuple(self.0.len())?;
+        self.0.iter().try_for_each(|byte| tuple.serialize_element(byte))?;
+        tuple.end()
+    }
+}
+
+/// A message: header and payload from the bytes.
+fn message(bytes: &[u8]) {
+    let mut bytes = bytes.iter().copied();
+    let mut number = |size: usize| {
+        (0..size).fold(0_u64, |number, place| number | u64::from(bytes.next().unwrap_or(0)) << (8 * place))
+    };
+    let mut header = Header {
+        version: number(4) as u32,
+        kind: number(1) as u32,
+        run: number(1),
+        solve: number(1),
+        rank: number(1) as u32,
+        ranks: number(1) as u32,
+        section_count: number(1),
+        ..Header::default()
+    };
+    let used = (header.section_count as usize).min(header.sections.len());
+    for entry in &mut header.sections[..used] {
+        *entry = SectionEntry {
+            section: number(1) as u32,
+            element: number(1) as u32,
+            count: number(8),
+            first_block: number(8),
+        };
+    }
+    let payload: Vec<u8> = bytes.collect();
+    let payload: Vec<Block64> = payload.chunks(64).map(block).collect();
+    let sections = Sections::new(&header, &payload);
+    let _answer = header.check(0);
+    for section in SECTIONS {
+        let _lengths = (
+            sections.get::<u8>(section).map(<[u8]>::len),
+            sections.get::<u64>(section).map(|numbers| numbers.iter().fold(0, |sum, number| sum ^ number)),
+            sections.get::<i64>(section).map(<[i64]>::len),
+            sections.get::<f64>(section).map(|numbers| numbers.iter().sum::<f64>()),
+            sections.get::<[f64; 3]>(section).map(<[[f64; 3]]>::len),
+            sections.get::<[f64; 16]>(section).map(<[[f64; 16]]>::len),
+        );
+    }
+    let _answer = (sections.text(), Asked::read(&header, &sections).is_ok());
+    if let Ok(part) = MeshPart::read(&sections) {
+        let _answer = assemble(&[part]);
+    }
+}
+
+fn block(bytes: &[u8]) -> Block64 {
+    let mut words = [0_u64; 8];
+    for (place, byte) in bytes.iter().enumerate() {
+        words[place / 8] |= u64::from(*byte) << (8 * (place % 8));
+    }
+    Block64 { words }
+}
+
+/// A mesh of a few cells whose numbers are changed: the bytes say which and into what.
+fn mesh(bytes: &[u8]) {
+    static GOOD: OnceLock<(FarMesh, MeshArrays)> = OnceLock::new();
+    let (good, arrays) = GOOD.get_or_init(|| {
+        let faces = [
+            [Boundary::Grounded; 2],
+            [Boundary::Periodic; 2],
+            [Boundary::Insulating { normal_field_v_m: 0.0 }; 2],
+        ];
+        let domain =
+            Domain::new(Vector3::zeros(), Vector3::new(3.0, 2.0, 2.0), faces).expect("a sound domain");
+        let mesh = FarMeshParts::of_box(&domain, [3, 2, 2]).and_then(FarMesh::new).expect("a sound mesh");
+        let arrays = MeshArrays::of(&mesh);
+        (mesh, arrays)
+    });
+    let part = arrays.part(good);
+    let mut centres = part.centres.to_vec();
+    let mut volumes = part.volumes.to_vec();
+    let mut first_face = part.first_face.to_vec();
+    let mut normals = part.face_normals.to_vec();
+    let mut neighbours = part.face_neighbours.to_vec();
+    let mut shifts = part.face_shifts.to_vec();
+    let mut boundary = part.boundary_faces.to_vec();
+    let mut corners = part.corners;
+    let (mut first_cell, mut all_cells) = (part.first_cell, part.all_cells);
+    for change in bytes.chunks_exact(11) {
+        let place = usize::from(change[1]) | usize::from(change[2]) << 8;
+        let word = u64::from_le_bytes(change[3..].try_into().expect("eight bytes"));
+        let number = f64::from_bits(word);
+        match change[0] % 10 {
+            0 => corners[place % 2][(place >> 1) % 3] = number,
+            1 => first_cell = word,
+            2 => all_cells = word,
+            3 => set(&mut volumes, place, number),
+            4 => set(&mut first_face, place, word),
+            5 => set(&mut neighbours, place, word as i64),
+            6 => set_in(&mut centres, place, number),
+            7 => set_in(&mut normals, place, number),
+            8 => set_in(&mut shifts, place, number),
+            _ => set_in(&mut boundary, place, number),
+        }
+    }
+    let changed = MeshPart {
+        corners,
+        first_cell,
+        all_cells,
+        centres: &centres,
+        volumes: &volumes,
+        first_face: &first_face,
+        face_normals: &normals,
+        face_neighbours: &neighbours,
+        face_shifts: &shifts,
+        boundary_faces: &boundary,
+        ..part
+    };
+    if let Ok(mesh) = assemble(&[changed]) {
+        for place in [Vector3::new(0.1, 0.2, 0.3), Vector3::new(2.9, 1.9, 1.9)] {
+            let (cell, _) = mesh.locate(&place, None);
+            assert!((cell as usize) < mesh.cell_count());
+        }
+    }
+}
+
+fn set<T>(numbers: &mut [T], place: usize, number: T) {
+    let count = numbers.len();
+    numbers[place % count] = number;
+}
+
+fn set_in<const N: usize>(vectors: &mut [[f64; N]], place: usize, number: f64) {
+    let count = vectors.len() * N;
+    vectors[place % count / N][place % N] = number;
+}
