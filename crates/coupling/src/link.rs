@@ -103,6 +103,7 @@ impl Link {
             .signal_handling_mode(SignalHandlingMode::Disabled)
             .create::<Ipc>();
         let node = said(node)?;
+        root.close()?;
         let [to_field, to_dem] = ["charges", "fields"];
         let (outgoing, incoming) = if side == SideOf::Dem { (to_field, to_dem) } else { (to_dem, to_field) };
         let ranks = ranks as usize;

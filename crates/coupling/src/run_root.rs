@@ -100,6 +100,32 @@ impl RunRoot {
         }
     }
 
+    /// Closes what bears the run's name to other users: iceoryx2 opens a node's management to all.
+    ///
+    /// # Errors
+    /// Files of somebody else under this name.
+    pub(crate) fn close(&self) -> Result<(), CouplingError> {
+        let files = std::fs::read_dir(SHARED).into_iter().flatten().flatten();
+        for file in files.filter(|file| file.file_name().to_string_lossy().starts_with(&self.name)) {
+            let path = file.path();
+            let known = match rustix::fs::lstat(&path) {
+                Ok(known) => known,
+                // Another process of the run has removed it.
+                Err(rustix::io::Errno::NOENT) => continue,
+                Err(error) => return Err(cannot_close(&path, &error)),
+            };
+            let mode = Mode::from_raw_mode(known.st_mode);
+            let own = mode & Mode::RWXU;
+            if mode != own {
+                match rustix::fs::chmod(&path, own) {
+                    Ok(()) | Err(rustix::io::Errno::NOENT) => (),
+                    Err(error) => return Err(cannot_close(&path, &error)),
+                }
+            }
+        }
+        Ok(())
+    }
+
     /// Refuses a DEM process of another version, before anything of it is read.
     pub(crate) fn check_version(&self) -> Result<(), WireError> {
         let text = std::fs::read_to_string(self.path().join(PROTOCOL)).unwrap_or_default();
@@ -176,6 +202,10 @@ pub(crate) fn check_room(bytes: usize) -> Result<(), CouplingError> {
         Ok(_) => Ok(()),
         Err(error) => Err(no_room(bytes, &error)),
     }
+}
+
+fn cannot_close(path: &Path, why: &dyn std::fmt::Display) -> CouplingError {
+    CouplingError::SharedMemory(format!("cannot close {} to other users: {why}", path.display()))
 }
 
 pub(crate) fn no_room(bytes: usize, why: &dyn std::fmt::Display) -> CouplingError {

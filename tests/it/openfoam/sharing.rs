@@ -92,9 +92,15 @@ fn a_long_run_holds_no_more_at_its_end_than_early_on() {
         if std::env::var("AMBERFIELD_CASES").is_ok_and(|size| size == "full") { 1_000_000 } else { 20_000 };
     let scene = FoamBox::grounded();
     let text = scene.bench.read("scene.toml");
+    let plane = |point: [f64; 3], normal: [i32; 3]| {
+        format!("[[walls]]\nplane = {{ point_m = {point:?}, normal = {normal:?} }}\n")
+    };
+    let (low, high) = ([1e-5; 3], [11.99e-3, 11.99e-3, 9.99e-3]);
+    let sides = [[1, 0, 0], [0, 1, 0], [0, 0, 1]];
+    let walls = sides.map(|n| plane(low, n) + &plane(high, n.map(|c: i32| -c))).concat();
     let text = text
         .replace("count = 3000", "count = 100")
-        .replace("[time]", "coupling_interval = 20\n[[walls]]\nplane = { point_m = [0, 0, 1e-5], normal = [0, 0, 1] }\n[time]")
+        .replace("[time]", &format!("coupling_interval = 20\n{walls}[time]"))
         .replace("'auto'\nend_s = 1e-3", &format!("1e-5\nend_s = {}", steps as f64 * 1e-5))
         + &format!("[output]\nevery_s = 1e3\nhistory_every_s = {}\n", steps as f64 * 1e-5 / 50.0);
     scene.bench.write("scene.toml", text);
