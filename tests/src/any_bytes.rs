@@ -9,8 +9,11 @@ use amberfield_wire::{Block64, Header, Section, SectionEntry, Sections};
 use std::path::PathBuf;
 use std::sync::OnceLock;
 
+/// Reads bytes.
+pub type Reader = fn(&[u8]);
+
 /// What bytes are sent to, by name.
-pub const TARGETS: [(&str, fn(&[u8])); 6] = [
+pub const TARGETS: [(&str, Reader); 6] = [
     ("scene", scene),
     ("grains", grains),
     ("surface", surface),

@@ -15,8 +15,7 @@ pub(super) enum Trade {
 const FORESIGHT: f64 = 2.0;
 
 impl Simulation {
-    /// Follows the areas of contacts with walls in a step of length `step` [s], 0 for the start, as those of pairs are in their forces; moves
-    /// what is due.
+    /// Follows the areas of walls' contacts in a step of `step` [s], 0 for the start, as forces do those of pairs; moves what is due.
     pub(super) fn charge_contacts(&mut self, step: f64) {
         let Some(charging) = &mut self.charging else { return };
         charging.ledger.collisions += self.neighbours.lists.iter().map(|list| list.begun).sum::<u64>();
@@ -137,10 +136,10 @@ mod tests {
             work_function_ev: Some(*work),
         };
         let settings = FieldSettings { method: Method::Direct, ..FieldSettings::default() };
-        let field = FieldStageSetup { transfer, ..FieldStageSetup::new(settings, vec![true; places.len()]) };
+        let field = FieldStageSetup::new(settings, vec![true; places.len()]);
+        let domain = Domain::new(Vector3::repeat(-1.0), Vector3::repeat(1.0), [[Boundary::Open; 2]; 3]);
         let setup = Setup {
-            domain: Domain::new(Vector3::repeat(-1.0), Vector3::repeat(1.0), [[Boundary::Open; 2]; 3])
-                .expect("a good scene"),
+            domain: domain.expect("a good scene"),
             materials: work_functions.iter().map(material).collect(),
             particles: (0..places.len()).map(grain).collect(),
             walls: Vec::new(),
@@ -154,7 +153,7 @@ mod tests {
                 allow_overlap: false,
             },
             gas: None,
-            field: Some(field),
+            field: Some(FieldStageSetup { transfer, ..field }),
         };
         Simulation::new(setup).expect("a good scene")
     }

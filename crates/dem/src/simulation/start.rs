@@ -133,7 +133,6 @@ impl Simulation {
             _ => None,
         };
         let gas = gas.map(|gas| GasStage::new(gas, time.gravity_m_s2, &particles));
-        let limits = Limits::new(&particles, &materials, &table, gas);
         let neighbours = Neighbours::new(Cells::new(level_radius, skin), shifts, features);
         let periodic = Axis::ALL.into_iter().any(|axis| domain.is_periodic(axis));
         let plan = super::plan::plan(
@@ -145,20 +144,19 @@ impl Simulation {
             transfer.as_ref(),
             field.as_ref().map(|f| f.source.field.plan()),
         );
-        let grains = Grains::new(&particles, level, features.rotation());
         let mut run = Self {
             bounds: bounds(&domain),
             domain,
             time,
             plan,
+            limits: Limits::new(&particles, &materials, &table, gas),
             table,
             features,
             periodic,
-            limits,
             step_s: 0.0,
             skin,
             step_index: 0,
-            grains,
+            grains: Grains::new(&particles, level, features.rotation()),
             neighbours,
             walls,
             gas,
