@@ -61,9 +61,25 @@ pub fn read_checkpoint<T: DeserializeOwned>(path: &Path, scene_hash: u64) -> Res
     }
     let bytes = std::fs::read(path).map_err(|error| bad(format!("cannot be read: {error}")))?;
     let payload = open(&bytes, scene_hash).map_err(bad)?;
-    bincode::serde::decode_from_slice(payload, bincode::config::standard())
-        .map(|(state, _)| state)
+    decode(payload)
         .map_err(|error| bad(format!("its state cannot be read ({error}); take another checkpoint")))
+}
+
+/// A state from its bytes. A text or a list in it that says to be far longer than the whole is an error, not memory: bincode asks for a limit that is
+/// known when it is compiled, so that there are four.
+fn decode<T: DeserializeOwned>(payload: &[u8]) -> Result<T, bincode::error::DecodeError> {
+    const KILO: usize = 1 << 10;
+    const MEGA: usize = 1 << 20;
+    const GIGA: usize = 1 << 30;
+    let plain = bincode::config::standard();
+    // Small integers take a byte of the file and count eight.
+    let state = match payload.len() {
+        0..KILO => bincode::serde::decode_from_slice(payload, plain.with_limit::<{ 16 * KILO }>()),
+        KILO..MEGA => bincode::serde::decode_from_slice(payload, plain.with_limit::<{ 16 * MEGA }>()),
+        MEGA..GIGA => bincode::serde::decode_from_slice(payload, plain.with_limit::<{ 16 * GIGA }>()),
+        _ => bincode::serde::decode_from_slice(payload, plain.with_limit::<{ KILO * GIGA }>()),
+    };
+    state.map(|(state, _)| state)
 }
 
 /// The payload of a sound file.
