@@ -72,9 +72,8 @@ pub(crate) fn run(options: &RunOptions, common: &Common, log: &Log) -> Result<()
 fn read_saved(checkpoint: &Path, hash: u64) -> Result<Saved, Failure> {
     read_checkpoint(checkpoint, hash).map_err(|error| {
         let folder = checkpoint.parent().unwrap_or_else(|| Path::new(""));
-        let older = checkpoints(folder).into_iter().rev().filter(|other| other.as_path() < checkpoint);
-        let sound = older.filter(|older| read_checkpoint::<Saved>(older, hash).is_ok());
-        match sound.into_iter().next() {
+        let mut older = checkpoints(folder).into_iter().rev().filter(|other| other.as_path() < checkpoint);
+        match older.find(|older| read_checkpoint::<Saved>(older, hash).is_ok()) {
             Some(older) => Failure::from(error).with(&format!("; go on with --resume {}", older.display())),
             None => error.into(),
         }
