@@ -39,7 +39,7 @@ Foam::IOobject own(const char* name, const Foam::fvMesh& mesh)
 } // End anonymous namespace
 
 
-Foam::electricField::electricField(const fvMesh& mesh, const string& run)
+Foam::electricField::electricField(const fvMesh& mesh, fieldSide& demProcess)
 :
     mesh_(mesh),
     phiE_
@@ -80,7 +80,7 @@ Foam::electricField::electricField(const fvMesh& mesh, const string& run)
             gMax(mag(mesh.nonOrthCorrectionVectors().primitiveField())()) > 0.1 ? 3 : 0
         )
     ),
-    demProcess_(run)
+    demProcess_(demProcess)
 {
     demProcess_.sendMesh(description_);
 }
@@ -105,12 +105,6 @@ Foam::dictionary Foam::electricField::controls(const fvMesh& mesh)
     solver.add("preconditioner", multigrid);
     solver.add("maxIter", 1000);
     return solver;
-}
-
-
-bool Foam::electricField::wait()
-{
-    return demProcess_.wait();
 }
 
 

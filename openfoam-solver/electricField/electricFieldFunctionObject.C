@@ -25,7 +25,8 @@ Foam::functionObjects::electricField::electricField
 )
 :
     fvMeshFunctionObject(name, runTime, dict),
-    field_(mesh_, dict.lookupOrDefault<string>("run", getEnv("AMBERFIELD_RUN"))),
+    demProcess_(dict.lookupOrDefault<string>("run", getEnv("AMBERFIELD_RUN"))),
+    field_(mesh_, demProcess_),
     pending_(false),
     over_(false)
 {}
@@ -41,12 +42,13 @@ void Foam::functionObjects::electricField::answerUpTo(const scalar time)
 {
     while (!over_)
     {
-        over_ = !pending_ && !field_.wait();
-        pending_ = !over_ && field_.time() > time;
+        over_ = !pending_ && !demProcess_.wait();
+        pending_ = !over_ && demProcess_.request().time > time;
         if (over_ || pending_)
         {
             return;
         }
+        demProcess_.mustBe(AmberfieldQuestion_Field);
         field_.answer();
     }
 }

@@ -96,6 +96,19 @@ bool Foam::fieldSide::wait()
 }
 
 
+void Foam::fieldSide::mustBe(const AmberfieldQuestion question)
+{
+    if (request_.question != question)
+    {
+        fail
+        (
+            "this program solves for the electric field only; a gas that flows needs"
+            " amberPimpleFoam"
+        );
+    }
+}
+
+
 void Foam::fieldSide::density(scalarField& rho)
 {
     noTraps quiet;
@@ -116,6 +129,49 @@ void Foam::fieldSide::guess(scalarField& V)
 {
     noTraps quiet;
     check(amberfield_field_guess(field_, V.data(), uint64_t(V.size())));
+}
+
+
+void Foam::fieldSide::grains
+(
+    scalarField& voidFraction,
+    scalarField& drag,
+    vectorField& source
+)
+{
+    noTraps quiet;
+    check
+    (
+        amberfield_field_grains
+        (
+            field_,
+            voidFraction.data(),
+            drag.data(),
+            reinterpret_cast<scalar*>(source.data()),
+            uint64_t(voidFraction.size())
+        )
+    );
+}
+
+
+void Foam::fieldSide::reply(const AmberfieldFlow& flow)
+{
+    noTraps quiet;
+    check(amberfield_field_reply_flow(field_, &flow));
+}
+
+
+void Foam::fieldSide::replyState(const scalarField& state)
+{
+    noTraps quiet;
+    check(amberfield_field_reply_state(field_, state.cdata(), uint64_t(state.size())));
+}
+
+
+void Foam::fieldSide::takeState(scalarField& state)
+{
+    noTraps quiet;
+    check(amberfield_field_state(field_, state.data(), uint64_t(state.size())));
 }
 
 

@@ -32,10 +32,12 @@ int main(int argc, char *argv[])
     string run;
     args.readIfPresent("run", run);
 
-    electricField field(mesh, run);
+    fieldSide demProcess(run);
+    electricField field(mesh, demProcess);
 
-    while (field.wait())
+    while (demProcess.wait())
     {
+        demProcess.mustBe(AmberfieldQuestion_Field);
         field.answer();
     }
 

@@ -2,7 +2,7 @@
 //! changes of them through.
 
 use amberfield_core::{Boundary, Domain, Vector3};
-use amberfield_coupling::{Asked, MeshArrays, MeshPart, assemble};
+use amberfield_coupling::{GrainsInCells, MeshArrays, MeshPart, Request, assemble};
 use amberfield_field::far::{FarMesh, FarMeshParts};
 use amberfield_scene::{Purpose, read_checkpoint, read_scene, write_checkpoint};
 use amberfield_wire::{Block64, Header, Section, SectionEntry, Sections};
@@ -29,7 +29,7 @@ const SURFACE: &str = include_str!("../fuzz/good/surface.stl");
 /// Fingerprint that checkpoints are read with.
 const HASH: u64 = 42;
 /// Sections' numbers, past the last.
-const SECTIONS: [Section; 21] = [
+const SECTIONS: [Section; 32] = [
     Section::Text,
     Section::Positions,
     Section::Charges,
@@ -51,6 +51,17 @@ const SECTIONS: [Section; 21] = [
     Section::BoundaryFaces,
     Section::Guess,
     Section::MeshNumbers,
+    Section::Interval,
+    Section::VoidFraction,
+    Section::DragCoefficient,
+    Section::MomentumSource,
+    Section::Velocity,
+    Section::PressureGradient,
+    Section::ViscousForce,
+    Section::Vorticity,
+    Section::FlowAnswer,
+    Section::FlowState,
+    Section::FlowStateSizes,
 ];
 
 /// A folder of this process with a good scene, one file of it replaced.
@@ -152,7 +163,8 @@ fn message(bytes: &[u8]) {
             sections.get::<[f64; 16]>(section).map(<[[f64; 16]]>::len),
         );
     }
-    let _answer = (sections.text(), Asked::read(&header, &sections).is_ok());
+    let _answer = (sections.text(), Request::read(&header, &sections).is_ok());
+    let _answer = GrainsInCells::read(&sections, 1..3).is_ok();
     if let Ok(part) = MeshPart::read(&sections) {
         let _answer = assemble(&[part]);
     }

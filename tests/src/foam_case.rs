@@ -48,6 +48,54 @@ pub fn write_case(bench: &Bench, mesh: &str, conditions: &str, gradient: &str) {
     );
 }
 
+/// Writes a case of a gas into the folder `foam`: a recipe for its mesh, conditions of U and p (over the density) by patch, kinematic viscosity [m²/s].
+pub fn write_gas_case(bench: &Bench, mesh: &str, velocity: &str, pressure: &str, viscosity: f64) {
+    for folder in ["foam/0", "foam/system", "foam/constant"] {
+        std::fs::create_dir_all(bench.path(folder)).unwrap();
+    }
+    let file = |name: &str, class: &str, text: &str| {
+        let object = name.rsplit('/').next().unwrap();
+        let head = format!("FoamFile {{ version 2.0; format ascii; class {class}; object {object}; }}\n");
+        bench.write(&format!("foam/{name}"), head + text);
+    };
+    file("system/blockMeshDict", "dictionary", mesh);
+    file(
+        "system/controlDict",
+        "dictionary",
+        "startFrom startTime; startTime 0; stopAt endTime; endTime 1e9; deltaT 1; writeControl none; writeInterval 1e9;\n",
+    );
+    file(
+        "system/fvSchemes",
+        "dictionary",
+        "ddtSchemes { default Euler; } gradSchemes { default Gauss linear; } divSchemes { default Gauss linear; div(alphaPhi,U) Gauss limitedLinearV 1; }\n\
+         laplacianSchemes { default Gauss linear corrected; } interpolationSchemes { default linear; } snGradSchemes { default corrected; }\n",
+    );
+    file(
+        "system/fvSolution",
+        "dictionary",
+        "solvers { \"p.*\" { solver GAMG; smoother GaussSeidel; tolerance 1e-10; relTol 0; } \"U.*\" { solver PBiCGStab; preconditioner DILU; tolerance 1e-12; relTol 0; } }\n\
+         PIMPLE { nOuterCorrectors 4; nCorrectors 3; nNonOrthogonalCorrectors 0; momentumPredictor yes; pRefCell 0; pRefValue 0; }\n",
+    );
+    file(
+        "constant/transportProperties",
+        "dictionary",
+        &format!("transportModel Newtonian;\nnu [0 2 -1 0 0 0 0] {viscosity:e};\n"),
+    );
+    file("constant/turbulenceProperties", "dictionary", "simulationType laminar;\n");
+    file(
+        "0/U",
+        "volVectorField",
+        &format!(
+            "dimensions [0 1 -1 0 0 0 0];\ninternalField uniform (0 0 0);\nboundaryField {{ {velocity} }}\n"
+        ),
+    );
+    file(
+        "0/p",
+        "volScalarField",
+        &format!("dimensions [0 2 -2 0 0 0 0];\ninternalField uniform 0;\nboundaryField {{ {pressure} }}\n"),
+    );
+}
+
 /// A program of OpenFOAM's, run on the case.
 ///
 /// # Panics

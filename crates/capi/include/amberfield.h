@@ -16,6 +16,18 @@ typedef enum AmberfieldStatus {
   AmberfieldStatus_Failed = 2,
 } AmberfieldStatus;
 
+// What the DEM process asks for.
+typedef enum AmberfieldQuestion {
+  // The electric field: density, boundary, guess, then reply.
+  AmberfieldQuestion_Field = 0,
+  // An interval of the flow: grains, then reply_flow.
+  AmberfieldQuestion_Flow = 1,
+  // The state of the flow: reply_state.
+  AmberfieldQuestion_State = 2,
+  // To take in a state of the flow: state, then reply_state with none.
+  AmberfieldQuestion_Restore = 3,
+} AmberfieldQuestion;
+
 // One rank of a field process.
 typedef struct AmberfieldField AmberfieldField;
 
@@ -66,19 +78,53 @@ typedef struct AmberfieldMesh {
   const double *boundary_faces;
 } AmberfieldMesh;
 
-// What the DEM process asks for.
+// A question, and the numbers that belong to it; the others are 0.
 typedef struct AmberfieldRequest {
+  // What is asked.
+  enum AmberfieldQuestion question;
   // Number of the solve.
   uint64_t solve;
+  // Time of the charges, or at which the interval begins [s].
+  double time;
   // Permittivity of the medium [F/m].
   double permittivity;
   // Relative tolerance of the linear solver.
   double tolerance;
   // 1 where the mean density is to be taken off if no face fixes the potential.
   uint64_t neutralising_background;
-  // Time of the charges [s].
-  double time;
+  // Length of the interval [s]; 0: the flow as it is.
+  double interval;
+  // Density of the gas [kg/m^3].
+  double gas_density;
+  // Viscosity of the gas [Pa s].
+  double gas_viscosity;
+  // 1 where the pressure acts on the gas alone (model B).
+  uint64_t model_b;
+  // 1 where the divergence of the viscous stress is wanted.
+  uint64_t viscous_force;
+  // 1 where the vorticity is wanted.
+  uint64_t vorticity;
 } AmberfieldRequest;
+
+// The flow at this rank's cell centres. Vectors are three doubles each.
+typedef struct AmberfieldFlow {
+  // This rank's cells.
+  uint64_t cells;
+  // Velocity of the gas [m/s].
+  const double *velocity;
+  // Gradient of the pressure without the gas's own weight [Pa/m].
+  const double *pressure_gradient;
+  // Divergence of the viscous stress [N/m^3], or NULL where it is not wanted.
+  const double *viscous_force;
+  // Vorticity [1/s], or NULL where it is not wanted.
+  const double *vorticity;
+  // Iterations of the linear solver for the pressure.
+  uint64_t iterations;
+  // What continuity misses: RMS over the cells of d(void fraction)/dt + div(void fraction * velocity), times the interval.
+  double residual;
+  // Time that it took [s].
+  double seconds;
+} AmberfieldFlow;
 
 // A face of the box.
 typedef struct AmberfieldFace {
@@ -193,6 +239,37 @@ void amberfield_field_fail(struct AmberfieldField *field, const char *reason);
 // # Safety
 // As amberfield_field_error; the handle is gone afterwards.
 void amberfield_field_close(struct AmberfieldField *field);
+
+// Copies what the grains do to the gas in this rank's cells, which feels source - drag * velocity [N/m^3]: void fraction, drag [kg/(m^3 s)], source (three doubles each).
+//
+// # Safety
+// As amberfield_field_error; the arrays have room for `cells` entries, this rank's cells.
+enum AmberfieldStatus amberfield_field_grains(struct AmberfieldField *field,
+                                              double *void_fraction,
+                                              double *drag,
+                                              double *source,
+                                              uint64_t cells);
+
+// Answers an interval of the flow.
+//
+// # Safety
+// As amberfield_field_error; the flow's arrays have the lengths that it says.
+enum AmberfieldStatus amberfield_field_reply_flow(struct AmberfieldField *field,
+                                                  const struct AmberfieldFlow *flow);
+
+// Answers a question for the state of this rank's part of the flow: `count` numbers of its own; none after a state was taken in.
+//
+// # Safety
+// As amberfield_field_error; `state` has `count` numbers.
+enum AmberfieldStatus amberfield_field_reply_state(struct AmberfieldField *field,
+                                                   const double *state,
+                                                   uint64_t count);
+
+// Copies the state that this rank is to take in: as many numbers as it answered once.
+//
+// # Safety
+// As amberfield_field_error; `state` has room for `count` numbers.
+enum AmberfieldStatus amberfield_field_state(struct AmberfieldField *field, double *state, uint64_t count);
 
 // Opens a field. Never NULL; amberfield_host_error is empty when it worked.
 //

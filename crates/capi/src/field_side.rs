@@ -1,7 +1,7 @@
 //! The field side: open the run, send the mesh, wait, take density and boundary data, answer, close.
 
 use crate::foreign::{close, guarded, slice, slice_mut};
-use amberfield_coupling::{FieldSide, MeshPart, Reply};
+use amberfield_coupling::{AskedFlow, FieldSide, MeshPart, Reply, Request};
 use std::ffi::{CStr, CString, c_char};
 
 /// How a call ended.
@@ -67,18 +67,97 @@ pub struct AmberfieldMesh {
 
 /// What the DEM process asks for.
 #[repr(C)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum AmberfieldQuestion {
+    /// The electric field: density, boundary, guess, then reply.
+    Field = 0,
+    /// An interval of the flow: grains, then reply_flow.
+    Flow = 1,
+    /// The state of the flow: reply_state.
+    State = 2,
+    /// To take in a state of the flow: state, then reply_state with none.
+    Restore = 3,
+}
+
+/// A question, and the numbers that belong to it; the others are 0.
+#[repr(C)]
 #[derive(Clone, Copy, Debug)]
 pub struct AmberfieldRequest {
+    /// What is asked.
+    pub question: AmberfieldQuestion,
     /// Number of the solve.
     pub solve: u64,
+    /// Time of the charges, or at which the interval begins [s].
+    pub time: f64,
     /// Permittivity of the medium [F/m].
     pub permittivity: f64,
     /// Relative tolerance of the linear solver.
     pub tolerance: f64,
     /// 1 where the mean density is to be taken off if no face fixes the potential.
     pub neutralising_background: u64,
-    /// Time of the charges [s].
-    pub time: f64,
+    /// Length of the interval [s]; 0: the flow as it is.
+    pub interval: f64,
+    /// Density of the gas [kg/m^3].
+    pub gas_density: f64,
+    /// Viscosity of the gas [Pa s].
+    pub gas_viscosity: f64,
+    /// 1 where the pressure acts on the gas alone (model B).
+    pub model_b: u64,
+    /// 1 where the divergence of the viscous stress is wanted.
+    pub viscous_force: u64,
+    /// 1 where the vorticity is wanted.
+    pub vorticity: u64,
+}
+
+const NO_REQUEST: AmberfieldRequest = AmberfieldRequest {
+    question: AmberfieldQuestion::Field,
+    solve: 0,
+    time: 0.0,
+    permittivity: 0.0,
+    tolerance: 0.0,
+    neutralising_background: 0,
+    interval: 0.0,
+    gas_density: 0.0,
+    gas_viscosity: 0.0,
+    model_b: 0,
+    viscous_force: 0,
+    vorticity: 0,
+};
+
+impl AmberfieldRequest {
+    fn of(request: Request) -> Self {
+        match request {
+            Request::Charges(asked) => Self {
+                solve: asked.solve,
+                time: asked.time_s,
+                permittivity: asked.permittivity,
+                tolerance: asked.tolerance,
+                neutralising_background: u64::from(asked.neutralising_background),
+                ..NO_REQUEST
+            },
+            Request::Flow(AskedFlow {
+                interval_s,
+                time_s,
+                density,
+                viscosity,
+                model_b,
+                viscous_force,
+                vorticity,
+            }) => Self {
+                question: AmberfieldQuestion::Flow,
+                time: time_s,
+                interval: interval_s,
+                gas_density: density,
+                gas_viscosity: viscosity,
+                model_b: u64::from(model_b),
+                viscous_force: u64::from(viscous_force),
+                vorticity: u64::from(vorticity),
+                ..NO_REQUEST
+            },
+            Request::State => Self { question: AmberfieldQuestion::State, ..NO_REQUEST },
+            Request::Restore => Self { question: AmberfieldQuestion::Restore, ..NO_REQUEST },
+        }
+    }
 }
 
 /// Opens a run by its name (empty: the one run of this user that waits for a solver), for a rank of so many. Never NULL; amberfield_field_error is empty when it worked.
@@ -162,13 +241,7 @@ pub unsafe extern "C" fn amberfield_field_wait(
             Ok(match side.wait()? {
                 None => AmberfieldStatus::Over,
                 Some(asked) => {
-                    *request = AmberfieldRequest {
-                        solve: asked.solve,
-                        permittivity: asked.permittivity,
-                        tolerance: asked.tolerance,
-                        neutralising_background: u64::from(asked.neutralising_background),
-                        time: asked.time_s,
-                    };
+                    *request = AmberfieldRequest::of(asked);
                     AmberfieldStatus::Ok
                 }
             })
@@ -293,7 +366,7 @@ pub unsafe extern "C" fn amberfield_field_close(field: *mut AmberfieldField) {
 ///
 /// # Safety
 /// As amberfield_field_error.
-unsafe fn with(
+pub(crate) unsafe fn with(
     field: *mut AmberfieldField,
     call: impl FnOnce(&mut FieldSide) -> Result<AmberfieldStatus, amberfield_coupling::CouplingError>,
 ) -> AmberfieldStatus {

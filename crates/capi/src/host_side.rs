@@ -261,6 +261,7 @@ fn read(settings: &AmberfieldHostSettings, case: Option<String>) -> Result<Scene
         solver: case.map(|case| SolverSettings {
             case: case.into(),
             application: None,
+            flow: false,
             start: settings.wait_for_solver == 0,
             ranks,
             timeout,

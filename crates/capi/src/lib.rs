@@ -3,15 +3,20 @@
 //!
 //! `include/amberfield.h` is made of this crate by `cargo xtask header`; a test fails when it is stale.
 
+mod field_flow;
 mod field_side;
 mod foreign;
 mod host_side;
 
+pub use field_flow::{
+    AmberfieldFlow, amberfield_field_grains, amberfield_field_reply_flow, amberfield_field_reply_state,
+    amberfield_field_state,
+};
 pub use field_side::{
-    AmberfieldField, AmberfieldMesh, AmberfieldRequest, AmberfieldStatus, amberfield_field_boundary,
-    amberfield_field_close, amberfield_field_density, amberfield_field_error, amberfield_field_fail,
-    amberfield_field_guess, amberfield_field_open, amberfield_field_reply, amberfield_field_send_mesh,
-    amberfield_field_wait,
+    AmberfieldField, AmberfieldMesh, AmberfieldQuestion, AmberfieldRequest, AmberfieldStatus,
+    amberfield_field_boundary, amberfield_field_close, amberfield_field_density, amberfield_field_error,
+    amberfield_field_fail, amberfield_field_guess, amberfield_field_open, amberfield_field_reply,
+    amberfield_field_send_mesh, amberfield_field_wait,
 };
 pub use host_side::{
     AmberfieldBoundary, AmberfieldFace, AmberfieldHost, AmberfieldHostSettings, amberfield_host_close,

@@ -12,6 +12,7 @@ fn committed_header_is_that_of_the_source() {
     let bindings = cbindgen::Builder::new()
         .with_config(config)
         .with_src(root.join("src/field_side.rs"))
+        .with_src(root.join("src/field_flow.rs"))
         .with_src(root.join("src/host_side.rs"))
         .generate()
         .expect("a good source");

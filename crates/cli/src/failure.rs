@@ -3,6 +3,7 @@
 use crate::print;
 use amberfield_dem::DemError;
 use amberfield_field::FieldError;
+use amberfield_gas::GasError;
 use amberfield_scene::SceneError;
 
 /// Bad input.
@@ -42,6 +43,7 @@ impl Failure {
     pub(crate) fn at_start(error: &DemError) -> Self {
         match error {
             DemError::Field(error) => Self::of_field(error),
+            DemError::Gas(GasError::Solver(message)) => Self::of_peer(message),
             error => Self::bad_input(error.to_string()),
         }
     }
@@ -50,6 +52,7 @@ impl Failure {
     pub(crate) fn while_running(error: &DemError) -> Self {
         match error {
             DemError::Field(error @ FieldError::Solver(_)) => Self::of_field(error),
+            DemError::Gas(GasError::Solver(message)) => Self::of_peer(message),
             error => Self::outside_tolerance(error.to_string()),
         }
     }
@@ -58,9 +61,14 @@ impl Failure {
     pub(crate) fn of_field(error: &FieldError) -> Self {
         match error {
             FieldError::Tolerance { .. } => Self::outside_tolerance(error.to_string()),
-            FieldError::Solver(message) => Self { code: EXIT_PEER, message: message.clone() },
+            FieldError::Solver(message) => Self::of_peer(message),
             error => Self::bad_input(error.to_string()),
         }
+    }
+
+    /// A process that is lost.
+    fn of_peer(message: &str) -> Self {
+        Self { code: EXIT_PEER, message: message.to_owned() }
     }
 
     /// The same failure, with more to say.

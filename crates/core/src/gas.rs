@@ -1,4 +1,4 @@
-//! What a scene says of the gas around the grains, where no flow is computed: it is the same everywhere.
+//! What a scene says of the gas around the grains.
 
 use nalgebra::Vector3;
 use serde::{Deserialize, Serialize};
@@ -38,7 +38,32 @@ impl DragLaw {
     }
 }
 
-/// A gas that the grains do not disturb.
+/// How grains and a flow act on each other (Zhou, Kuang, Chu & Yu, J. Fluid Mech. 661, 482 (2010)).
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
+pub enum GasModel {
+    /// The pressure acts on gas and grains, each by its share of the volume (set II).
+    #[default]
+    A,
+    /// The pressure acts on the gas alone, and drag is larger (set III).
+    B,
+}
+
+/// A flow that somebody computes.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
+pub struct GasFlow {
+    /// Model.
+    pub model: GasModel,
+    /// Time between exchanges [s].
+    pub interval_s: f64,
+    /// Radius over which grains are smoothed [m]; `None`: one that suits cells and grains.
+    pub smoothing_length_m: Option<f64>,
+    /// Whether the gas's viscous stress acts on grains (model A).
+    pub viscous_force: bool,
+    /// Whether grains in a shear flow are lifted.
+    pub saffman_lift: bool,
+}
+
+/// The gas around the grains.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Gas {
     /// Drag.
@@ -47,8 +72,10 @@ pub struct Gas {
     pub density_kg_m3: f64,
     /// Viscosity [Pa·s].
     pub viscosity_pa_s: f64,
-    /// Velocity [m/s].
+    /// Velocity where no flow is computed [m/s].
     pub velocity_m_s: Vector3<f64>,
     /// Whether spinning grains are lifted.
     pub magnus_lift: bool,
+    /// The flow; `None`: the gas is the same everywhere, and the grains do not disturb it.
+    pub flow: Option<GasFlow>,
 }

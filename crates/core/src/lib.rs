@@ -19,7 +19,7 @@ mod wall;
 pub use charge_transfer::ChargeTransfer;
 pub use domain::{Axis, Boundary, Domain, DomainError, Side};
 pub use field_settings::{CouplingInterval, FieldSettings, ForceLimit, Method, Tuning};
-pub use gas::{DragLaw, Gas};
+pub use gas::{DragLaw, Gas, GasFlow, GasModel};
 pub use material::{Material, MaterialId};
 pub use nalgebra::{Matrix3, Vector3};
 pub use particles::{Grain, GroupId, Particles};

@@ -59,6 +59,9 @@ pub enum CouplingError {
         /// Reason.
         why: String,
     },
+    /// The flow makes no sense.
+    #[error("{0}")]
+    Flow(String),
     /// The peer's mesh makes no sense.
     #[error(transparent)]
     Mesh(#[from] FieldError),

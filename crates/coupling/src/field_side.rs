@@ -1,18 +1,53 @@
-//! The field side: opens the run, sends its mesh, waits for charges, answers.
+//! The field side: opens the run, sends its mesh, waits for a question, answers.
 
 use crate::CouplingError;
+use crate::field_flow::AskedFlow;
 use crate::link::{Link, Message, SideOf};
 use crate::mesh_message::{MeshPart, mesh_header, own_cells};
 use crate::run_root::RunRoot;
 use amberfield_core::Vector3;
 use amberfield_field::far::{FarMesh, SmoothDensity};
-use amberfield_wire::{Header, Layout, MessageKind, Section, Sections, WireError};
+use amberfield_wire::{Block64, Header, Layout, MessageKind, Section, Sections, WireError};
+use std::mem::MaybeUninit;
+use std::ops::Range;
 use std::time::{Duration, Instant};
 
 /// How long a field process waits for the run's services, and looks for the DEM process between messages.
 const OPENING: Duration = Duration::from_secs(30);
 
 /// What the DEM process asks for.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum Request {
+    /// The far field.
+    Charges(Asked),
+    /// An interval of the flow.
+    Flow(AskedFlow),
+    /// The state of the flow.
+    State,
+    /// To take in a state of the flow.
+    Restore,
+}
+
+impl Request {
+    /// What a message asks for.
+    ///
+    /// # Errors
+    /// A message that asks for nothing, numbers that are missing or cannot be used.
+    pub fn read(header: &Header, sections: &Sections<'_>) -> Result<Self, WireError> {
+        let is = |kind: MessageKind| header.kind == kind as u32;
+        Ok(if is(MessageKind::Grains) {
+            Self::Flow(AskedFlow::read(sections)?)
+        } else if is(MessageKind::Checkpoint) {
+            Self::State
+        } else if is(MessageKind::Restore) {
+            Self::Restore
+        } else {
+            Self::Charges(Asked::read(header, sections)?)
+        })
+    }
+}
+
+/// The far field that the DEM process asks for.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Asked {
     /// Number of the solve.
@@ -132,7 +167,7 @@ impl FieldSide {
     ///
     /// # Errors
     /// A DEM process that is gone, a message that makes no sense.
-    pub fn wait(&mut self) -> Result<Option<Asked>, CouplingError> {
+    pub fn wait(&mut self) -> Result<Option<Request>, CouplingError> {
         self.asked = None;
         let message = match self.link.receive(0, Duration::MAX, || self.link.dem_is_alive()) {
             Ok(message) => message,
@@ -144,9 +179,9 @@ impl FieldSide {
                 return Err(error);
             }
         };
-        let asked = Asked::read(message.header(), &message.sections()).map_err(of_dem)?;
+        let request = Request::read(message.header(), &message.sections()).map_err(of_dem)?;
         self.asked = Some(message);
-        Ok(Some(asked))
+        Ok(Some(request))
     }
 
     /// Boundary data of this rank's faces: potentials [V] or outward slopes [V/m].
@@ -167,7 +202,7 @@ impl FieldSide {
     /// Fewer of them than there are cells.
     pub fn guess(&self) -> Result<Option<&[f64]>, CouplingError> {
         let Ok(all) = self.section::<f64>(Section::Guess) else { return Ok(None) };
-        let cells = self.first_cell..self.first_cell + self.mesh.as_ref().map_or(0, FarMesh::cell_count);
+        let cells = self.own_cells();
         let ours = cells.end;
         let error = || of_dem(WireError::Count { section: Section::Guess, theirs: all.len(), ours });
         all.get(cells).map(Some).ok_or_else(error)
@@ -269,25 +304,51 @@ impl FieldSide {
     /// # Errors
     /// A DEM process that is gone.
     pub fn reply(&mut self, reply: &Reply<'_>) -> Result<(), CouplingError> {
-        let solve = self.asked.as_ref().ok_or_else(no_request)?.header().solve;
-        let header = Header::new(MessageKind::Fields, self.link.run(), solve);
-        let layout = Layout::new(Header { rank: self.rank, ranks: self.ranks, ..header })
+        let layout = Layout::new(self.header_of_answer(MessageKind::Fields)?)
             .with::<f64>(Section::Potential, reply.potential.len())
             .with::<[f64; 3]>(Section::Field, reply.e.len())
             .with::<u64>(Section::Cells, self.cells.len())
             .with::<f64>(Section::Answer, 5);
         let answer =
             [self.charge, self.outside as f64, reply.iterations as f64, reply.residual, reply.seconds];
-        let cells = &self.cells;
-        self.link.send(&layout, 1, |payload| {
+        let cells = std::mem::take(&mut self.cells);
+        let sent = self.answer(&layout, |payload| {
             layout.section_mut::<f64>(payload, Section::Potential)?.copy_from_slice(reply.potential);
             layout.section_mut::<[f64; 3]>(payload, Section::Field)?.copy_from_slice(reply.e);
-            layout.section_mut::<u64>(payload, Section::Cells)?.copy_from_slice(cells);
+            layout.section_mut::<u64>(payload, Section::Cells)?.copy_from_slice(&cells);
             layout.section_mut::<f64>(payload, Section::Answer)?.copy_from_slice(&answer);
             Ok(())
-        })?;
+        });
+        self.cells = cells;
+        sent
+    }
+
+    /// The header of an answer to what was asked.
+    pub(crate) fn header_of_answer(&self, kind: MessageKind) -> Result<Header, CouplingError> {
+        let solve = self.asked.as_ref().ok_or_else(no_request)?.header().solve;
+        let header = Header::new(kind, self.link.run(), solve);
+        Ok(Header { rank: self.rank, ranks: self.ranks, ..header })
+    }
+
+    /// Sends the answer to what was asked.
+    pub(crate) fn answer(
+        &mut self,
+        layout: &Layout,
+        write: impl FnOnce(&mut [MaybeUninit<Block64>]) -> Result<(), WireError>,
+    ) -> Result<(), CouplingError> {
+        self.link.send(layout, 1, write)?;
         self.asked = None;
         Ok(())
+    }
+
+    /// This rank's number.
+    pub(crate) fn rank(&self) -> u32 {
+        self.rank
+    }
+
+    /// This rank's cells among all.
+    pub(crate) fn own_cells(&self) -> Range<usize> {
+        self.first_cell..self.first_cell + self.mesh.as_ref().map_or(0, FarMesh::cell_count)
     }
 
     /// Tells the DEM process why this one ends.
@@ -298,12 +359,22 @@ impl FieldSide {
         let _ = self.link.end(header, 1, reason);
     }
 
-    fn section<T: amberfield_wire::Element>(&self, section: Section) -> Result<&[T], CouplingError> {
-        self.asked.as_ref().ok_or_else(no_request)?.sections().get(section).map_err(of_dem)
+    /// A section of what was asked.
+    pub(crate) fn section<T: amberfield_wire::Element>(
+        &self,
+        section: Section,
+    ) -> Result<&[T], CouplingError> {
+        self.sections()?.get(section).map_err(of_dem)
+    }
+
+    /// All sections of what was asked.
+    pub(crate) fn sections(&self) -> Result<Sections<'_>, CouplingError> {
+        Ok(self.asked.as_ref().ok_or_else(no_request)?.sections())
     }
 }
 
-fn of_dem(error: WireError) -> CouplingError {
+/// What is wrong with a message of the DEM process.
+pub(crate) fn of_dem(error: WireError) -> CouplingError {
     CouplingError::Wire { peer: "DEM process", error }
 }
 

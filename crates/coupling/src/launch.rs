@@ -7,8 +7,9 @@ use std::path::{Path, PathBuf};
 use std::process::{Child, Command, ExitStatus, Stdio};
 use std::time::{Duration, Instant};
 
-/// The program, and the variable that names another one.
-const PROGRAM: &str = "electricFieldFoam";
+/// The program, and the one that computes the flow of a gas too.
+const PROGRAMS: [&str; 2] = ["electricFieldFoam", "amberPimpleFoam"];
+/// The variable that names where they are: the path of one of them.
 const VARIABLE: &str = "AMBERFIELD_SOLVER";
 /// What OpenFOAM's libraries want to know before they start, and where Debian's package has it.
 const PROJECT: (&str, &str) = ("WM_PROJECT_DIR", "/usr/share/openfoam");
@@ -30,7 +31,8 @@ pub(crate) struct Process {
 impl Process {
     /// Starts the solver of a case for a run.
     pub(crate) fn start(settings: &SolverSettings, run: &str) -> Result<Self, CouplingError> {
-        let program = settings.application.as_ref().map_or_else(solver_program, PathBuf::from);
+        let program =
+            settings.application.as_ref().map_or_else(|| solver_program(settings.flow), PathBuf::from);
         let failed = |why: String| CouplingError::Start { program: program.display().to_string(), why };
         let case = settings.case.canonicalize().map_err(|error| {
             failed(format!("its case {} cannot be opened: {error}", settings.case.display()))
@@ -109,14 +111,22 @@ fn last_words(log: &str) -> String {
     words.join(" ")
 }
 
-/// The solver's program: the one that the environment names, one beside this program, one that the project has built
-/// above it, or one on the path.
+/// Name of the solver's program, with or without the flow of a gas.
 #[must_use]
-pub fn solver_program() -> PathBuf {
-    if let Some(named) = std::env::var_os(VARIABLE) {
-        return named.into();
+pub fn program_name(flow: bool) -> &'static str {
+    PROGRAMS[usize::from(flow)]
+}
+
+/// The solver's program: the one that the environment names (or beside it, for the flow of a gas), one beside this program, one that the
+/// project has built above it, or one on the path.
+#[must_use]
+pub fn solver_program(flow: bool) -> PathBuf {
+    let name = program_name(flow);
+    match std::env::var_os(VARIABLE).map(PathBuf::from) {
+        Some(named) if flow => named.with_file_name(name),
+        Some(named) => named,
+        None => near_this_program(name).unwrap_or_else(|| name.into()),
     }
-    near_this_program(PROGRAM).unwrap_or_else(|| PROGRAM.into())
 }
 
 /// A file beside this program, or that the project has built above it.
@@ -154,7 +164,7 @@ fn provide_mesh(case: &Path) -> Result<(), String> {
 fn decompose(case: &Path, ranks: u32) -> Result<(), String> {
     let time_of = |path: PathBuf| path.metadata().and_then(|data| data.modified()).ok();
     let part = |rank: u32| time_of(case.join(format!("processor{rank}/constant/polyMesh/points")));
-    let newest = ["constant/polyMesh/points", "0/phiE", "system/decomposeParDict"];
+    let newest = ["constant/polyMesh/points", "0/phiE", "0/U", "0/p", "system/decomposeParDict"];
     let newest = newest.iter().filter_map(|path| time_of(case.join(path))).max();
     if part(ranks).is_none() && (0..ranks).all(|rank| part(rank) > newest) {
         return Ok(());

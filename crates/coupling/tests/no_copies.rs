@@ -52,6 +52,7 @@ fn payloads_lie_in_shared_memory_and_exchanges_allocate_nothing_of_their_size() 
     let settings = SolverSettings {
         case: "none".into(),
         application: None,
+        flow: false,
         start: false,
         ranks: 1,
         timeout: Duration::from_secs(20),

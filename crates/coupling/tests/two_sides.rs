@@ -1,7 +1,9 @@
 //! Both sides of the wire in one process: what travels is what the twin solver makes of it, and nothing is left behind.
 
 use amberfield_core::{Boundary, Domain, Vector3};
-use amberfield_coupling::{Announced, BoxSolver, FieldSide, MeshArrays, Reply, SolverSettings, stale_runs};
+use amberfield_coupling::{
+    Announced, BoxSolver, FieldSide, MeshArrays, Reply, Request, SolverSettings, stale_runs,
+};
 use amberfield_field::far::{FarField, FarRequest, FarSource, FarValues};
 use std::time::Duration;
 
@@ -17,6 +19,7 @@ fn settings(timeout_s: f64) -> SolverSettings {
     SolverSettings {
         case: "none".into(),
         application: None,
+        flow: false,
         start: false,
         ranks: 1,
         timeout: Duration::from_secs_f64(timeout_s),
@@ -31,7 +34,8 @@ fn echo(run: &str) {
     let mesh = solver.mesh();
     let mut side = FieldSide::open(run, 0, 1).expect("the run is there");
     side.send_mesh(&MeshArrays::of(mesh).part(mesh), 0).expect("a good mesh");
-    while let Some(asked) = side.wait().expect("the DEM side lives") {
+    while let Some(request) = side.wait().expect("the DEM side lives") {
+        let Request::Charges(asked) = request else { panic!("{request:?}") };
         let mut density = vec![0.0; mesh.cell_count()];
         side.density(&mut density).expect("good charges");
         assert_eq!(

@@ -1,6 +1,7 @@
 //! Errors of the DEM crate.
 
 use crate::field_crate::FieldError;
+use crate::gas_crate::GasError;
 use amberfield_core::Vector3;
 
 /// Why a scene cannot start or a run cannot go on.
@@ -86,6 +87,21 @@ pub enum DemError {
     /// The electric field failed.
     #[error(transparent)]
     Field(#[from] FieldError),
+    /// The gas's flow failed.
+    #[error(transparent)]
+    Gas(#[from] GasError),
+    /// Gas and grains exchange too rarely.
+    #[error(
+        "gas.interval_s is {interval_s:e} s, longer than the {response_s:e} s in which a grain takes up the gas's velocity, at t = {time_s:e} s; make it shorter, or set allow_unstable = true"
+    )]
+    GasInterval {
+        /// Interval [s].
+        interval_s: f64,
+        /// Shortest response time [s].
+        response_s: f64,
+        /// Simulated time [s].
+        time_s: f64,
+    },
     /// A checkpoint does not belong to the scene.
     #[error("the checkpoint does not fit the scene: {0}; resume with the scene that wrote it")]
     State(String),

@@ -1,7 +1,7 @@
 //! Limits on the time step: computed at the start, watched while running.
 
 use crate::error::DemError;
-use crate::gas_stage::GasStage;
+use crate::gas_stage::UniformGas;
 use crate::grains::Grains;
 use crate::material_pairs::PairTable;
 use amberfield_core::{Domain, Material, Particles};
@@ -13,10 +13,13 @@ pub(crate) const AUTO_FRACTION: f64 = 0.2;
 /// to 2/π of the contact time of a linear spring; a quarter leaves four steps in a collision.
 const CONTACT_TIME_FRACTION: f64 = 0.25;
 
+/// Name of the guard on the interval between exchanges with a gas: grains must not be held to one slip for longer than it lasts.
+const GAS_INTERVAL: &str = "gas interval";
+
 /// A limit on the time step.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Guard {
-    /// Name: `rayleigh`, `hertz`, `gas response`, `electric pair`, `wall image` or `plasma`.
+    /// Name: `rayleigh`, `hertz`, `gas response`, `gas interval`, `electric pair`, `wall image` or `plasma`.
     pub name: &'static str,
     /// Largest step [s]; infinite when nothing limits it at present.
     pub limit_s: f64,
@@ -31,8 +34,10 @@ pub(crate) struct Limits {
     rayleigh: f64,
     /// min over grains of contact time · speed^{1/5} [s·(m/s)^{1/5}] for two equal grains.
     hertz: f64,
-    /// Gas that slows the grains.
-    gas: Option<GasStage>,
+    /// Gas that slows the grains and does not flow.
+    gas: Option<UniformGas>,
+    /// Of a gas that flows: steps between exchanges, shortest time in which a grain's slip decays [s].
+    flow: Option<(u64, f64)>,
     /// Electric limits; `None` without charges.
     electric: Option<ElectricLimits>,
 }
@@ -53,7 +58,7 @@ impl Limits {
         particles: &Particles,
         materials: &[Material],
         table: &PairTable,
-        gas: Option<GasStage>,
+        gas: Option<UniformGas>,
     ) -> Self {
         let (mut rayleigh, mut hertz) = (f64::INFINITY, f64::INFINITY);
         for i in 0..particles.len() {
@@ -65,7 +70,7 @@ impl Limits {
             let mass = particles.mass(i);
             hertz = hertz.min(hertz_mindlin::contact_time(young, 0.5 * radius, 0.5 * mass, 1.0));
         }
-        Self { rayleigh, hertz, gas, electric: None }
+        Self { rayleigh, hertz, gas, flow: None, electric: None }
     }
 
     /// Takes the plasma limit of a new evaluation of the field.
@@ -73,6 +78,11 @@ impl Limits {
         if let Some(electric) = &mut self.electric {
             electric.plasma = plasma;
         }
+    }
+
+    /// Takes the limits of a gas that flows.
+    pub(crate) fn set_flow(&mut self, flow: (u64, f64)) {
+        self.flow = Some(flow);
     }
 
     pub(crate) fn set_electric(&mut self, electric: ElectricLimits) {
@@ -86,9 +96,13 @@ impl Limits {
             .electric
             .map(|e| [("electric pair", e.pair), ("wall image", e.wall_image), ("plasma", e.plasma)]);
         let gas = self.gas.map(|gas| ("gas response", gas.limit(speed)));
+        let flow = self
+            .flow
+            .map(|(steps, response)| [("gas response", response), (GAS_INTERVAL, response / steps as f64)]);
         [("rayleigh", self.rayleigh), ("hertz", hertz)]
             .into_iter()
             .chain(gas)
+            .chain(flow.into_iter().flatten())
             .chain(electric.into_iter().flatten())
             .map(move |(name, limit_s)| Guard { name, limit_s, margin: limit_s / step })
     }
@@ -104,6 +118,9 @@ impl Limits {
         let tightest = self.guards(step, speed).min_by(|a, b| a.limit_s.total_cmp(&b.limit_s))?;
         // `!(a <= b)`: a limit that is not a number is broken too.
         let holds = step <= tightest.limit_s;
+        if let (false, GAS_INTERVAL, Some((steps, response_s))) = (holds, tightest.name, self.flow) {
+            return Some(DemError::GasInterval { interval_s: steps as f64 * step, response_s, time_s });
+        }
         (!holds).then_some(DemError::Unstable {
             guard: tightest.name,
             step_s: step,

@@ -34,11 +34,16 @@ use amberfield_field as field_crate;
 #[cfg(not(feature = "field"))]
 use without_field as field_crate;
 
+#[cfg(feature = "field")]
+use amberfield_gas as gas_crate;
+#[cfg(not(feature = "field"))]
+use without_field::gas as gas_crate;
+
 pub use charging::{Facet, Ledger};
 pub use energy::{ElectricEnergy, Energies};
 pub use error::DemError;
 pub use field_stage::{Intervals, Limited};
 pub use guards::Guard;
-pub use setup::{FieldStageSetup, Setup};
+pub use setup::{FieldStageSetup, GasSetup, Setup};
 pub use simulation::{Deepest, Simulation};
 pub use state::State;

@@ -2,6 +2,7 @@
 
 use crate::field_crate::Choice;
 use crate::field_crate::far::Connect;
+use crate::gas_crate::ConnectFlow;
 use amberfield_core::{ChargeTransfer, Domain, FieldSettings, Gas, Material, Particles, TimeSettings, Wall};
 
 /// The electric field of a scene.
@@ -29,6 +30,22 @@ impl FieldStageSetup {
     }
 }
 
+/// The gas of a scene.
+#[derive(Clone, Debug)]
+pub struct GasSetup {
+    /// What the scene says of it.
+    pub gas: Gas,
+    /// Who computes its flow; `None`: nobody.
+    pub solver: Option<ConnectFlow>,
+}
+
+impl From<Gas> for GasSetup {
+    /// The same everywhere.
+    fn from(gas: Gas) -> Self {
+        Self { gas, solver: None }
+    }
+}
+
 /// A scene, validated by `Simulation::new`.
 #[derive(Clone, Debug)]
 pub struct Setup {
@@ -43,7 +60,7 @@ pub struct Setup {
     /// Step, gravity, skin and rules of the run.
     pub time: TimeSettings,
     /// Gas around the grains; `None`: none.
-    pub gas: Option<Gas>,
+    pub gas: Option<GasSetup>,
     /// Electric field; `None`: plain DEM.
     pub field: Option<FieldStageSetup>,
 }

@@ -75,7 +75,9 @@ impl Simulation {
     pub fn step(&mut self) -> Result<(), DemError> {
         self.watch.start();
         let may_be_lost = self.field.as_ref().is_some_and(|field| field.may_be_lost(self.step_s, self.speed));
-        self.rescued = may_be_lost.then(|| self.state());
+        // Only its solver knows the state of a gas that flows.
+        let flows = self.gas.as_ref().is_some_and(|gas| gas.flowing().is_some());
+        self.rescued = (may_be_lost && !flows).then(|| self.state());
         self.step_index += 1;
         let motion =
             drift(&mut self.grains, self.time.gravity_m_s2, self.step_s, &self.bounds, &mut self.motion);
@@ -118,10 +120,7 @@ impl Simulation {
             walls.forces(&self.grains, &self.table, self.features, step, force, torque);
             self.watch.lap(Stage::Walls);
         }
-        if let Some(gas) = &self.gas {
-            gas.add_forces(&self.grains, &mut self.new_force);
-            self.watch.lap(Stage::Gas);
-        }
+        let exchanged = self.gas_forces(step)?;
         self.charge_contacts(step);
         // The forces at the start come with a step of zero: the field was evaluated just before.
         let speed = self.speed;
@@ -138,7 +137,22 @@ impl Simulation {
             self.watch.lap(Stage::Field);
         }
         // Charges and pairs are looked at when lists are rebuilt; density and speeds are new here.
-        if due { self.watch_limits() } else { Ok(()) }
+        if due || exchanged { self.watch_limits() } else { Ok(()) }
+    }
+
+    /// Gas forces into `new_force`, after an exchange with a gas that flows where one is due; whether there was one.
+    fn gas_forces(&mut self, step: f64) -> Result<bool, DemError> {
+        let Some(gas) = &mut self.gas else { return Ok(false) };
+        let number = self.step_index;
+        let flowing = gas.flowing_mut().filter(|flowing| flowing.is_due(number));
+        let exchanged = flowing.is_some();
+        if let Some(flowing) = flowing {
+            flowing.exchange(&self.domain, &self.grains, (number, self.step_s))?;
+            self.limits.set_flow(flowing.limits());
+        }
+        gas.add_forces(&self.grains, step, &mut self.new_force);
+        self.watch.lap(Stage::Gas);
+        Ok(exchanged)
     }
 
     /// Whether a grain may have moved by half the skin since the lists were built. The travel is only a
@@ -173,6 +187,9 @@ impl Simulation {
         self.grains.reorder(&self.order);
         if let Some(field) = &mut self.field {
             field.reorder(&self.order);
+        }
+        if let Some(gas) = self.gas.as_mut().and_then(GasStage::flowing_mut) {
+            gas.reorder(&self.order);
         }
         self.neighbours.build(&self.domain, &self.grains, &self.order);
         if let Some(walls) = &mut self.walls {
@@ -222,6 +239,9 @@ impl Simulation {
         self.grains.reorder(&keep);
         if let Some(field) = &mut self.field {
             field.reorder(&keep);
+        }
+        if let Some(gas) = self.gas.as_mut().and_then(GasStage::flowing_mut) {
+            gas.reorder(&keep);
         }
         self.resize_scratch();
         self.neighbours.build(&self.domain, &self.grains, &keep);

@@ -3,6 +3,7 @@
 use crate::charging::{Facets, Ledger, Memory};
 use crate::field_crate::Choice;
 use crate::field_crate::far::FarState;
+use crate::gas_crate::ExchangeState;
 use amberfield_core::Vector3;
 use serde::{Deserialize, Serialize};
 
@@ -110,6 +111,8 @@ pub struct State {
     pub(crate) walls: Vec<WallHistory>,
     pub(crate) field: Option<FieldState>,
     pub(crate) charging: Option<ChargingState>,
+    /// Of a gas that flows; not in a [`crate::Simulation::state`].
+    pub(crate) gas: Option<ExchangeState>,
 }
 
 impl State {

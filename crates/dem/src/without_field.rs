@@ -69,6 +69,81 @@ pub(crate) mod far {
     }
 }
 
+/// A gas that flows.
+pub(crate) mod gas {
+    use crate::error::DemError;
+    use crate::grains::Grains;
+    use amberfield_core::{Domain, Gas, GasFlow, Particles, Vector3};
+    use serde::{Deserialize, Serialize};
+
+    /// Why there is no flow.
+    #[derive(Clone, Debug, PartialEq, thiserror::Error)]
+    #[error("this build has no gas that flows; build amberfield-dem with its feature `field`")]
+    pub struct GasError;
+
+    /// How a solver is reached.
+    #[derive(Clone, Debug)]
+    pub enum ConnectFlow {}
+
+    /// State of an exchange.
+    #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+    pub enum ExchangeState {}
+
+    impl ExchangeState {
+        pub(crate) fn fits(&self, _: usize) -> bool {
+            match *self {}
+        }
+    }
+
+    /// A gas that flows.
+    #[derive(Debug)]
+    pub(crate) enum FlowingGas {}
+
+    impl FlowingGas {
+        pub(crate) fn new(
+            _: (Gas, GasFlow),
+            solver: &ConnectFlow,
+            _: Vector3<f64>,
+            _: &Particles,
+            _: Option<&ExchangeState>,
+        ) -> Result<Self, DemError> {
+            match *solver {}
+        }
+
+        pub(crate) fn set_step(&mut self, _: f64) {
+            match *self {}
+        }
+
+        pub(crate) fn about(&self) -> String {
+            match *self {}
+        }
+
+        pub(crate) fn limits(&self) -> (u64, f64) {
+            match *self {}
+        }
+
+        pub(crate) fn is_due(&self, _: u64) -> bool {
+            match *self {}
+        }
+
+        pub(crate) fn exchange(&mut self, _: &Domain, _: &Grains, _: (u64, f64)) -> Result<(), DemError> {
+            match *self {}
+        }
+
+        pub(crate) fn add_forces(&mut self, _: &Grains, _: f64, _: &mut [Vector3<f64>]) {
+            match *self {}
+        }
+
+        pub(crate) fn reorder(&mut self, _: &[u32]) {
+            match *self {}
+        }
+
+        pub(crate) fn state(&mut self) -> Result<ExchangeState, DemError> {
+            match *self {}
+        }
+    }
+}
+
 /// A field.
 #[derive(Debug)]
 pub enum ElectricField {}

@@ -128,13 +128,17 @@ fn everything() -> Setup {
     scene.walls = vec![mesh_floor(20.0 * RADIUS, 9)];
     scene.time.gravity_m_s2 = Vector3::new(200.0, 0.0, -9.81);
     scene.time.on_exit = OnExit::Delete;
-    scene.gas = Some(Gas {
-        drag: DragLaw::SchillerNaumann,
-        density_kg_m3: 1.2,
-        viscosity_pa_s: 1.8e-5,
-        velocity_m_s: Vector3::new(0.0, 1.0, 0.0),
-        magnus_lift: true,
-    });
+    scene.gas = Some(
+        Gas {
+            drag: DragLaw::SchillerNaumann,
+            density_kg_m3: 1.2,
+            viscosity_pa_s: 1.8e-5,
+            velocity_m_s: Vector3::new(0.0, 1.0, 0.0),
+            magnus_lift: true,
+            flow: None,
+        }
+        .into(),
+    );
     let settings = FieldSettings {
         method: Method::Cutoff,
         cutoff_radius_m: Some(3.0 * RADIUS),

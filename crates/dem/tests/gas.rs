@@ -18,6 +18,7 @@ const AIR: Gas = Gas {
     viscosity_pa_s: 1.8e-5,
     velocity_m_s: Vector3::new(0.0, 0.0, 0.0),
     magnus_lift: false,
+    flow: None,
 };
 const GRAVITY: f64 = 9.81;
 
@@ -26,7 +27,7 @@ fn alone(radius: f64, gas: Gas, step_s: f64) -> Setup {
     one.radius = radius;
     let mut scene = setup(vec![one], material(0.9, 0.0, 0.0), step_s);
     scene.domain = domain(1.0, Boundary::Periodic);
-    scene.gas = Some(gas);
+    scene.gas = Some(gas.into());
     scene.time.allow_unstable = true;
     scene
 }

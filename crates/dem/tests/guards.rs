@@ -115,13 +115,17 @@ fn gas_guard_is_the_edge_for_a_grain_that_is_slowed() {
     scene.field = None;
     // It comes to rest within much less than the growth that is none.
     scene.particles.velocity[0].x = 1e-10;
-    scene.gas = Some(Gas {
-        drag: DragLaw::Stokes,
-        density_kg_m3: 1.2,
-        viscosity_pa_s: 1.8e-5,
-        velocity_m_s: Vector3::zeros(),
-        magnus_lift: false,
-    });
+    scene.gas = Some(
+        Gas {
+            drag: DragLaw::Stokes,
+            density_kg_m3: 1.2,
+            viscosity_pa_s: 1.8e-5,
+            velocity_m_s: Vector3::zeros(),
+            magnus_lift: false,
+            flow: None,
+        }
+        .into(),
+    );
     let edge = edge_over("gas response", &scene);
     assert!((edge - 1.0).abs() < AGREEMENT, "{edge}");
 }

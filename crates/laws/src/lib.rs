@@ -9,6 +9,7 @@ pub mod contact_area;
 pub mod coulomb_friction;
 pub mod di_felice_drag;
 pub mod dielectric_breakdown;
+pub mod drag;
 pub mod force_limit;
 pub mod gidaspow_drag;
 pub mod hertz_mindlin;

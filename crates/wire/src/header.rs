@@ -5,7 +5,7 @@ use iceoryx2::prelude::ZeroCopySend;
 use std::mem::{align_of, offset_of, size_of};
 
 /// Raised with every change of a message.
-pub const PROTOCOL_VERSION: u32 = 2;
+pub const PROTOCOL_VERSION: u32 = 3;
 /// Sections of a message at most.
 pub(crate) const MOST_SECTIONS: usize = 20;
 
@@ -29,18 +29,24 @@ pub enum MessageKind {
     Charges = 2,
     /// Field to DEM: the answer.
     Fields = 3,
-    /// DEM to field: save your state under the given name.
+    /// DEM to field: send the state of the flow.
     Checkpoint = 4,
-    /// Field to DEM: saved.
-    Saved = 5,
+    /// Field to DEM: the state of a rank's part of the flow; empty after one was taken in.
+    State = 5,
     /// Either way: this was the last message; a text says why.
     End = 6,
+    /// DEM to field: void fraction and exchange of momentum of one interval of the flow.
+    Grains = 7,
+    /// Field to DEM: the flow at its end.
+    Flow = 8,
+    /// DEM to field: take in the state of the flow.
+    Restore = 9,
 }
 
 impl MessageKind {
     fn of(number: u32) -> Result<Self, WireError> {
-        use MessageKind::{Charges, Checkpoint, End, Fields, Mesh, Saved};
-        [Mesh, Charges, Fields, Checkpoint, Saved, End]
+        use MessageKind::{Charges, Checkpoint, End, Fields, Flow, Grains, Mesh, Restore, State};
+        [Mesh, Charges, Fields, Checkpoint, State, End, Grains, Flow, Restore]
             .into_iter()
             .find(|kind| *kind as u32 == number)
             .ok_or(WireError::Kind(number))
@@ -95,6 +101,29 @@ pub enum Section {
     BoundaryFaces = 19,
     /// Potential at the cells' centres of all ranks to start the linear solver from [V]; absent: from where it is.
     Guess = 21,
+    /// Numbers of an interval of the flow: its length [s] (0: nothing moves), its start [s], density [kg/m³] and viscosity [Pa·s] of the gas, 0 for model A and 1 for model
+    /// B, 1 where ∇·τ is wanted, 1 where the vorticity is.
+    Interval = 22,
+    /// ε by cell of all ranks.
+    VoidFraction = 23,
+    /// K by cell of all ranks [kg/(m³ s)]: the gas feels S − K u.
+    DragCoefficient = 24,
+    /// S by cell of all ranks [N/m³].
+    MomentumSource = 25,
+    /// u at the cells' centres [m/s].
+    Velocity = 26,
+    /// ∇p at the cells' centres [Pa/m], without the gas's own weight.
+    PressureGradient = 27,
+    /// ∇·τ at the cells' centres [N/m³]; empty unless wanted.
+    ViscousForce = 28,
+    /// ∇ × u at the cells' centres [1/s]; empty unless wanted.
+    Vorticity = 29,
+    /// Numbers of an interval's answer: iterations for p, what continuity misses (RMS of ∂ε/∂t + ∇·(ε u), times the interval), time of the solver [s].
+    FlowAnswer = 30,
+    /// State of the flow: numbers of the solver's own; all ranks', one after the other, when they are sent back.
+    FlowState = 31,
+    /// How many of them each rank has (`u64`).
+    FlowStateSizes = 32,
     /// Numbers of a mesh: lower and upper corner [m], 1 for each periodic axis, first cell of this rank, cells of all ranks.
     MeshNumbers = 20,
 }

@@ -12,7 +12,16 @@ use std::process::Command;
 /// What is installed from Debian where it is missing; one of the examples is a test.
 const PACKAGES: [&str; 6] = ["openfoam", "openfoam-examples", "g++", "make", "cmake", "bzip2"];
 /// Folders of the headers that the solver includes.
-const HEADERS: [&str; 4] = ["finiteVolume", "meshTools", "OpenFOAM", "OSspecific/POSIX"];
+const HEADERS: [&str; 8] = [
+    "finiteVolume",
+    "meshTools",
+    "OpenFOAM",
+    "OSspecific/POSIX",
+    "transportModels/incompressible",
+    "TurbulenceModels/turbulenceModels",
+    "TurbulenceModels/incompressible",
+    "TurbulenceModels/phaseIncompressible",
+];
 /// What running anything linked to OpenFOAM wants to know, and where Debian has it.
 const PROJECT: (&str, &str) = ("WM_PROJECT_DIR", "/usr/share/openfoam");
 
@@ -51,7 +60,8 @@ fn provide_headers(root: &Path) -> Result<PathBuf> {
     let folder = root.join("target/openfoam").join(&version);
     let source = folder.join("src");
     let complete = folder.join("complete");
-    if complete.is_file() {
+    let linked = |header: &&str| source.join(header).join("lnInclude").is_dir();
+    if complete.is_file() && HEADERS.iter().all(linked) {
         return Ok(source);
     }
     println!("fetching OpenFOAM's headers (source package {version}) into target/openfoam");

@@ -7,6 +7,9 @@ use std::path::Path;
 
 /// Crates with unsafe code.
 const CRATES: [&str; 4] = ["amberfield-wire", "amberfield-field", "amberfield-coupling", "amberfield-capi"];
+/// Tests over OpenFOAM that the sanitizer cannot be in: a solver that is not built with it loads our library, another build of the solver is
+/// meant, or memory is looked at, which the sanitizer does not give back.
+const NOT_THESE: [&str; 3] = ["function_object", "of_a_later_version", "a_long_run_holds"];
 /// The sanitizer needs the target named, so that build scripts do without it.
 const TARGET: &str = "x86_64-unknown-linux-gnu";
 
@@ -21,7 +24,8 @@ pub(crate) fn run(root: &Path) -> Result<()> {
     debian::provide(&["libasan8"])?;
     let flags = "-DCMAKE_CXX_FLAGS=-fsanitize=address -fno-omit-frame-pointer -g";
     let build = openfoam::build(root, "build-sanitize", &[flags])?;
-    let mut tests = cargo(root, &["test", "-p", "amberfield-tests", "--test", "commands", "--", "openfoam"]);
+    let mut tests = cargo(root, &["test", "-p", "amberfield-tests", "--test", "commands", "--", "openfoam::"]);
+    tests.args(NOT_THESE.iter().flat_map(|name| ["--skip", name]));
     tests.env("AMBERFIELD_SOLVER", build.join("electricFieldFoam"));
     // OpenFOAM keeps what it made until the process ends.
     execute(tests.env("ASAN_OPTIONS", "detect_leaks=0"))

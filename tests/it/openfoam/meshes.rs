@@ -31,6 +31,7 @@ fn solver(bench: &Bench) -> RemoteSolver {
     let settings = SolverSettings {
         case: bench.path("foam"),
         application: None,
+        flow: false,
         start: true,
         ranks: 1,
         timeout: Duration::from_secs(60),

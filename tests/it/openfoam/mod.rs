@@ -4,6 +4,7 @@ mod charging;
 mod failures;
 mod fields;
 mod function_object;
+mod gas;
 mod meshes;
 mod sharing;
 

@@ -65,7 +65,7 @@ pub(crate) fn measure(context: &Context, root: &Path) -> Result<()> {
     add("exchange", full);
     add("the same bytes through a Unix socket", socket(bytes)?);
 
-    if solver_program().is_file() {
+    if solver_program(false).is_file() {
         for path in &PATHS {
             over_openfoam(&cloud, (edge, cells_along), path, root, &mut add)?;
         }
@@ -82,6 +82,7 @@ fn settings_of(case: &Path, start: bool) -> SolverSettings {
     SolverSettings {
         case: case.to_owned(),
         application: None,
+        flow: false,
         start,
         ranks: 1,
         timeout: Duration::from_secs(120),

@@ -50,7 +50,8 @@ fn openfoam() -> Option<PathBuf> {
 /// Which program is the field solver, and runs in shared memory whose DEM process went away.
 #[cfg(feature = "coupling")]
 fn solver(clean: bool) {
-    line(format_args!("field solver: {}", amberfield_coupling::solver_program().display()));
+    line(format_args!("field solver: {}", amberfield_coupling::solver_program(false).display()));
+    line(format_args!("gas solver: {}", amberfield_coupling::solver_program(true).display()));
     let stale = amberfield_coupling::stale_runs(clean);
     if stale.is_empty() {
         line(format_args!("stale shared memory: none"));

@@ -3,7 +3,7 @@
 use crate::arguments::ExplainOptions;
 use crate::failure::Failure;
 use crate::print::line;
-use crate::run::{Charges, charges_of, connect_solver, domain_of, field_of, scene_name, setup_of};
+use crate::run::{Charges, Solver, charges_of, connect_solver, domain_of, field_of, scene_name, setup_of};
 use crate::{machine, plan_text};
 use amberfield_core::{Axis, Boundary, Domain, Side};
 use amberfield_dem::Simulation;
@@ -26,7 +26,7 @@ pub(crate) fn explain(options: &ExplainOptions) -> Result<(), Failure> {
         line(format_args!("warning: {warning}"));
     }
     let solver = connect_solver(&mut scene)?;
-    if scene.time.is_some() { explain_run(&scene, solver) } else { explain_field(&scene, solver) }
+    if scene.time.is_some() { explain_run(&scene, solver) } else { explain_field(&scene, solver.field) }
 }
 
 fn print_scene(name: &str, scene: &Scene) {
@@ -76,7 +76,7 @@ fn print_settings(field: &ElectricFieldSettings) {
     }
 }
 
-fn explain_run(scene: &Scene, solver: Option<Connect>) -> Result<(), Failure> {
+fn explain_run(scene: &Scene, solver: Solver) -> Result<(), Failure> {
     let simulation =
         Simulation::new(setup_of(scene, None, solver)?).map_err(|error| Failure::at_start(&error))?;
     for text in plan_text::lines(simulation.plan()) {

@@ -21,7 +21,7 @@ pub(crate) fn field(options: &FieldOptions) -> Result<(), Failure> {
     for warning in &scene.warnings {
         tracing::warn!("{warning}");
     }
-    let solver = connect_solver(&mut scene)?;
+    let solver = connect_solver(&mut scene)?.field;
     let settings = scene.electric_field.as_ref().expect("the purpose needs it");
     let domain = domain_of(&scene)?;
     let Charges { index: indices, position: positions, charge: charges } = charges_of(&scene);

@@ -5,8 +5,8 @@ use crate::failure::Failure;
 use crate::logging::Log;
 use crate::progress::Progress;
 use crate::run::{
-    Clock, Ending, Existing, RunFolder, Saved, Session, checkpoints, connect_solver, histogram, scene_name,
-    setup_of,
+    Clock, Ending, Existing, RunFolder, Saved, Session, Solver, checkpoints, connect_solver, histogram,
+    scene_name, setup_of,
 };
 use crate::{interrupt, plan_text, print};
 use amberfield_dem::Simulation;
@@ -34,7 +34,7 @@ pub(crate) fn run(options: &RunOptions, common: &Common, log: &Log) -> Result<()
     let solver = match &saved {
         Some(saved) if scene.solver.is_some() && saved.state.has_lost_solver() => {
             tracing::warn!("the field solver was lost before this checkpoint; the internal grid goes on");
-            None
+            Solver::default()
         }
         _ => connect_solver(&mut scene)?,
     };

@@ -16,6 +16,6 @@ pub(crate) use folder::{Existing, RunFolder, checkpoints, is_stale, remove_lefto
 pub(crate) use name::scene_name;
 pub(crate) use record::Clock;
 pub(crate) use session::{Saved, Session};
-pub(crate) use setup::{Charges, charges_of, domain_of, field_of, parameters, setup_of};
+pub(crate) use setup::{Charges, Solver, charges_of, domain_of, field_of, parameters, setup_of};
 pub(crate) use solver::connect_solver;
 pub(crate) use summary::Ending;

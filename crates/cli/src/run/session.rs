@@ -156,7 +156,8 @@ impl<'a> Session<'a> {
     }
 
     fn checkpoint(&mut self) -> Result<(), Failure> {
-        self.save(self.simulation.state())
+        let state = self.simulation.checkpoint().map_err(|error| Failure::while_running(&error))?;
+        self.save(state)
     }
 
     fn save(&mut self, state: State) -> Result<(), Failure> {

@@ -2,9 +2,10 @@
 
 use crate::failure::Failure;
 use amberfield_core::{ChargeTransfer, Domain, FieldSettings, Vector3};
-use amberfield_dem::{FieldStageSetup, Setup};
+use amberfield_dem::{FieldStageSetup, GasSetup, Setup};
 use amberfield_field::far::Connect;
 use amberfield_field::{Choice, ElectricField};
+use amberfield_gas::ConnectFlow;
 use amberfield_scene::{Scene, SolverLoss};
 use serde_json::{Map, Value, json};
 
@@ -62,18 +63,23 @@ pub(crate) fn parameters(choice: &Choice) -> Value {
     }
 }
 
+/// How the scene's solver is reached; for nothing, without one.
+#[derive(Clone, Debug, Default)]
+pub(crate) struct Solver {
+    /// For the electric field.
+    pub(crate) field: Option<Connect>,
+    /// For the flow of the gas.
+    pub(crate) flow: Option<ConnectFlow>,
+}
+
 /// The simulation that a scene asks for, with its field solver; `choice` are field parameters chosen earlier.
-pub(crate) fn setup_of(
-    scene: &Scene,
-    choice: Option<Choice>,
-    solver: Option<Connect>,
-) -> Result<Setup, Failure> {
+pub(crate) fn setup_of(scene: &Scene, choice: Option<Choice>, solver: Solver) -> Result<Setup, Failure> {
     let time = scene.time.clone().ok_or_else(|| Failure::bad_input("the scene has no [time]; add it"))?;
     let field = scene.electric_field.as_ref().map(|field| FieldStageSetup {
         settings: field.field.clone(),
         member: members(scene),
         choice,
-        solver,
+        solver: solver.field,
         transfer: transfer_of(scene),
         fallback: falls_back(scene),
     });
@@ -83,7 +89,7 @@ pub(crate) fn setup_of(
         particles: scene.particles.clone(),
         walls: scene.walls.clone(),
         time,
-        gas: scene.gas,
+        gas: scene.gas.map(|gas| GasSetup { gas, solver: solver.flow }),
         field,
     })
 }

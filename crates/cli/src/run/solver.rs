@@ -1,25 +1,32 @@
 //! The scene's field solver: started before anything else, because its mesh may bring the box.
 
+use super::setup::Solver;
 use crate::failure::Failure;
 use amberfield_core::{Axis, Domain, Method};
-use amberfield_coupling::{Announced, CouplingError, PatientSolver, RemoteSolver, SolverSettings};
+use amberfield_coupling::{
+    Announced, CouplingError, PatientSolver, RemoteSolver, SolverSettings, program_name,
+};
 use amberfield_field::far::{Connect, FarField};
-use amberfield_scene::{Scene, SolverLoss};
-use std::sync::Mutex;
+use amberfield_gas::{ConnectFlow, FlowSolver, GasError};
+use amberfield_scene::{ElectricFieldSettings, Scene, SolverLoss, SolverSettings as Asked};
+use std::sync::{Mutex, PoisonError};
 use std::time::Duration;
 
 /// Relative tolerance of the linear solver over the field's, unless the scene says it.
 const FAR_TOLERANCE: f64 = 1e-4;
 
 /// Reaches the scene's field solver, if it has one; the scene's box is the mesh's where it has none of its own.
-pub(crate) fn connect_solver(scene: &mut Scene) -> Result<Option<Connect>, Failure> {
-    let (Some(solver), Some(field)) = (&scene.solver, &scene.electric_field) else { return Ok(None) };
-    refuse(field.field.method)?;
-    if field.field.overlap && (field.field.method != Method::P3m || solver.on_solver_loss == SolverLoss::Wait)
-    {
-        return Err(Failure::bad_input(
-            "electric_field.overlap = true needs method \"p3m\" and solver.on_solver_loss \"stop\" or \"fallback\"; change one of them",
-        ));
+pub(crate) fn connect_solver(scene: &mut Scene) -> Result<Solver, Failure> {
+    let flows = scene.gas.is_some_and(|gas| gas.flow.is_some());
+    let Some(solver) = &scene.solver else { return Ok(Solver::default()) };
+    if scene.electric_field.is_none() && !flows {
+        return Ok(Solver::default());
+    }
+    if let Some(field) = &scene.electric_field {
+        refuse(field, solver)?;
+    }
+    if flows {
+        refuse_with_gas(solver)?;
     }
     if solver.on_solver_loss == SolverLoss::Fallback && scene.domain.is_none() {
         return Err(Failure::bad_input(
@@ -27,14 +34,18 @@ pub(crate) fn connect_solver(scene: &mut Scene) -> Result<Option<Connect>, Failu
         ));
     }
     // What it prints stays in its case's folder, as is usual.
-    let program = solver.application.as_deref().unwrap_or("electricFieldFoam");
+    let program = solver.application.as_deref().unwrap_or(program_name(flows));
+    let asked = scene.electric_field.as_ref();
+    let far_tolerance =
+        |field: &ElectricFieldSettings| field.far_tolerance.unwrap_or(FAR_TOLERANCE * field.field.tolerance);
     let settings = SolverSettings {
         case: solver.openfoam_case.clone(),
         application: solver.application.clone(),
+        flow: flows,
         start: solver.start,
         ranks: solver.ranks,
         timeout: Duration::from_secs_f64(solver.timeout_s),
-        far_tolerance: field.far_tolerance.unwrap_or(FAR_TOLERANCE * field.field.tolerance),
+        far_tolerance: asked.map_or(FAR_TOLERANCE, far_tolerance),
         log: Some(solver.openfoam_case.join(format!("log.{program}"))),
     };
     let connected = connect(&settings).map_err(|error| Failure::of_field(&error.into()))?;
@@ -45,20 +56,34 @@ pub(crate) fn connect_solver(scene: &mut Scene) -> Result<Option<Connect>, Failu
         Some(domain) => agree(domain, mesh.domain())?,
     }
     let waits = solver.on_solver_loss == SolverLoss::Wait;
+    let flow = flows.then(|| {
+        let flow = Mutex::new(Some(connected.flow()));
+        ConnectFlow::new(move || match taken(&flow) {
+            Some(flow) => Ok(Box::new(flow) as Box<dyn FlowSolver>),
+            None => Err(GasError::Solver("the solver of the flow was lost".to_owned())),
+        })
+    });
     // The one that is there first, then new ones.
     let first = Mutex::new(Some(connected));
-    Ok(Some(Connect::new(move || {
-        let waiting = first.lock().unwrap_or_else(|poisoned| poisoned.into_inner()).take();
-        let solver = match waiting {
-            Some(solver) => solver,
-            None => connect(&settings)?,
-        };
-        Ok(if waits {
-            Box::new(PatientSolver::new(settings.clone(), solver))
-        } else {
-            Box::new(solver) as Box<dyn FarField>
+    let field = asked.is_some().then(|| {
+        Connect::new(move || {
+            let solver = match taken(&first) {
+                Some(solver) => solver,
+                None => connect(&settings)?,
+            };
+            Ok(if waits {
+                Box::new(PatientSolver::new(settings.clone(), solver))
+            } else {
+                Box::new(solver) as Box<dyn FarField>
+            })
         })
-    })))
+    });
+    Ok(Solver { field, flow })
+}
+
+/// What is there once.
+fn taken<T>(once: &Mutex<Option<T>>) -> Option<T> {
+    once.lock().unwrap_or_else(PoisonError::into_inner).take()
 }
 
 fn connect(settings: &SolverSettings) -> Result<RemoteSolver, CouplingError> {
@@ -66,10 +91,31 @@ fn connect(settings: &SolverSettings) -> Result<RemoteSolver, CouplingError> {
 }
 
 /// Refuses what is not built over a solver's mesh.
-fn refuse(method: Method) -> Result<(), Failure> {
+fn refuse(field: &ElectricFieldSettings, solver: &Asked) -> Result<(), Failure> {
+    let method = field.field.method;
     if !matches!(method, Method::P3m | Method::Kolehmainen) {
         return Err(Failure::bad_input(format!(
             "this version has no method {method} over a field solver's mesh; set electric_field.method = \"p3m\" or \"kolehmainen\", or remove [solver]"
+        )));
+    }
+    if field.field.overlap && (method != Method::P3m || solver.on_solver_loss == SolverLoss::Wait) {
+        return Err(Failure::bad_input(
+            "electric_field.overlap = true needs method \"p3m\" and solver.on_solver_loss \"stop\" or \"fallback\"; change one of them",
+        ));
+    }
+    Ok(())
+}
+
+/// Refuses what a solver with the flow of a gas cannot be.
+fn refuse_with_gas(solver: &Asked) -> Result<(), Failure> {
+    if solver.on_solver_loss != SolverLoss::Stop {
+        return Err(Failure::bad_input(
+            "gas.flow = \"solver\" needs solver.on_solver_loss = \"stop\": the state of the flow is lost with its solver; a checkpoint has it",
+        ));
+    }
+    if let Some(application) = &solver.application {
+        return Err(Failure::bad_input(format!(
+            "solver.application = \"{application}\" cannot compute the flow between grains; leave it out with gas.flow = \"solver\""
         )));
     }
     Ok(())

@@ -45,8 +45,7 @@ pub(super) fn plan(
         "nothing can turn a grain",
     );
     plan.decide(periodic, "periodic images", "an axis is periodic".to_owned(), "no axis is periodic");
-    let drag = gas.map_or("", GasStage::drag);
-    plan.decide(gas.is_some(), "gas", format!("drag ({drag}) and buoyancy of every grain alone"), "no [gas]");
+    plan.decide(gas.is_some(), "gas", gas.map_or(String::new(), GasStage::about), "no [gas]");
     plan_charging(&mut plan, transfer);
     let reason = if field_asked {
         "every charge in the particle group is zero and nothing makes one"

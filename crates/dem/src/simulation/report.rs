@@ -23,6 +23,13 @@ pub struct Deepest {
 }
 
 impl Simulation {
+    /// What grains and a gas that flows give each other; `None` without one.
+    #[cfg(feature = "field")]
+    #[must_use]
+    pub fn gas_exchange(&self) -> Option<&amberfield_gas::Exchange> {
+        self.gas.as_ref()?.flowing().map(crate::gas_stage::FlowingGas::known)
+    }
+
     /// Iterations of a field solver of another process, in its last solve for the motion; 0 without one.
     #[must_use]
     pub fn solver_iterations(&self) -> u64 {

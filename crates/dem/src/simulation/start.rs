@@ -82,10 +82,21 @@ impl Simulation {
         run.speed = state.speed;
         run.resize_scratch();
         run.update_electric_limits();
+        run.set_step_of_gas();
         Ok(run)
     }
 
-    /// The complete state.
+    /// The complete state, with that of a gas that flows.
+    ///
+    /// # Errors
+    /// A solver of the flow that is lost.
+    pub fn checkpoint(&mut self) -> Result<State, DemError> {
+        let gas = self.gas.as_mut().and_then(GasStage::flowing_mut);
+        let gas = gas.map(|gas| gas.state()).transpose()?;
+        Ok(State { gas, ..self.state() })
+    }
+
+    /// The complete state of a scene whose gas does not flow.
     #[must_use]
     pub fn state(&self) -> State {
         State {
@@ -105,6 +116,7 @@ impl Simulation {
             walls: self.walls.as_ref().map(|w| w.histories(&self.grains)).unwrap_or_default(),
             field: self.field.as_ref().map(FieldStage::state),
             charging: self.charging.as_ref().map(|c| c.state(&self.particles, &self.neighbours)),
+            gas: None,
         }
     }
 
@@ -132,7 +144,7 @@ impl Simulation {
             }
             _ => None,
         };
-        let gas = gas.map(|gas| GasStage::new(gas, time.gravity_m_s2, &particles));
+        let gas = gas.map(|gas| GasStage::new(gas, time.gravity_m_s2, &particles, state)).transpose()?;
         let neighbours = Neighbours::new(Cells::new(level_radius, skin), shifts, features);
         let periodic = Axis::ALL.into_iter().any(|axis| domain.is_periodic(axis));
         let plan = super::plan::plan(
@@ -149,7 +161,7 @@ impl Simulation {
             domain,
             time,
             plan,
-            limits: Limits::new(&particles, &materials, &table, gas),
+            limits: Limits::new(&particles, &materials, &table, gas.as_ref().and_then(GasStage::uniform)),
             table,
             features,
             periodic,
@@ -201,7 +213,16 @@ impl Simulation {
                 self.evaluate_field()?;
             }
         }
+        self.set_step_of_gas();
         self.watch_guards()
+    }
+
+    /// Tells a gas that flows how long a step is.
+    fn set_step_of_gas(&mut self) {
+        if let Some(gas) = self.gas.as_mut().and_then(GasStage::flowing_mut) {
+            gas.set_step(self.step_s);
+            self.limits.set_flow(gas.limits());
+        }
     }
 
     /// Takes the first forces as those of the last step, without moving.
@@ -245,6 +266,10 @@ fn check_state(setup: &Setup, state: &State) -> Result<(), DemError> {
     let rotation = PairTable::new(&setup.materials).features().rotation();
     if state.torque.len() != if rotation { count } else { 0 } {
         return Err(DemError::State("its torques do not match the materials' friction".to_owned()));
+    }
+    let flows = setup.gas.as_ref().is_some_and(|gas| gas.gas.flow.is_some());
+    if state.gas.is_some() != flows || state.gas.as_ref().is_some_and(|gas| !gas.fits(count)) {
+        return Err(DemError::State("its gas does not match the scene's".to_owned()));
     }
     if state.field.as_ref().is_some_and(|f| !f.fits(count)) {
         return Err(DemError::State("its field forces differ in length".to_owned()));

@@ -4,6 +4,7 @@ mod command;
 mod description;
 mod domain;
 mod electric_field;
+mod gas;
 pub(crate) mod limits;
 pub(crate) mod materials;
 mod others;

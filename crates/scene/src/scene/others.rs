@@ -1,11 +1,10 @@
-//! `[charge_transfer]`, `[solver]`, `[gas]`, `[output]`.
+//! `[charge_transfer]`, `[solver]`, `[output]`.
 
 use super::description::{ChargeTransferSettings, OutputSettings, SolverLoss, SolverSettings};
 use super::limits::TIME;
 use super::source::Source;
 use crate::SceneError;
 use crate::tree::{Range, Table, Value};
-use amberfield_core::{DragLaw, Gas};
 
 /// Reads `[charge_transfer]`.
 pub(super) fn read_charge_transfer(
@@ -45,22 +44,6 @@ pub(super) fn read_solver(
         ranks: u32::try_from(ranks).expect("the range ends at 65536"),
         timeout_s: table.number("timeout_s", TIME)?.unwrap_or(30.0),
         on_solver_loss: table.word("on_solver_loss", &losses)?.unwrap_or_default(),
-    }))
-}
-
-/// Reads `[gas]`: air of 20 °C at rest where nothing else is said.
-pub(super) fn read_gas(document: &Table<'_>) -> Result<Option<Gas>, SceneError> {
-    /// Density [kg/m³] and viscosity [Pa·s] of dry air at 20 °C and 101325 Pa (CRC Handbook of Chemistry and Physics).
-    const AIR: (f64, f64) = (1.204, 1.82e-5);
-    let keys = ["drag", "density_kg_m3", "viscosity_Pa_s", "velocity_m_s", "magnus_lift"];
-    let Some(table) = document.table("gas", &keys)? else { return Ok(None) };
-    let laws = DragLaw::ALL.map(|law| (law.name(), law));
-    Ok(Some(Gas {
-        drag: table.word("drag", &laws)?.unwrap_or_default(),
-        density_kg_m3: table.number("density_kg_m3", Range::closed(0.0, 1e6))?.unwrap_or(AIR.0),
-        viscosity_pa_s: table.number("viscosity_Pa_s", Range::positive(1e6))?.unwrap_or(AIR.1),
-        velocity_m_s: table.vector("velocity_m_s", Range::closed(-1e6, 1e6))?.unwrap_or_default(),
-        magnus_lift: table.boolean("magnus_lift")?.unwrap_or(false),
     }))
 }
 

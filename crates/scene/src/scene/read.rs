@@ -3,8 +3,9 @@
 use super::description::{Purpose, Scene};
 use super::domain::read_domain;
 use super::electric_field::read_electric_field;
+use super::gas::read_gas;
 use super::materials::{Materials, read_materials};
-use super::others::{read_charge_transfer, read_gas, read_output, read_solver};
+use super::others::{read_charge_transfer, read_output, read_solver};
 use super::particles::read_section;
 use super::source::{Source, read_text};
 use super::time::read_time;

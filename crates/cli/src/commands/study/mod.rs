@@ -217,7 +217,7 @@ impl Laboratory for Bench {
 
     fn method(&mut self, problem: &mut Charged) -> Result<Built, String> {
         let said = |failure: Failure| failure.message().to_owned();
-        let solver = connect_solver(&mut problem.scene).map_err(said)?;
+        let solver = connect_solver(&mut problem.scene).map_err(said)?.field;
         let domain = domain_of(&problem.scene).map_err(said)?;
         let field = field_of(domain, &problem.settings, solver, &problem.positions, &problem.charges)
             .map_err(said)?;

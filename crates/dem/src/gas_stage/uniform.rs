@@ -1,25 +1,23 @@
-//! Forces of a gas on the grains: drag, buoyancy, lift of spinning ones.
+//! A gas that the grains do not disturb: each one is alone in it.
 
 use crate::chunks::{CHUNK, is_parallel};
 use crate::grains::Grains;
-use amberfield_core::{DragLaw, Gas, Particles, Vector3};
+use amberfield_core::{Gas, Particles, Vector3};
 use amberfield_laws::particle_reynolds::Slip;
-use amberfield_laws::{
-    beetstra_drag, di_felice_drag, gidaspow_drag, magnus_lift, schiller_naumann_drag, stokes_drag,
-};
+use amberfield_laws::{drag, magnus_lift};
 use rayon::prelude::*;
 use std::f64::consts::PI;
 
-/// A gas that the grains do not disturb: each one is alone in it.
+/// Drag, buoyancy, lift of spinning grains.
 #[derive(Clone, Copy, Debug)]
-pub(crate) struct GasStage {
+pub(crate) struct UniformGas {
     gas: Gas,
     gravity: Vector3<f64>,
     /// Smallest diameter [m] and lowest density [kg/m³] of the grains.
     finest: (f64, f64),
 }
 
-impl GasStage {
+impl UniformGas {
     pub(crate) fn new(gas: Gas, gravity: Vector3<f64>, particles: &Particles) -> Self {
         let least = |values: &[f64]| values.iter().copied().fold(f64::INFINITY, f64::min);
         Self { gas, gravity, finest: (2.0 * least(&particles.radius), least(&particles.density)) }
@@ -51,8 +49,7 @@ impl GasStage {
         }
     }
 
-    /// Shortest time in which any grain's slip decays, at grains' speeds up to `speed` [m/s] (exact for grains of one density): steps beyond it are
-    /// unstable, since the force is that at the velocity predicted for the end of the step, v + Δt a.
+    /// Shortest time in which any grain's slip decays, at grains' speeds up to `speed` [m/s] (exact for grains of one density).
     pub(crate) fn limit(&self, speed: f64) -> f64 {
         let (diameter, density) = self.finest;
         let slip = speed + self.gas.velocity_m_s.norm();
@@ -63,12 +60,6 @@ impl GasStage {
     fn coefficient(&self, diameter: f64, speed: f64) -> f64 {
         let Gas { density_kg_m3: density, viscosity_pa_s: viscosity, .. } = self.gas;
         let slip = Slip { speed, void_fraction: 1.0, diameter, density, viscosity };
-        match self.gas.drag {
-            DragLaw::Stokes => stokes_drag::coefficient(diameter, viscosity),
-            DragLaw::SchillerNaumann => schiller_naumann_drag::coefficient(&slip),
-            DragLaw::DiFelice => di_felice_drag::coefficient(&slip),
-            DragLaw::Gidaspow => gidaspow_drag::coefficient(&slip),
-            DragLaw::Beetstra => beetstra_drag::coefficient(&slip),
-        }
+        drag::coefficient(self.gas.drag, &slip)
     }
 }

@@ -1,0 +1,186 @@
+//! The field side of a gas's flow: what the grains do to it, and the answer.
+
+use crate::CouplingError;
+use crate::field_side::{FieldSide, of_dem};
+use amberfield_wire::{Element, Header, Layout, MessageKind, Section, Sections, WireError};
+use std::ops::Range;
+
+/// An interval of the flow that the DEM process asks for.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct AskedFlow {
+    /// Its length [s]; 0: the flow as it is.
+    pub interval_s: f64,
+    /// Its start [s].
+    pub time_s: f64,
+    /// Density of the gas [kg/m³].
+    pub density: f64,
+    /// Its viscosity [Pa·s].
+    pub viscosity: f64,
+    /// Whether the pressure acts on the gas alone (model B).
+    pub model_b: bool,
+    /// Whether ∇·τ is wanted.
+    pub viscous_force: bool,
+    /// Whether the vorticity is.
+    pub vorticity: bool,
+}
+
+impl AskedFlow {
+    /// What a message asks for.
+    ///
+    /// # Errors
+    /// Numbers that are missing or cannot be used.
+    pub fn read(sections: &Sections<'_>) -> Result<Self, WireError> {
+        let numbers = sections.exactly::<f64>(Section::Interval, 7)?;
+        let sound = |place: usize, number: f64| {
+            let positive = !(2..4).contains(&place) || number > 0.0;
+            number.is_finite() && positive && (place != 0 || number >= 0.0)
+        };
+        if let Some(place) = (0..numbers.len()).find(|&place| !sound(place, numbers[place])) {
+            return Err(WireError::Number { section: Section::Interval, place, value: numbers[place] });
+        }
+        Ok(Self {
+            interval_s: numbers[0],
+            time_s: numbers[1],
+            density: numbers[2],
+            viscosity: numbers[3],
+            model_b: numbers[4] != 0.0,
+            viscous_force: numbers[5] != 0.0,
+            vorticity: numbers[6] != 0.0,
+        })
+    }
+}
+
+/// What a rank answers: the flow at its cell centres.
+#[derive(Clone, Copy, Debug)]
+pub struct FlowReply<'a> {
+    /// u [m/s].
+    pub velocity: &'a [[f64; 3]],
+    /// ∇p [Pa/m].
+    pub pressure_gradient: &'a [[f64; 3]],
+    /// ∇·τ [N/m³]; empty unless wanted.
+    pub viscous_force: &'a [[f64; 3]],
+    /// ∇ × u [1/s]; empty unless wanted.
+    pub vorticity: &'a [[f64; 3]],
+    /// Iterations of the linear solver for p.
+    pub iterations: u64,
+    /// What continuity misses.
+    pub residual: f64,
+    /// Time that it took [s].
+    pub seconds: f64,
+}
+
+/// What the grains do to the gas in a rank's cells.
+#[derive(Clone, Copy, Debug)]
+pub struct GrainsInCells<'a> {
+    /// ε.
+    pub void_fraction: &'a [f64],
+    /// K [kg/(m³ s)].
+    pub drag: &'a [f64],
+    /// S [N/m³].
+    pub source: &'a [[f64; 3]],
+}
+
+impl<'a> GrainsInCells<'a> {
+    /// What a message says of a rank's cells.
+    ///
+    /// # Errors
+    /// Fewer numbers than cells, or such that cannot be used.
+    pub fn read(sections: &Sections<'a>, cells: Range<usize>) -> Result<Self, WireError> {
+        let found = Self {
+            void_fraction: of_cells(sections, Section::VoidFraction, &cells)?,
+            drag: of_cells(sections, Section::DragCoefficient, &cells)?,
+            source: of_cells(sections, Section::MomentumSource, &cells)?,
+        };
+        let refuse = |section, numbers: &mut dyn Iterator<Item = (f64, bool)>| {
+            let bad = numbers.enumerate().find(|(_, (_, good))| !good);
+            bad.map_or(Ok(()), |(place, (value, _))| Err(WireError::Number { section, place, value }))
+        };
+        let fraction = |&void: &f64| (void, void > 0.0 && void <= 1.0 + f64::EPSILON);
+        refuse(Section::VoidFraction, &mut found.void_fraction.iter().map(fraction))?;
+        let positive = |&drag: &f64| (drag, drag >= 0.0 && drag.is_finite());
+        refuse(Section::DragCoefficient, &mut found.drag.iter().map(positive))?;
+        let finite = |source: &[f64; 3]| {
+            let sum: f64 = source.iter().sum();
+            (sum, sum.is_finite())
+        };
+        refuse(Section::MomentumSource, &mut found.source.iter().map(finite))?;
+        Ok(found)
+    }
+}
+
+/// A section by cell of all ranks, at some cells.
+fn of_cells<'a, T: Element>(
+    sections: &Sections<'a>,
+    section: Section,
+    cells: &Range<usize>,
+) -> Result<&'a [T], WireError> {
+    let all = sections.get::<T>(section)?;
+    all.get(cells.clone()).ok_or(WireError::Count { section, theirs: all.len(), ours: cells.end })
+}
+
+impl FieldSide {
+    /// What the grains do to the gas in this rank's cells.
+    ///
+    /// # Errors
+    /// Fewer numbers than cells, or such that cannot be used.
+    pub fn grains(&self) -> Result<GrainsInCells<'_>, CouplingError> {
+        GrainsInCells::read(&self.sections()?, self.own_cells()).map_err(of_dem)
+    }
+
+    /// Answers an interval of the flow.
+    ///
+    /// # Errors
+    /// A DEM process that is gone.
+    pub fn reply_flow(&mut self, reply: &FlowReply<'_>) -> Result<(), CouplingError> {
+        let arrays = [
+            (Section::Velocity, reply.velocity),
+            (Section::PressureGradient, reply.pressure_gradient),
+            (Section::ViscousForce, reply.viscous_force),
+            (Section::Vorticity, reply.vorticity),
+        ];
+        let mut layout = Layout::new(self.header_of_answer(MessageKind::Flow)?);
+        for (section, array) in arrays {
+            layout = layout.with::<[f64; 3]>(section, array.len());
+        }
+        let layout = layout.with::<f64>(Section::FlowAnswer, 3);
+        self.answer(&layout, |payload| {
+            for (section, array) in arrays {
+                layout.section_mut::<[f64; 3]>(payload, section)?.copy_from_slice(array);
+            }
+            let answer = [reply.iterations as f64, reply.residual, reply.seconds];
+            layout.section_mut::<f64>(payload, Section::FlowAnswer)?.copy_from_slice(&answer);
+            Ok(())
+        })
+    }
+
+    /// The state that this rank is to take in.
+    ///
+    /// # Errors
+    /// None for this rank.
+    pub fn flow_state(&self) -> Result<&[f64], CouplingError> {
+        let all = self.section::<f64>(Section::FlowState)?;
+        let sizes = self.section::<u64>(Section::FlowStateSizes)?;
+        let rank = self.rank() as usize;
+        let wrong = |theirs, ours| of_dem(WireError::Count { section: Section::FlowState, theirs, ours });
+        let &size = sizes.get(rank).ok_or_else(|| wrong(sizes.len(), rank + 1))?;
+        let before: u64 = sizes[..rank].iter().fold(0, |sum, &size| sum.saturating_add(size));
+        let end = before.saturating_add(size);
+        if end > all.len() as u64 {
+            return Err(wrong(all.len(), end as usize));
+        }
+        Ok(&all[before as usize..end as usize])
+    }
+
+    /// Answers a checkpoint with this rank's state, or a state taken in with nothing.
+    ///
+    /// # Errors
+    /// A DEM process that is gone.
+    pub fn reply_state(&mut self, state: &[f64]) -> Result<(), CouplingError> {
+        let header: Header = self.header_of_answer(MessageKind::State)?;
+        let layout = Layout::new(header).with::<f64>(Section::FlowState, state.len());
+        self.answer(&layout, |payload| {
+            layout.section_mut::<f64>(payload, Section::FlowState)?.copy_from_slice(state);
+            Ok(())
+        })
+    }
+}

@@ -1,0 +1,151 @@
+//! The flow of a gas in another process.
+
+use crate::CouplingError;
+use crate::dem_side::{Shared, locked, read_vectors, write_vectors};
+use amberfield_core::{GasModel, Vector3};
+use amberfield_field::far::FarMesh;
+use amberfield_gas::{FlowRequest, FlowSolver, FlowValues, GasError};
+use amberfield_wire::{Layout, MessageKind, Section, Sections, WireError};
+use std::ops::Range;
+use std::sync::{Arc, Mutex};
+
+/// Asks the process that also solves for the far field, if the scene has one.
+#[derive(Debug)]
+pub struct RemoteFlow {
+    mesh: Arc<FarMesh>,
+    shared: Arc<Mutex<Shared>>,
+}
+
+impl RemoteFlow {
+    pub(crate) fn new(mesh: Arc<FarMesh>, shared: Arc<Mutex<Shared>>) -> Self {
+        Self { mesh, shared }
+    }
+
+    fn exchange(&self, request: &FlowRequest<'_>, values: &mut FlowValues) -> Result<(), CouplingError> {
+        let shared = &mut *locked(&self.shared);
+        shared.clear_the_way()?;
+        let flag = |wanted: bool| f64::from(u8::from(wanted));
+        let numbers = [
+            request.interval_s,
+            request.time_s,
+            request.gas.density_kg_m3,
+            request.gas.viscosity_pa_s,
+            flag(request.flow.model == GasModel::B),
+            flag(request.flow.viscous_force),
+            flag(request.flow.saffman_lift),
+        ];
+        let cells = request.void_fraction.len();
+        let layout = |layout: Layout| {
+            layout
+                .with::<f64>(Section::Interval, numbers.len())
+                .with::<f64>(Section::VoidFraction, cells)
+                .with::<f64>(Section::DragCoefficient, cells)
+                .with::<[f64; 3]>(Section::MomentumSource, cells)
+        };
+        shared.remote.ask(MessageKind::Grains, layout, |layout, payload| {
+            layout.section_mut::<f64>(payload, Section::Interval)?.copy_from_slice(&numbers);
+            let void_fraction = layout.section_mut::<f64>(payload, Section::VoidFraction)?;
+            void_fraction.copy_from_slice(request.void_fraction);
+            layout.section_mut::<f64>(payload, Section::DragCoefficient)?.copy_from_slice(request.drag);
+            write_vectors(layout.section_mut(payload, Section::MomentumSource)?, request.source);
+            Ok(())
+        })?;
+        values.velocity.resize(cells, Vector3::zeros());
+        values.pressure_gradient.resize(cells, Vector3::zeros());
+        let count_if = |wanted: bool| if wanted { cells } else { 0 };
+        values.viscous_force.resize(count_if(request.flow.viscous_force), Vector3::zeros());
+        values.vorticity.resize(count_if(request.flow.saffman_lift), Vector3::zeros());
+        (values.iterations, values.residual, values.seconds) = (0, 0.0, 0.0);
+        shared.remote.collect(MessageKind::Flow, |cells, _, sections| read(cells, sections, values))?;
+        let outcome = sound(values);
+        shared.remote.noted(outcome)
+    }
+
+    fn fetch(&self) -> Result<Vec<Vec<f64>>, CouplingError> {
+        let shared = &mut *locked(&self.shared);
+        shared.clear_the_way()?;
+        shared.remote.ask(MessageKind::Checkpoint, |layout| layout, |_, _| Ok(()))?;
+        let mut state = vec![Vec::new(); shared.remote.settings.ranks as usize];
+        shared.remote.collect(MessageKind::State, |_, rank, sections| {
+            state[rank] = sections.get::<f64>(Section::FlowState)?.to_vec();
+            Ok(())
+        })?;
+        Ok(state)
+    }
+
+    fn send_back(&self, state: &[Vec<f64>]) -> Result<(), CouplingError> {
+        let shared = &mut *locked(&self.shared);
+        shared.clear_the_way()?;
+        let sizes: Vec<u64> = state.iter().map(|part| part.len() as u64).collect();
+        let all = state.concat();
+        let layout = |layout: Layout| {
+            layout
+                .with::<u64>(Section::FlowStateSizes, sizes.len())
+                .with::<f64>(Section::FlowState, all.len())
+        };
+        shared.remote.ask(MessageKind::Restore, layout, |layout, payload| {
+            layout.section_mut::<u64>(payload, Section::FlowStateSizes)?.copy_from_slice(&sizes);
+            layout.section_mut::<f64>(payload, Section::FlowState)?.copy_from_slice(&all);
+            Ok(())
+        })?;
+        shared.remote.collect(MessageKind::State, |_, _, _| Ok(()))
+    }
+}
+
+impl FlowSolver for RemoteFlow {
+    fn mesh(&self) -> &FarMesh {
+        &self.mesh
+    }
+
+    fn advance(&mut self, request: &FlowRequest<'_>, values: &mut FlowValues) -> Result<(), GasError> {
+        self.exchange(request, values).map_err(of_gas)
+    }
+
+    fn state(&mut self) -> Result<Vec<Vec<f64>>, GasError> {
+        self.fetch().map_err(of_gas)
+    }
+
+    fn restore(&mut self, state: &[Vec<f64>]) -> Result<(), GasError> {
+        self.send_back(state).map_err(of_gas)
+    }
+}
+
+fn of_gas(error: CouplingError) -> GasError {
+    GasError::Solver(error.to_string())
+}
+
+/// Takes one rank's answer.
+fn read(of_rank: Range<usize>, sections: &Sections<'_>, values: &mut FlowValues) -> Result<(), WireError> {
+    let arrays = [
+        (Section::Velocity, &mut values.velocity),
+        (Section::PressureGradient, &mut values.pressure_gradient),
+        (Section::ViscousForce, &mut values.viscous_force),
+        (Section::Vorticity, &mut values.vorticity),
+    ];
+    for (section, array) in arrays {
+        if !array.is_empty() {
+            let theirs = sections.exactly::<[f64; 3]>(section, of_rank.len())?;
+            read_vectors(&mut array[of_rank.clone()], theirs);
+        }
+    }
+    let answer = sections.exactly::<f64>(Section::FlowAnswer, 3)?;
+    values.iterations = values.iterations.max(answer[0] as u64);
+    values.residual = values.residual.max(answer[1]);
+    values.seconds = values.seconds.max(answer[2]);
+    Ok(())
+}
+
+/// Refuses a flow that is no number somewhere.
+fn sound(values: &FlowValues) -> Result<(), CouplingError> {
+    let arrays =
+        [&values.velocity, &values.pressure_gradient, &values.viscous_force, &values.vorticity].into_iter();
+    for (name, array) in ["u", "∇p", "∇·τ", "∇ × u"].into_iter().zip(arrays) {
+        if let Some(cell) = array.iter().position(|value| !value.sum().is_finite()) {
+            return Err(CouplingError::Flow(format!(
+                "the flow's {name} in cell {cell} is {:?}; make gas.interval_s shorter, and look at the solver's log",
+                array[cell].as_slice()
+            )));
+        }
+    }
+    Ok(())
+}

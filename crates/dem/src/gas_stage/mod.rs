@@ -1,0 +1,85 @@
+//! Forces of a gas on the grains.
+//!
+//! [`UniformGas`]: the same everywhere, undisturbed. [`FlowingGas`]: its flow is computed by somebody else, and grains act on it too.
+
+#[cfg(feature = "field")]
+mod flowing;
+mod uniform;
+
+#[cfg(not(feature = "field"))]
+use crate::gas_crate::FlowingGas;
+#[cfg(feature = "field")]
+pub(crate) use flowing::FlowingGas;
+pub(crate) use uniform::UniformGas;
+
+use crate::error::DemError;
+use crate::grains::Grains;
+use crate::setup::GasSetup;
+use crate::state::State;
+use amberfield_core::{Particles, Vector3};
+
+/// The gas of a scene.
+#[derive(Debug)]
+pub(crate) enum GasStage {
+    Uniform(UniformGas),
+    Flowing(Box<FlowingGas>),
+}
+
+impl GasStage {
+    /// Afresh, or from a state.
+    pub(crate) fn new(
+        setup: GasSetup,
+        gravity: Vector3<f64>,
+        particles: &Particles,
+        state: Option<&State>,
+    ) -> Result<Self, DemError> {
+        let GasSetup { gas, solver } = setup;
+        let Some(flow) = gas.flow else {
+            return Ok(Self::Uniform(UniformGas::new(gas, gravity, particles)));
+        };
+        let solver = solver.ok_or_else(|| DemError::Setup("a gas that flows needs a solver".to_owned()))?;
+        let saved = state.and_then(|state| state.gas.as_ref());
+        let gas = FlowingGas::new((gas, flow), &solver, gravity, particles, saved)?;
+        Ok(Self::Flowing(Box::new(gas)))
+    }
+
+    /// What the plan says of it.
+    pub(crate) fn about(&self) -> String {
+        match self {
+            Self::Uniform(gas) => format!("drag ({}) and buoyancy of every grain alone", gas.drag()),
+            Self::Flowing(gas) => gas.about(),
+        }
+    }
+
+    /// The one that is the same everywhere.
+    pub(crate) fn uniform(&self) -> Option<UniformGas> {
+        match self {
+            Self::Uniform(gas) => Some(*gas),
+            Self::Flowing(_) => None,
+        }
+    }
+
+    /// The one whose flow is computed.
+    pub(crate) fn flowing(&self) -> Option<&FlowingGas> {
+        match self {
+            Self::Uniform(_) => None,
+            Self::Flowing(gas) => Some(gas),
+        }
+    }
+
+    /// See [`Self::flowing`].
+    pub(crate) fn flowing_mut(&mut self) -> Option<&mut FlowingGas> {
+        match self {
+            Self::Uniform(_) => None,
+            Self::Flowing(gas) => Some(gas),
+        }
+    }
+
+    /// Adds the forces on the grains at their present velocities [N], for a step [s].
+    pub(crate) fn add_forces(&mut self, grains: &Grains, step: f64, total: &mut [Vector3<f64>]) {
+        match self {
+            Self::Uniform(gas) => gas.add_forces(grains, total),
+            Self::Flowing(gas) => gas.add_forces(grains, step, total),
+        }
+    }
+}

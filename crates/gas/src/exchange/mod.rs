@@ -1,0 +1,318 @@
+//! What grains and gas give each other over an interval.
+//!
+//! At its start, shares of the grains in the cells (w, [`Mapping`]) make ε = 1 − Σ w V/V_c, and drag coefficients β at the slips of that moment K = Σ w β/V_c and S = Σ w (β v − L)/V_c + R;
+//! the solver answers with the flow at the interval's end, implicit in K u. Until the next interval every grain feels
+//!
+//! ```text
+//! F = β (u − v) + L  +  V (−∇p + ∇·τ) − ρ V g          (model A)
+//! F = β (u − v)/ε + L − ρ V g                           (model B)
+//! ```
+//!
+//! with its own v as it changes; u, ∇p, ∇·τ by the same shares; L lift. The gas gave Δt V_c (K u − S) by cell; what grains got of the first two terms differs by what v and u changed meanwhile. The difference is
+//! booked and goes into the next R: momentum given and taken balance to round-off over a run. Source of the equations: Zhou, Kuang, Chu & Yu, J. Fluid Mech. 661, 482 (2010), sets II (A) and III (B); the booking is ours.
+
+mod forces;
+mod state;
+
+pub use state::ExchangeState;
+
+use crate::flow_solver::{FlowRequest, FlowSolver, FlowValues};
+use crate::mapping::Share;
+use crate::{GasError, Mapping};
+use amberfield_core::{Domain, Gas, GasFlow, Vector3};
+use rayon::prelude::*;
+use serde::{Deserialize, Serialize};
+use std::f64::consts::PI;
+
+/// ε of a cell at least: Ergun's drag grows without bound as ε goes to 0, and a few grains' shares may fill a small cell.
+const LEAST_VOID: f64 = 0.2;
+/// Grains that one thread takes at a time.
+const CHUNK: usize = 1024;
+
+/// Grains as they are now, in the order of the forces asked for.
+#[derive(Clone, Copy, Debug)]
+pub struct GrainsView<'a> {
+    /// Position and radius [m].
+    pub centre: &'a [[f64; 4]],
+    /// [m/s].
+    pub velocity: &'a [Vector3<f64>],
+    /// [rad/s]; empty: nothing spins.
+    pub angular: &'a [Vector3<f64>],
+    /// [1/kg].
+    pub inverse_mass: &'a [f64],
+}
+
+/// What acts on a grain until the next exchange.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
+struct Held {
+    /// β, in model B over ε [kg/s].
+    drag: f64,
+    /// β u + L [N].
+    push: Vector3<f64>,
+    /// What the gas does not give in exchange: pressure, viscous stress, buoyancy [N].
+    still: Vector3<f64>,
+    /// What was given since the exchange [N·s].
+    impulse: Vector3<f64>,
+    /// Number of the grain at the exchange.
+    slot: u32,
+}
+
+/// A gas whose flow is computed, and the grains in it.
+#[derive(Debug)]
+pub struct Exchange {
+    gas: Gas,
+    flow: GasFlow,
+    gravity: Vector3<f64>,
+    solver: Box<dyn FlowSolver>,
+    mapping: Mapping,
+    held: Vec<Held>,
+    places: Vec<Vector3<f64>>,
+    cells: Vec<u32>,
+    /// Shares at the exchange, grain by grain.
+    first: Vec<usize>,
+    shares: Vec<Share>,
+    /// By cell: what grains got of the gas less what it gave [N·s].
+    owed: Vec<Vector3<f64>>,
+    /// What grains got of it up to the last exchange [N·s].
+    booked: Vector3<f64>,
+    void_fraction: Vec<f64>,
+    drag: Vec<f64>,
+    source: Vec<Vector3<f64>>,
+    values: FlowValues,
+    response_s: f64,
+    warned: bool,
+}
+
+impl Exchange {
+    /// Of grains up to a diameter [m], under gravity [m/s²].
+    ///
+    /// # Errors
+    /// A smoothing length that is impossible.
+    pub fn new(
+        gas: Gas,
+        flow: GasFlow,
+        gravity: Vector3<f64>,
+        solver: Box<dyn FlowSolver>,
+        largest_diameter: f64,
+    ) -> Result<Self, GasError> {
+        let mapping = Mapping::new(solver.mesh(), flow.smoothing_length_m, largest_diameter)?;
+        let cells = solver.mesh().cell_count();
+        Ok(Self {
+            gas,
+            flow,
+            gravity,
+            mapping,
+            held: Vec::new(),
+            places: Vec::new(),
+            cells: Vec::new(),
+            first: Vec::new(),
+            shares: Vec::new(),
+            owed: vec![Vector3::zeros(); cells],
+            booked: Vector3::zeros(),
+            void_fraction: vec![1.0; cells],
+            drag: vec![0.0; cells],
+            source: vec![Vector3::zeros(); cells],
+            values: FlowValues::default(),
+            response_s: f64::INFINITY,
+            warned: false,
+            solver,
+        })
+    }
+
+    /// Exchanges: takes the grains as they are, lets the gas flow on by an interval [s] from a time [s], and holds what that does to them.
+    ///
+    /// # Errors
+    /// A solver that is lost.
+    pub fn exchange(
+        &mut self,
+        domain: &Domain,
+        grains: &GrainsView<'_>,
+        interval_s: f64,
+        time_s: f64,
+    ) -> Result<(), GasError> {
+        self.book();
+        self.place(domain, grains);
+        self.fill_void(grains);
+        if self.values.velocity.is_empty() {
+            // The flow as it is at the start.
+            self.advance(0.0, time_s)?;
+        }
+        self.resist(grains, interval_s);
+        self.advance(interval_s, time_s)?;
+        let volumes = self.solver.mesh().volumes();
+        for (cell, owed) in self.owed.iter_mut().enumerate() {
+            let given = self.values.velocity[cell] * self.drag[cell] - self.source[cell];
+            *owed -= given * (interval_s * volumes[cell]);
+        }
+        self.hold(grains);
+        Ok(())
+    }
+
+    /// Adds the forces on the grains at their present velocities [N], and books a step's [s] impulse.
+    pub fn add_forces(&mut self, velocity: &[Vector3<f64>], step_s: f64, total: &mut [Vector3<f64>]) {
+        let one = |((held, total), velocity): ((&mut Held, &mut Vector3<f64>), &Vector3<f64>)| {
+            let given = held.push - velocity * held.drag;
+            held.impulse += given * step_s;
+            *total += given + held.still;
+        };
+        let grains = self.held.par_iter_mut().zip(total.par_iter_mut()).zip(velocity.par_iter());
+        grains.with_min_len(CHUNK).for_each(one);
+    }
+
+    /// Takes in a new order of the grains: the i-th is what was the `order[i]`-th. What those that are gone got stays booked.
+    pub fn reorder(&mut self, order: &[u32]) {
+        if self.held.is_empty() {
+            return;
+        }
+        if order.len() < self.held.len() {
+            let mut stays = vec![false; self.held.len()];
+            order.iter().for_each(|&i| stays[i as usize] = true);
+            for (i, _) in stays.iter().enumerate().filter(|(_, stays)| !**stays) {
+                self.book_one(i);
+            }
+        }
+        self.held = order.iter().map(|&i| self.held[i as usize]).collect();
+    }
+
+    /// Shortest time in which a grain's slip decays [s].
+    #[must_use]
+    pub fn response_s(&self) -> f64 {
+        self.response_s
+    }
+
+    /// ε by cell at the last exchange.
+    #[must_use]
+    pub fn void_fraction(&self) -> &[f64] {
+        &self.void_fraction
+    }
+
+    /// The flow by cell.
+    #[must_use]
+    pub fn values(&self) -> &FlowValues {
+        &self.values
+    }
+
+    /// Momentum that grains got and the gas has not given yet [N·s]: what keeps the balance between two exchanges.
+    #[must_use]
+    pub fn owed(&self) -> Vector3<f64> {
+        self.owed.iter().sum::<Vector3<f64>>()
+            + self.held.iter().map(|held| held.impulse).sum::<Vector3<f64>>()
+    }
+
+    /// Momentum that grains got in exchange, from the start [N·s]: what the gas gave and what it owes.
+    #[must_use]
+    pub fn booked(&self) -> Vector3<f64> {
+        self.booked + self.held.iter().map(|held| held.impulse).sum::<Vector3<f64>>()
+    }
+
+    /// Radius over which grains are smoothed [m].
+    #[must_use]
+    pub fn smoothing_length_m(&self) -> f64 {
+        self.mapping.radius()
+    }
+
+    /// Books what the grains got since the last exchange in the cells that they were in then.
+    fn book(&mut self) {
+        (0..self.held.len()).for_each(|i| self.book_one(i));
+    }
+
+    fn book_one(&mut self, i: usize) {
+        let impulse = std::mem::take(&mut self.held[i].impulse);
+        self.booked += impulse;
+        let slot = self.held[i].slot as usize;
+        for share in &self.shares[self.first[slot]..self.first[slot + 1]] {
+            self.owed[share.cell as usize] += impulse * share.weight;
+        }
+    }
+
+    /// Finds every grain's cell and shares.
+    fn place(&mut self, domain: &Domain, grains: &GrainsView<'_>) {
+        let mesh = self.solver.mesh();
+        let (held, cells) = (&self.held, &self.cells);
+        let found: Vec<(Vector3<f64>, u32)> = grains
+            .centre
+            .par_iter()
+            .enumerate()
+            .map(|(i, c)| {
+                let place = domain.wrap(Vector3::new(c[0], c[1], c[2]));
+                let last = held.get(i).map(|held| cells[held.slot as usize]);
+                (place, mesh.locate(&place, last).0)
+            })
+            .collect();
+        (self.places, self.cells) = found.into_iter().unzip();
+        self.held.resize(grains.centre.len(), Held::default());
+        self.share();
+    }
+
+    /// Shares of the grains at their places.
+    fn share(&mut self) {
+        let mapping = &self.mapping;
+        let grains = self.places.par_chunks(CHUNK).zip(self.cells.par_chunks(CHUNK));
+        let parts: Vec<(Vec<usize>, Vec<Share>)> = grains
+            .map(|(places, cells)| {
+                let mut shares = Vec::new();
+                let one = |(place, &cell): (&Vector3<f64>, &u32)| {
+                    mapping.shares(place, cell, &mut shares);
+                    shares.len()
+                };
+                let ends = places.iter().zip(cells).map(one).collect();
+                (ends, shares)
+            })
+            .collect();
+        self.first.clear();
+        self.first.push(0);
+        self.shares.clear();
+        for (ends, shares) in parts {
+            let begin = self.shares.len();
+            self.first.extend(ends.into_iter().map(|end| begin + end));
+            self.shares.extend(shares);
+        }
+    }
+
+    fn shares_of(&self, grain: usize) -> &[Share] {
+        &self.shares[self.first[grain]..self.first[grain + 1]]
+    }
+
+    /// ε by cell.
+    fn fill_void(&mut self, grains: &GrainsView<'_>) {
+        self.void_fraction.fill(1.0);
+        let volumes = self.solver.mesh().volumes();
+        for (i, c) in grains.centre.iter().enumerate() {
+            let volume = sphere(2.0 * c[3]);
+            for share in &self.shares[self.first[i]..self.first[i + 1]] {
+                self.void_fraction[share.cell as usize] -=
+                    share.weight * volume / volumes[share.cell as usize];
+            }
+        }
+        let mut clipped = 0;
+        for void in self.void_fraction.iter_mut().filter(|void| **void < LEAST_VOID) {
+            *void = LEAST_VOID;
+            clipped += 1;
+        }
+        if clipped > 0 && !self.warned {
+            tracing::warn!(
+                "grains fill more than {} of {clipped} cells, which count as that full; make gas.smoothing_length_m larger",
+                1.0 - LEAST_VOID
+            );
+            self.warned = true;
+        }
+    }
+
+    fn advance(&mut self, interval_s: f64, time_s: f64) -> Result<(), GasError> {
+        let request = FlowRequest {
+            interval_s,
+            time_s,
+            gas: &self.gas,
+            flow: &self.flow,
+            void_fraction: &self.void_fraction,
+            drag: &self.drag,
+            source: &self.source,
+        };
+        self.solver.advance(&request, &mut self.values)
+    }
+}
+
+/// Volume of a sphere [m³].
+fn sphere(diameter: f64) -> f64 {
+    PI / 6.0 * diameter.powi(3)
+}

@@ -1,0 +1,72 @@
+//! What an exchange goes on from.
+
+use super::{Exchange, Held};
+use crate::{FlowValues, GasError};
+use amberfield_core::Vector3;
+use serde::{Deserialize, Serialize};
+
+/// State of an exchange: what a run needs to go on bit for bit.
+#[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
+pub struct ExchangeState {
+    held: Vec<Held>,
+    /// Places at the exchange, and the cells there.
+    places: Vec<Vector3<f64>>,
+    cells: Vec<u32>,
+    owed: Vec<Vector3<f64>>,
+    booked: Vector3<f64>,
+    values: FlowValues,
+    response_s: f64,
+    /// The solver's own.
+    solver: Vec<Vec<f64>>,
+}
+
+impl ExchangeState {
+    /// Whether it is one of `count` grains.
+    #[must_use]
+    pub fn fits(&self, count: usize) -> bool {
+        self.held.len() == count && self.held.iter().all(|held| (held.slot as usize) < self.places.len())
+    }
+}
+
+impl Exchange {
+    /// State for a checkpoint.
+    ///
+    /// # Errors
+    /// A solver that is lost.
+    pub fn state(&mut self) -> Result<ExchangeState, GasError> {
+        Ok(ExchangeState {
+            held: self.held.clone(),
+            places: self.places.clone(),
+            cells: self.cells.clone(),
+            owed: self.owed.clone(),
+            booked: self.booked,
+            values: self.values.clone(),
+            response_s: self.response_s,
+            solver: self.solver.state()?,
+        })
+    }
+
+    /// Goes on from a state.
+    ///
+    /// # Errors
+    /// A solver that is lost, a state of another mesh.
+    pub fn restore(&mut self, state: &ExchangeState) -> Result<(), GasError> {
+        let (cells, theirs) = (self.owed.len(), state.owed.len());
+        let in_mesh = state.cells.iter().all(|&cell| (cell as usize) < cells);
+        if cells != theirs || state.cells.len() != state.places.len() || !in_mesh {
+            return Err(GasError::Settings(format!(
+                "the checkpoint's gas is one of {theirs} cells, the mesh has {cells}; resume with the case that wrote it"
+            )));
+        }
+        self.solver.restore(&state.solver)?;
+        self.held.clone_from(&state.held);
+        self.places.clone_from(&state.places);
+        self.cells.clone_from(&state.cells);
+        self.owed.clone_from(&state.owed);
+        self.booked = state.booked;
+        self.values.clone_from(&state.values);
+        self.response_s = state.response_s;
+        self.share();
+        Ok(())
+    }
+}

@@ -1,0 +1,98 @@
+//! Who computes the flow.
+
+use crate::GasError;
+use amberfield_core::{Gas, GasFlow, Vector3};
+use amberfield_field::far::FarMesh;
+use serde::{Deserialize, Serialize};
+use std::fmt;
+use std::sync::Arc;
+
+/// What a solver is asked: the flow at the end of an interval, with grains that stay as they are at its start.
+///
+/// ε ρ (∂u/∂t + u·∇u) = −a ∇p + ∇·(ε τ) − K u + S with ∂ε/∂t + ∇·(ε u) = 0; p without the gas's own weight; a = ε in model A, 1 in model B.
+#[derive(Clone, Copy, Debug)]
+pub struct FlowRequest<'a> {
+    /// Length of the interval [s]; 0: the flow as it is.
+    pub interval_s: f64,
+    /// Its start [s].
+    pub time_s: f64,
+    /// Density and viscosity.
+    pub gas: &'a Gas,
+    /// Model, and what is wanted.
+    pub flow: &'a GasFlow,
+    /// ε by cell.
+    pub void_fraction: &'a [f64],
+    /// K by cell [kg/(m³ s)].
+    pub drag: &'a [f64],
+    /// S by cell [N/m³].
+    pub source: &'a [Vector3<f64>],
+}
+
+/// The flow at cell centres.
+#[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
+pub struct FlowValues {
+    /// u [m/s].
+    pub velocity: Vec<Vector3<f64>>,
+    /// ∇p [Pa/m], without the gas's own weight.
+    pub pressure_gradient: Vec<Vector3<f64>>,
+    /// ∇·τ [N/m³].
+    pub viscous_force: Vec<Vector3<f64>>,
+    /// ∇ × u [1/s].
+    pub vorticity: Vec<Vector3<f64>>,
+    /// Iterations of the linear solver for p.
+    pub iterations: u64,
+    /// What continuity misses: RMS over the cells of ∂ε/∂t + ∇·(ε u), times the interval.
+    pub residual: f64,
+    /// Time that it took, without the way there and back [s].
+    pub seconds: f64,
+}
+
+/// Somebody who computes the flow.
+pub trait FlowSolver: fmt::Debug + Send + Sync {
+    /// The cells.
+    fn mesh(&self) -> &FarMesh;
+
+    /// Advances the flow by an interval.
+    ///
+    /// # Errors
+    /// A solver that is lost or does not converge.
+    fn advance(&mut self, request: &FlowRequest<'_>, values: &mut FlowValues) -> Result<(), GasError>;
+
+    /// Everything that the solver needs to go on bit for bit: numbers of its own, by process.
+    ///
+    /// # Errors
+    /// A solver that is lost.
+    fn state(&mut self) -> Result<Vec<Vec<f64>>, GasError>;
+
+    /// Goes on from a state.
+    ///
+    /// # Errors
+    /// A solver that is lost, a state that is not one of its own.
+    fn restore(&mut self, state: &[Vec<f64>]) -> Result<(), GasError>;
+}
+
+/// How a solver is reached.
+#[derive(Clone)]
+pub struct ConnectFlow(Arc<dyn Fn() -> Result<Box<dyn FlowSolver>, GasError> + Send + Sync>);
+
+impl ConnectFlow {
+    /// By calling `connect`.
+    #[must_use]
+    pub fn new(connect: impl Fn() -> Result<Box<dyn FlowSolver>, GasError> + Send + Sync + 'static) -> Self {
+        Self(Arc::new(connect))
+    }
+
+    /// Reaches it.
+    ///
+    /// # Errors
+    /// Nobody there.
+    pub fn connect(&self) -> Result<Box<dyn FlowSolver>, GasError> {
+        (self.0)()
+    }
+}
+
+impl fmt::Debug for ConnectFlow {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.write_str("ConnectFlow")
+    }
+}

@@ -1,0 +1,14 @@
+//! Grains and a gas whose flow somebody else computes, on cells ([`FlowSolver`]).
+//!
+//! [`Mapping`] says which share of a grain each cell near it has, [`Exchange`] what grains and gas give each other through them.
+#![forbid(unsafe_code)]
+
+mod error;
+mod exchange;
+mod flow_solver;
+mod mapping;
+
+pub use error::GasError;
+pub use exchange::{Exchange, ExchangeState, GrainsView};
+pub use flow_solver::{ConnectFlow, FlowRequest, FlowSolver, FlowValues};
+pub use mapping::{Mapping, Share};

@@ -1,0 +1,133 @@
+//! What grains get, the gas gives: booked to round-off, whatever the flow does.
+
+use amberfield_core::{Boundary, Domain, DragLaw, Gas, GasFlow, GasModel, Vector3};
+use amberfield_field::far::{FarMesh, FarMeshParts};
+use amberfield_gas::{Exchange, FlowRequest, FlowSolver, FlowValues, GasError, GrainsView};
+use proptest::prelude::*;
+use std::sync::{Arc, Mutex};
+
+/// A flow that is whatever it likes, and counts what it gave.
+#[derive(Debug)]
+struct Whimsical {
+    mesh: FarMesh,
+    given: Arc<Mutex<Vector3<f64>>>,
+    void: Arc<Mutex<f64>>,
+    calls: u32,
+}
+
+impl FlowSolver for Whimsical {
+    fn mesh(&self) -> &FarMesh {
+        &self.mesh
+    }
+
+    fn advance(&mut self, request: &FlowRequest<'_>, values: &mut FlowValues) -> Result<(), GasError> {
+        self.calls += 1;
+        let wave = |cell: usize, shift: f64| (f64::from(self.calls) + 1.7 * cell as f64 + shift).sin();
+        let vector = |cell: usize| Vector3::new(wave(cell, 0.0), wave(cell, 2.0), 1.0 + wave(cell, 4.0));
+        values.velocity = (0..self.mesh.cell_count()).map(vector).collect();
+        values.pressure_gradient = values.velocity.iter().map(|u| u * -30.0).collect();
+        let mut given = self.given.lock().expect("no panic");
+        for (cell, volume) in self.mesh.volumes().iter().enumerate() {
+            let force = values.velocity[cell] * request.drag[cell] - request.source[cell];
+            *given += force * (volume * request.interval_s);
+        }
+        *self.void.lock().expect("no panic") =
+            request.void_fraction.iter().zip(self.mesh.volumes()).map(|(void, volume)| void * volume).sum();
+        Ok(())
+    }
+
+    fn state(&mut self) -> Result<Vec<Vec<f64>>, GasError> {
+        Ok(vec![vec![f64::from(self.calls)]])
+    }
+
+    fn restore(&mut self, state: &[Vec<f64>]) -> Result<(), GasError> {
+        self.calls = state[0][0] as u32;
+        Ok(())
+    }
+}
+
+fn gas(drag: DragLaw, model: GasModel, magnus_lift: bool) -> (Gas, GasFlow) {
+    let flow = GasFlow {
+        model,
+        interval_s: 1.0,
+        smoothing_length_m: None,
+        viscous_force: false,
+        saffman_lift: false,
+    };
+    let gas = Gas {
+        drag,
+        density_kg_m3: 1.2,
+        viscosity_pa_s: 1.8e-5,
+        velocity_m_s: Vector3::zeros(),
+        magnus_lift,
+        flow: Some(flow),
+    };
+    (gas, flow)
+}
+
+proptest! {
+    #[test]
+    fn momentum_and_volume_are_kept_to_round_off(
+        law in 0..5_usize, model_b in any::<bool>(), spin in any::<bool>(), cells in 2..5_usize, leave in any::<bool>(),
+        places in prop::collection::vec((0.0..1.0_f64, 0.0..1.0_f64, 0.0..1.0_f64), 3..40),
+    ) {
+        let faces = [[Boundary::Periodic; 2], [Boundary::Grounded; 2], [Boundary::Grounded; 2]];
+        let domain = Domain::new(Vector3::zeros(), Vector3::repeat(0.02), faces).unwrap();
+        let mesh = FarMesh::new(FarMeshParts::of_box(&domain, [cells; 3]).unwrap()).unwrap();
+        let (given, void) = (Arc::new(Mutex::new(Vector3::zeros())), Arc::new(Mutex::new(0.0)));
+        let solver = Whimsical { mesh, given: Arc::clone(&given), void: Arc::clone(&void), calls: 0 };
+        let (gas, flow) = gas(DragLaw::ALL[law], if model_b { GasModel::B } else { GasModel::A }, spin);
+        let mut exchange = Exchange::new(gas, flow, Vector3::zeros(), Box::new(solver), 1e-3).unwrap();
+        let mut centre: Vec<_> = places.iter().map(|(x, y, z)| [0.02 * x, 0.02 * y, 0.02 * z, 5e-4]).collect();
+        let mut velocity: Vec<_> = places.iter().map(|(x, y, z)| Vector3::new(*y, *z, *x)).collect();
+        let mut angular: Vec<_> = places.iter().map(|(x, y, z)| Vector3::new(*z, *x, *y) * 100.0).collect();
+        let mut got = Vector3::zeros();
+        for k in 0..6 {
+            let inverse_mass = vec![1e6; centre.len()];
+            let view = GrainsView { centre: &centre, velocity: &velocity, angular: &angular, inverse_mass: &inverse_mass };
+            exchange.exchange(&domain, &view, 1e-3, 1e-3 * f64::from(k)).unwrap();
+            let solid = centre.len() as f64 * std::f64::consts::PI / 6.0 * 1e-9;
+            let missing = (*void.lock().unwrap() - (0.02_f64.powi(3) - solid)).abs();
+            prop_assert!(missing < 1e-14 * 0.02_f64.powi(3), "{missing:e}");
+            for _ in 0..4 {
+                let mut force = vec![Vector3::zeros(); centre.len()];
+                exchange.add_forces(&velocity, 2.5e-4, &mut force);
+                for (i, force) in force.iter().enumerate() {
+                    velocity[i] += force * 1e6 * 2.5e-4;
+                    (0..3).for_each(|axis| centre[i][axis] += 1e-4 * velocity[i][axis].clamp(-1.0, 1.0));
+                    (1..3).for_each(|axis| centre[i][axis] = centre[i][axis].clamp(0.0, 0.02));
+                }
+            }
+            // Order changes, grains leave; what they got stays booked.
+            let mut order: Vec<u32> = (0..centre.len() as u32).rev().collect();
+            if leave && order.len() > 2 {
+                order.pop();
+            }
+            exchange.reorder(&order);
+            centre = order.iter().map(|&i| centre[i as usize]).collect();
+            velocity = order.iter().map(|&i| velocity[i as usize]).collect();
+            angular = order.iter().map(|&i| angular[i as usize]).collect();
+            got = *given.lock().unwrap() + exchange.owed();
+        }
+        // What grains got by the forces that are exchanged, counted apart.
+        let booked = exchange.booked();
+        let scale = booked.norm().max(given.lock().unwrap().norm()).max(1e-300);
+        prop_assert!((got - booked).norm() < 1e-12 * scale, "{got:?} {booked:?}");
+    }
+}
+
+#[test]
+fn a_state_of_another_mesh_is_refused() {
+    let domain = |edge: f64| {
+        Domain::new(Vector3::zeros(), Vector3::repeat(edge), [[Boundary::Grounded; 2]; 3]).unwrap()
+    };
+    let exchange = |cells: usize| {
+        let mesh = FarMesh::new(FarMeshParts::of_box(&domain(0.02), [cells; 3]).unwrap()).unwrap();
+        let solver = Whimsical { mesh, given: Arc::default(), void: Arc::default(), calls: 0 };
+        let (gas, flow) = gas(DragLaw::Stokes, GasModel::A, false);
+        Exchange::new(gas, flow, Vector3::zeros(), Box::new(solver), 1e-3).unwrap()
+    };
+    let state = exchange(3).state().unwrap();
+    let error = exchange(4).restore(&state).unwrap_err().to_string();
+    assert!(error.contains("27 cells") && error.contains("64"), "{error}");
+}

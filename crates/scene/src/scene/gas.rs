@@ -1,0 +1,58 @@
+//! `[gas]`.
+
+use super::limits::TIME;
+use crate::SceneError;
+use crate::tree::{Range, Table};
+use amberfield_core::{DragLaw, Gas, GasFlow, GasModel};
+
+/// Density [kg/m³] and viscosity [Pa·s] of dry air at 20 °C and 101325 Pa (CRC Handbook of Chemistry and Physics).
+const AIR: (f64, f64) = (1.204, 1.82e-5);
+/// Keys of a gas whose flow is computed.
+const OF_FLOW: [&str; 5] = ["model", "interval_s", "smoothing_length_m", "viscous_force", "saffman_lift"];
+
+/// Reads `[gas]`: air of 20 °C at rest where nothing else is said.
+pub(super) fn read_gas(document: &Table<'_>) -> Result<Option<Gas>, SceneError> {
+    let alone = ["drag", "density_kg_m3", "viscosity_Pa_s", "velocity_m_s", "magnus_lift", "flow"];
+    let keys = [&alone[..], &OF_FLOW[..]].concat();
+    let Some(table) = document.table("gas", &keys)? else { return Ok(None) };
+    let laws = DragLaw::ALL.map(|law| (law.name(), law));
+    let flows = table.word("flow", &[("uniform", false), ("solver", true)])?.unwrap_or(false);
+    let flow = if flows { Some(read_flow(document, &table)?) } else { None };
+    if let Some(key) = OF_FLOW.iter().find(|key| !flows && table.has(key)) {
+        return Err(table.bad(key, "needs a flow that is computed; set flow = \"solver\", or leave it out"));
+    }
+    let least = if flows { Range::positive(1e6) } else { Range::closed(0.0, 1e6) };
+    Ok(Some(Gas {
+        drag: table.word("drag", &laws)?.unwrap_or_default(),
+        density_kg_m3: table.number("density_kg_m3", least)?.unwrap_or(AIR.0),
+        viscosity_pa_s: table.number("viscosity_Pa_s", Range::positive(1e6))?.unwrap_or(AIR.1),
+        velocity_m_s: table.vector("velocity_m_s", Range::closed(-1e6, 1e6))?.unwrap_or_default(),
+        magnus_lift: table.boolean("magnus_lift")?.unwrap_or(false),
+        flow,
+    }))
+}
+
+/// Reads what a gas has whose flow is computed by the scene's solver.
+fn read_flow(document: &Table<'_>, table: &Table<'_>) -> Result<GasFlow, SceneError> {
+    if !document.has("solver") {
+        return Err(table.bad("flow", "somebody must compute it; add [solver] with openfoam_case"));
+    }
+    if table.has("velocity_m_s") {
+        return Err(table
+            .bad("velocity_m_s", "the flow is computed; leave it out, and set 0/U of the case of [solver]"));
+    }
+    let flow = GasFlow {
+        model: table.word("model", &[("A", GasModel::A), ("B", GasModel::B)])?.unwrap_or_default(),
+        interval_s: table.need_number("interval_s", TIME)?,
+        smoothing_length_m: table.number("smoothing_length_m", Range::positive(1e3))?,
+        viscous_force: table.boolean("viscous_force")?.unwrap_or(false),
+        saffman_lift: table.boolean("saffman_lift")?.unwrap_or(false),
+    };
+    if flow.viscous_force && flow.model == GasModel::B {
+        return Err(table.bad(
+            "viscous_force",
+            "in model B the viscous stress acts on the gas alone; leave it out, or set model = \"A\"",
+        ));
+    }
+    Ok(flow)
+}

@@ -1,0 +1,372 @@
+/*---------------------------------------------------------------------------*\
+    amberfield: the electric field of charged grains
+    SPDX-License-Identifier: GPL-3.0-or-later
+\*---------------------------------------------------------------------------*/
+
+#include "gasFlow.H"
+#include "constrainHbyA.H"
+#include "constrainPressure.H"
+#include "findRefCell.H"
+#include "fvc.H"
+#include "fvm.H"
+#include "zeroGradientFvPatchFields.H"
+
+#include <algorithm>
+#include <chrono>
+
+namespace
+{
+
+//- Difference of a viscosity from the scene's that is round-off of a case's author
+const Foam::scalar sameViscosity = 1e-3;
+
+Foam::IOobject known(const char* name, const Foam::fvMesh& mesh)
+{
+    return Foam::IOobject
+    (
+        name, mesh.time().timeName(), mesh, Foam::IOobject::MUST_READ, Foam::IOobject::AUTO_WRITE
+    );
+}
+
+Foam::IOobject made(const char* name, const Foam::fvMesh& mesh, const bool write)
+{
+    return Foam::IOobject
+    (
+        name,
+        mesh.time().timeName(),
+        mesh,
+        Foam::IOobject::NO_READ,
+        write ? Foam::IOobject::AUTO_WRITE : Foam::IOobject::NO_WRITE
+    );
+}
+
+const Foam::dimensionSet dimDrag(Foam::dimless/Foam::dimTime);
+
+typedef std::function<void(Foam::scalar*, Foam::label)> visitor;
+
+template<class Type>
+void visitNumbers(Foam::Field<Type>& field, const visitor& visit)
+{
+    visit
+    (
+        reinterpret_cast<Foam::scalar*>(field.data()),
+        field.size()*Foam::pTraits<Type>::nComponents
+    );
+}
+
+//- Cells, then patches
+template<class Type, template<class> class PatchField, class GeoMesh>
+void visitField(Foam::GeometricField<Type, PatchField, GeoMesh>& field, const visitor& visit)
+{
+    visitNumbers<Type>(field.primitiveFieldRef(), visit);
+    forAll(field.boundaryField(), patchi)
+    {
+        visitNumbers<Type>(field.boundaryFieldRef()[patchi], visit);
+    }
+}
+
+//- Fields of a type that a case keeps, by name
+template<class FieldType>
+void visitWritten(Foam::fvMesh& mesh, const visitor& visit)
+{
+    for (const Foam::word& name : mesh.sortedNames<FieldType>())
+    {
+        FieldType& field = mesh.lookupObjectRef<FieldType>(name);
+        if (field.writeOpt() == Foam::IOobject::AUTO_WRITE)
+        {
+            visitField(field, visit);
+        }
+    }
+}
+
+} // End anonymous namespace
+
+
+Foam::gasFlow::gasFlow(Time& time, fvMesh& mesh, fieldSide& demProcess)
+:
+    time_(time),
+    mesh_(mesh),
+    demProcess_(demProcess),
+    p_(known("p", mesh), mesh),
+    U_(known("U", mesh), mesh),
+    alpha_
+    (
+        made("alpha", mesh, true),
+        mesh,
+        dimensionedScalar("alpha", dimless, 1),
+        zeroGradientFvPatchScalarField::typeName
+    ),
+    phi_(made("phi", mesh, false), fvc::flux(U_)),
+    alphaPhi_(made("alphaPhi", mesh, false), phi_),
+    transport_(U_, phi_),
+    turbulence_(turbulenceType::New(alpha_, U_, alphaPhi_, phi_, transport_)),
+    drag_
+    (
+        made("drag", mesh, false),
+        mesh,
+        dimensionedScalar("drag", dimDrag, Zero)
+    ),
+    source_
+    (
+        made("source", mesh, false),
+        mesh,
+        dimensionedVector("source", dimAcceleration, Zero)
+    ),
+    pimple_(mesh),
+    pRefCell_(0),
+    pRefValue_(0),
+    begun_(false),
+    iterations_(0)
+{
+    setRefCell(p_, pimple_.dict(), pRefCell_, pRefValue_);
+    mesh_.setFluxRequired(p_.name());
+}
+
+
+void Foam::gasFlow::checkGas() const
+{
+    const AmberfieldRequest& request = demProcess_.request();
+    const scalar ours = gMax(transport_.nu()().primitiveField());
+    const scalar theirs = request.gas_viscosity/request.gas_density;
+    if (mag(ours - theirs) > sameViscosity*theirs)
+    {
+        demProcess_.fail
+        (
+            "nu of constant/transportProperties is " + Foam::name(ours)
+          + " m2/s, the scene's gas.viscosity_Pa_s over gas.density_kg_m3 is "
+          + Foam::name(theirs) + "; make them agree"
+        );
+    }
+}
+
+
+void Foam::gasFlow::answer()
+{
+    const AmberfieldRequest request = demProcess_.request();
+    const auto begun = std::chrono::steady_clock::now();
+    scalar residual = 0;
+    iterations_ = 0;
+    checkGas();
+
+    scalarField voidFraction(mesh_.nCells());
+    demProcess_.grains
+    (
+        voidFraction, drag_.primitiveFieldRef(), source_.primitiveFieldRef()
+    );
+    drag_.primitiveFieldRef() /= request.gas_density;
+    source_.primitiveFieldRef() /= request.gas_density;
+
+    if (!begun_)
+    {
+        // Grains that were there before: no gas flows because of them
+        alpha_.primitiveFieldRef() = voidFraction;
+        alpha_.correctBoundaryConditions();
+        alphaPhi_ = fvc::interpolate(alpha_)*phi_;
+        begun_ = true;
+    }
+    if (request.interval > 0)
+    {
+        const scalarField through(fvc::surfaceSum(mag(phi_))().primitiveField());
+        const scalar courant = 0.5*request.interval*gMax(scalarField(through/mesh_.V().field()));
+        const scalar most = pimple_.dict().lookupOrDefault<scalar>("maxCo", 1);
+        const label steps = max(label(1), label(std::ceil(courant/most)));
+        const scalarField before(alpha_.primitiveField());
+
+        time_.setDeltaT(request.interval/steps, false);
+        for (label i = 1; i <= steps; ++i)
+        {
+            ++time_;
+            // Kept before alpha changes
+            alpha_.oldTime();
+            const scalar share = scalar(i)/steps;
+            alpha_.primitiveFieldRef() = (1 - share)*before + share*voidFraction;
+            alpha_.correctBoundaryConditions();
+            step(request.model_b == 1);
+            residual = max(residual, missing());
+            time_.write();
+        }
+    }
+    const std::chrono::duration<scalar> taken = std::chrono::steady_clock::now() - begun;
+
+    answer(request.gas_density, residual, taken.count());
+}
+
+
+void Foam::gasFlow::step(const bool modelB)
+{
+    while (pimple_.loop())
+    {
+        fvVectorMatrix UEqn
+        (
+            fvm::ddt(alpha_, U_) + fvm::div(alphaPhi_, U_)
+          - fvm::Sp(fvc::ddt(alpha_) + fvc::div(alphaPhi_), U_)
+          + turbulence_->divDevRhoReff(U_)
+          + fvm::Sp(drag_, U_)
+         ==
+            source_
+        );
+        UEqn.relax();
+
+        if (pimple_.momentumPredictor())
+        {
+            if (modelB)
+            {
+                solve(UEqn == -fvc::grad(p_));
+            }
+            else
+            {
+                solve(UEqn == -alpha_*fvc::grad(p_));
+            }
+        }
+        while (pimple_.correct())
+        {
+            correctPressure(UEqn, modelB);
+        }
+        if (pimple_.turbCorr())
+        {
+            transport_.correct();
+            turbulence_->correct();
+        }
+    }
+}
+
+
+void Foam::gasFlow::correctPressure(const fvVectorMatrix& UEqn, const bool modelB)
+{
+    const surfaceScalarField alphaf("alphaf", fvc::interpolate(alpha_));
+    const volScalarField rAU("rAU", 1/UEqn.A());
+    // What the pressure's gradient does to the velocity, at cells and faces
+    volScalarField rAUp("rAUp", rAU);
+    if (!modelB)
+    {
+        rAUp *= alpha_;
+    }
+    const surfaceScalarField rAUpf("rAUpf", fvc::interpolate(rAUp));
+
+    volVectorField HbyA(constrainHbyA(rAU*UEqn.H(), U_, p_));
+    const surfaceScalarField phiHbyA
+    (
+        "phiHbyA",
+        fvc::flux(HbyA) + fvc::interpolate(alpha_*rAU)*fvc::ddtCorr(U_, phi_)
+    );
+    constrainPressure(p_, U_, phiHbyA, rAUpf);
+
+    while (pimple_.correctNonOrthogonal())
+    {
+        fvScalarMatrix pEqn
+        (
+            fvm::laplacian(alphaf*rAUpf, p_) == fvc::ddt(alpha_) + fvc::div(alphaf*phiHbyA)
+        );
+        pEqn.setReference(pRefCell_, pRefValue_);
+        iterations_ += pEqn.solve(mesh_.solver(p_.select(pimple_.finalInnerIter()))).nIterations();
+
+        if (pimple_.finalNonOrthogonalIter())
+        {
+            phi_ = phiHbyA - pEqn.flux()/alphaf;
+        }
+    }
+    p_.relax();
+    alphaPhi_ = alphaf*phi_;
+    U_ = HbyA - rAUp*fvc::grad(p_);
+    U_.correctBoundaryConditions();
+}
+
+
+Foam::scalar Foam::gasFlow::missing() const
+{
+    const scalarField missed
+    (
+        (fvc::ddt(alpha_) + fvc::div(alphaPhi_))().primitiveField()*time_.deltaTValue()
+    );
+    return sqrt(gSum(sqr(missed)*mesh_.V())/gSum(mesh_.V()));
+}
+
+
+void Foam::gasFlow::answer
+(
+    const scalar density,
+    const scalar residual,
+    const scalar seconds
+)
+{
+    const AmberfieldRequest& request = demProcess_.request();
+    const vectorField gradient(density*fvc::grad(p_)().primitiveField());
+    vectorField viscous;
+    vectorField vorticity;
+    if (request.viscous_force == 1)
+    {
+        const volScalarField muEff(density*turbulence_->nuEff());
+        viscous =
+        (
+            fvc::laplacian(muEff, U_) + fvc::div(muEff*dev2(T(fvc::grad(U_))))
+        )().primitiveField();
+    }
+    if (request.vorticity == 1)
+    {
+        vorticity = fvc::curl(U_)().primitiveField();
+    }
+
+    const auto numbers = [](const vectorField& field)
+    {
+        return field.empty() ? nullptr : reinterpret_cast<const scalar*>(field.cdata());
+    };
+    AmberfieldFlow flow;
+    flow.cells = uint64_t(mesh_.nCells());
+    flow.velocity = numbers(U_.primitiveField());
+    flow.pressure_gradient = numbers(gradient);
+    flow.viscous_force = numbers(viscous);
+    flow.vorticity = numbers(vorticity);
+    flow.iterations = uint64_t(iterations_);
+    flow.residual = residual;
+    flow.seconds = seconds;
+    demProcess_.reply(flow);
+}
+
+
+void Foam::gasFlow::visitState(const std::function<void(scalar*, label)>& visit)
+{
+    // With those of the turbulence model, which are registered
+    visitWritten<volScalarField>(mesh_, visit);
+    visitWritten<volVectorField>(mesh_, visit);
+    visitWritten<volSymmTensorField>(mesh_, visit);
+    visitField(phi_, visit);
+    visitField(alphaPhi_, visit);
+}
+
+
+void Foam::gasFlow::save()
+{
+    DynamicList<scalar> state;
+    state.append(begun_ ? 1 : 0);
+    state.append(time_.value());
+    visitState
+    (
+        [&state](scalar* numbers, const label count)
+        {
+            state.append(SubList<scalar>(UList<scalar>(numbers, count), count));
+        }
+    );
+    demProcess_.replyState(scalarField(state));
+}
+
+
+void Foam::gasFlow::restore()
+{
+    label size = 2;
+    visitState([&size](scalar*, const label count) { size += count; });
+    scalarField state(size);
+    demProcess_.takeState(state);
+
+    begun_ = state[0] == 1;
+    time_.setTime(state[1], time_.timeIndex());
+    label place = 2;
+    visitState
+    (
+        [&state, &place](scalar* numbers, const label count)
+        {
+            std::copy_n(state.cdata() + place, count, numbers);
+            place += count;
+        }
+    );
+    demProcess_.replyState(scalarField());
+}
