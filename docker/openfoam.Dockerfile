@@ -1,10 +1,10 @@
-# The OpenFOAM side: `electricFieldFoam` and its library. `cargo xtask images` builds this image, in a folder with both.
+# The OpenFOAM side: `electricFieldFoam`, `amberPimpleFoam` and their library. `cargo xtask images` builds this image, in a folder with both.
 ARG BASE
 FROM ${BASE}
 RUN apt-get update \
  && DEBIAN_FRONTEND=noninteractive apt-get install -y -q --no-install-recommends openfoam \
  && rm -rf /var/lib/apt/lists/*
-COPY solve.sh electricFieldFoam libelectricField.so selfTest /opt/amberfield/
+COPY solve.sh electricFieldFoam amberPimpleFoam libelectricField.so selfTest /opt/amberfield/
 ENV WM_PROJECT_DIR=/usr/share/openfoam PATH=/opt/amberfield:${PATH} LD_LIBRARY_PATH=/opt/amberfield
 RUN selfTest
 ENTRYPOINT ["solve.sh"]

@@ -31,12 +31,12 @@ pub(crate) fn build(root: &Path) -> Result<()> {
     provide_engine(&place)?;
     provide_base(&place)?;
     execute(&mut cargo(root, &["build", "--release", "-p", "amberfield-cli"]))?;
-    let solver = ["electricFieldFoam", "libelectricField.so", "selfTest"]
+    let solver = ["electricFieldFoam", "amberPimpleFoam", "libelectricField.so", "selfTest"]
         .map(|name| root.join("openfoam-solver/build").join(name));
-    let [program, library, test] = &solver;
+    let [field, gas, library, test] = &solver;
     let script = root.join("docker/solve.sh");
     image(root, &place, "dem", &[&root.join("target/release/amberfield")])?;
-    image(root, &place, "openfoam", &[&script, program, library, test])
+    image(root, &place, "openfoam", &[&script, field, gas, library, test])
 }
 
 /// Builds `amberfield-<name>` of `docker/<name>.Dockerfile` around some files.

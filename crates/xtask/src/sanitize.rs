@@ -24,7 +24,8 @@ pub(crate) fn run(root: &Path) -> Result<()> {
     debian::provide(&["libasan8"])?;
     let flags = "-DCMAKE_CXX_FLAGS=-fsanitize=address -fno-omit-frame-pointer -g";
     let build = openfoam::build(root, "build-sanitize", &[flags])?;
-    let mut tests = cargo(root, &["test", "-p", "amberfield-tests", "--test", "commands", "--", "openfoam::"]);
+    let mut tests =
+        cargo(root, &["test", "-p", "amberfield-tests", "--test", "commands", "--", "openfoam::"]);
     tests.args(NOT_THESE.iter().flat_map(|name| ["--skip", name]));
     tests.env("AMBERFIELD_SOLVER", build.join("electricFieldFoam"));
     // OpenFOAM keeps what it made until the process ends.

@@ -5,7 +5,7 @@ use crate::failure::Failure;
 use crate::logging::Log;
 use crate::progress::Progress;
 use crate::run::{
-    Clock, Ending, Existing, RunFolder, Saved, Session, Solver, checkpoints, connect_solver, histogram,
+    Clock, Ending, Existing, RunFolder, Saved, Session, Solver, checkpoints, connect_solver, draw, histogram,
     scene_name, setup_of,
 };
 use crate::{interrupt, plan_text, print};
@@ -26,6 +26,7 @@ pub(crate) fn run(options: &RunOptions, common: &Common, log: &Log) -> Result<()
     let out = out_folder(options)?;
     RunFolder::check(&out, existing, &options.scene)?;
     let mut scene = read_scene(&options.scene, &options.set, Purpose::Run)?;
+    scene.title = scene_name(&options.scene);
     for warning in &scene.warnings {
         tracing::warn!("{warning}");
     }
@@ -122,7 +123,7 @@ fn finish(session: &Session<'_>, scene_path: &Path, first: u64, ending: Ending) 
     let simulation = &session.simulation;
     warn_about_limits(session, first);
     tell_intervals(simulation);
-    draw(session, scene_path);
+    draw(&session.folder.file("picture.png"), session.scene, simulation);
     if simulation.ledger().is_some() {
         histogram::plot(session.folder);
     }
@@ -193,25 +194,3 @@ fn warn_about_limits(session: &Session<'_>, first: u64) {
         tracing::info!("{text}");
     }
 }
-
-/// Draws the grains at the end; a picture that fails is a warning, the results stand.
-#[cfg(feature = "plots")]
-fn draw(session: &Session<'_>, scene_path: &Path) {
-    use amberfield_study::{PictureScene, write_picture};
-    let Some(domain) = &session.scene.domain else { return };
-    let path = session.folder.file("picture.png");
-    let picture = PictureScene {
-        title: &scene_name(scene_path),
-        time_s: Some(session.simulation.time_s()),
-        domain,
-        walls: &session.scene.walls,
-        particles: &session.simulation.particles(),
-    };
-    if let Err(error) = write_picture(&path, &picture) {
-        tracing::warn!("no picture: {error}");
-    }
-}
-
-/// Without the feature there is no picture.
-#[cfg(not(feature = "plots"))]
-fn draw(_: &Session<'_>, _: &Path) {}

@@ -4,6 +4,7 @@ mod folder;
 mod health;
 pub(crate) mod histogram;
 mod name;
+mod picture;
 mod record;
 mod schedule;
 mod session;
@@ -14,6 +15,7 @@ mod summary;
 
 pub(crate) use folder::{Existing, RunFolder, checkpoints, is_stale, remove_leftovers};
 pub(crate) use name::scene_name;
+pub(crate) use picture::draw;
 pub(crate) use record::Clock;
 pub(crate) use session::{Saved, Session};
 pub(crate) use setup::{Charges, Solver, charges_of, domain_of, field_of, parameters, setup_of};

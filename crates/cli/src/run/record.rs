@@ -2,6 +2,7 @@
 
 use super::folder::RunFolder;
 use super::histogram::Histogram;
+use super::picture::draw;
 use super::schedule::Schedule;
 use crate::failure::Failure;
 use amberfield_core::WallCharging;
@@ -174,6 +175,9 @@ impl Record {
         if scene.output.csv {
             let path = folder.file(&format!("{name}.csv"));
             write_particles_csv(&path, &particles, &scene.materials, &scene.groups)?;
+        }
+        if scene.output.png {
+            draw(&folder.file(&format!("{name}.png")), scene, simulation);
         }
         if scene.output.vtk {
             let file = format!("{name}.vtu");

@@ -166,12 +166,21 @@ pub struct OutputSettings {
     pub vtk: bool,
     /// Whether particle CSV files are written.
     pub csv: bool,
+    /// Whether a picture of the grains is written.
+    pub png: bool,
     /// Interval of checkpoints [s]; `None`: only at the end and when interrupted.
     pub checkpoint_every_s: Option<f64>,
 }
 
 impl Default for OutputSettings {
     fn default() -> Self {
-        Self { every_s: None, history_every_s: None, vtk: true, csv: false, checkpoint_every_s: None }
+        Self {
+            every_s: None,
+            history_every_s: None,
+            vtk: true,
+            csv: false,
+            png: false,
+            checkpoint_every_s: None,
+        }
     }
 }

@@ -56,15 +56,17 @@ pub(super) fn read_output(document: &Table<'_>) -> Result<OutputSettings, SceneE
     output.history_every_s = table.number("history_every_s", TIME)?;
     output.checkpoint_every_s = table.number("checkpoint_every_s", TIME)?;
     if let Some(formats) = table.items("formats")? {
-        (output.vtk, output.csv) = (false, false);
+        (output.vtk, output.csv, output.png) = (false, false, false);
         for format in formats {
             match &format.value {
                 Value::Text(word) if word == "vtk" => output.vtk = true,
                 Value::Text(word) if word == "csv" => output.csv = true,
+                Value::Text(word) if word == "png" => output.png = true,
                 _ => {
-                    return Err(
-                        table.bad("formats", format!("{} is not one of \"vtk\", \"csv\"", format.shown()))
-                    );
+                    return Err(table.bad(
+                        "formats",
+                        format!("{} is not one of \"vtk\", \"csv\", \"png\"", format.shown()),
+                    ));
                 }
             }
         }

@@ -1,0 +1,26 @@
+//! Pictures of a run's grains.
+
+use amberfield_dem::Simulation;
+use amberfield_scene::Scene;
+use std::path::Path;
+
+/// Draws the grains; a picture that fails is a warning, the results stand.
+#[cfg(feature = "plots")]
+pub(crate) fn draw(path: &Path, scene: &Scene, simulation: &Simulation) {
+    use amberfield_study::{PictureScene, write_picture};
+    let Some(domain) = &scene.domain else { return };
+    let picture = PictureScene {
+        title: &scene.title,
+        time_s: Some(simulation.time_s()),
+        domain,
+        walls: &scene.walls,
+        particles: &simulation.particles(),
+    };
+    if let Err(error) = write_picture(path, &picture) {
+        tracing::warn!("no picture: {error}");
+    }
+}
+
+/// Without the feature there is no picture.
+#[cfg(not(feature = "plots"))]
+pub(crate) fn draw(_: &Path, _: &Scene, _: &Simulation) {}
