@@ -21,6 +21,8 @@ mod error_vs_runtime;
 mod extremes;
 #[path = "falling-in-air/check.rs"]
 mod falling_in_air;
+#[path = "fluidised-charged-bed/check.rs"]
+mod fluidised_charged_bed;
 #[path = "grounded-plane/check.rs"]
 mod grounded_plane;
 #[path = "grounded-sphere/check.rs"]

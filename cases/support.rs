@@ -47,9 +47,10 @@ impl Case {
             }
         }
         let case = Self { folder };
-        for part in ["0", "system"] {
+        for part in ["0", "constant", "system"] {
             let entries = fs::read_dir(source.join("foam").join(part));
-            for path in entries.into_iter().flatten().map(|entry| entry.expect("an entry").path()) {
+            let paths = entries.into_iter().flatten().map(|entry| entry.expect("an entry").path());
+            for path in paths.filter(|path| path.is_file()) {
                 let copy = case.path("foam").join(part);
                 fs::create_dir_all(&copy).expect("a folder");
                 fs::copy(&path, copy.join(path.file_name().expect("a file has a name"))).expect("a copy");

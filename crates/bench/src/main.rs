@@ -52,6 +52,7 @@ enum Section {
     Rates,
     Coupling,
     Charging,
+    Gas,
 }
 
 /// What a section needs to know.
@@ -100,6 +101,7 @@ fn run(arguments: &Arguments) -> Result<()> {
             Section::Rates => sections::rates::measure(&context, root)?,
             Section::Coupling => sections::coupling::measure(&context, root)?,
             Section::Charging => sections::charging::measure(&context)?,
+            Section::Gas => sections::gas::measure(&context, root)?,
         }
     }
     // A run without peers keeps what an earlier one said of them.

@@ -1,7 +1,7 @@
 //! The page `docs/reports/speed.md`, made from rows only.
 
 use crate::machine::Machine;
-use crate::sections::{charging, coupling, dem, field, kernel, open, rates, scaling};
+use crate::sections::{charging, coupling, dem, field, gas, kernel, open, rates, scaling};
 use crate::store::Store;
 use amberfield_study::{Plot, Scale, Series, write_plot};
 use anyhow::{Context as _, Result};
@@ -63,6 +63,7 @@ pub(crate) fn write(store: &Store) -> Result<()> {
         scaling::report(store)?,
         coupling::report(store)?,
         charging::report(store)?,
+        gas::report(store)?,
     ];
     let mut page = "# How fast it is\n\nThis page is written by `cargo xtask bench`; its rows are in [data](data). Machines differ: only ratios \
                     of the same run mean something.\n\n"

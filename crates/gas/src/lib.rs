@@ -9,6 +9,6 @@ mod flow_solver;
 mod mapping;
 
 pub use error::GasError;
-pub use exchange::{Exchange, ExchangeState, GrainsView};
+pub use exchange::{Exchange, ExchangeSeconds, ExchangeState, GrainsView};
 pub use flow_solver::{ConnectFlow, FlowRequest, FlowSolver, FlowValues};
 pub use mapping::{Mapping, Share};

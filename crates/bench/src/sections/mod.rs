@@ -4,6 +4,7 @@ pub(crate) mod charging;
 pub(crate) mod coupling;
 pub(crate) mod dem;
 pub(crate) mod field;
+pub(crate) mod gas;
 pub(crate) mod kernel;
 pub(crate) mod open;
 mod peak;

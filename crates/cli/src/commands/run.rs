@@ -128,6 +128,7 @@ fn finish(session: &Session<'_>, scene_path: &Path, first: u64, ending: Ending) 
         histogram::plot(session.folder);
     }
     tell_charges(simulation);
+    tell_gas(simulation);
     let seconds = session.begun.elapsed().as_secs_f64();
     #[expect(clippy::cast_precision_loss, reason = "a rate for the eye")]
     let rate = (simulation.step_index() - first) as f64 / seconds;
@@ -159,6 +160,20 @@ fn tell_intervals(simulation: &Simulation) {
             simulation.step_index(),
             intervals.error(),
             intervals.largest_error,
+        );
+    }
+}
+
+/// Says what gas and grains have exchanged, and where the time went.
+fn tell_gas(simulation: &Simulation) {
+    if let Some(exchange) = simulation.gas_exchange() {
+        let (seconds, given) = (exchange.seconds(), exchange.booked());
+        tracing::info!(
+            "gas: gave the grains {:.3e} N s of momentum; exchanges took {:.1} s of flow, {:.1} s of mapping, {:.1} s of the way there and back",
+            given.norm(),
+            seconds.solver,
+            seconds.mapping,
+            seconds.wire
         );
     }
 }

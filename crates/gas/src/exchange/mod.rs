@@ -23,6 +23,7 @@ use amberfield_core::{Domain, Gas, GasFlow, Vector3};
 use rayon::prelude::*;
 use serde::{Deserialize, Serialize};
 use std::f64::consts::PI;
+use std::time::Instant;
 
 /// ε of a cell at least: Ergun's drag grows without bound as ε goes to 0, and a few grains' shares may fill a small cell.
 const LEAST_VOID: f64 = 0.2;
@@ -57,6 +58,17 @@ struct Held {
     slot: u32,
 }
 
+/// Where the time of the exchanges went [s].
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct ExchangeSeconds {
+    /// Finding cells and shares, taking grains to cells and the flow to grains.
+    pub mapping: f64,
+    /// The solver.
+    pub solver: f64,
+    /// The way there and back.
+    pub wire: f64,
+}
+
 /// A gas whose flow is computed, and the grains in it.
 #[derive(Debug)]
 pub struct Exchange {
@@ -81,6 +93,7 @@ pub struct Exchange {
     values: FlowValues,
     response_s: f64,
     warned: bool,
+    seconds: ExchangeSeconds,
 }
 
 impl Exchange {
@@ -115,6 +128,7 @@ impl Exchange {
             values: FlowValues::default(),
             response_s: f64::INFINITY,
             warned: false,
+            seconds: ExchangeSeconds::default(),
             solver,
         })
     }
@@ -130,6 +144,7 @@ impl Exchange {
         interval_s: f64,
         time_s: f64,
     ) -> Result<(), GasError> {
+        let (begun, before) = (Instant::now(), self.seconds);
         self.book();
         self.place(domain, grains);
         self.fill_void(grains);
@@ -145,6 +160,8 @@ impl Exchange {
             *owed -= given * (interval_s * volumes[cell]);
         }
         self.hold(grains);
+        let beyond = self.seconds.solver + self.seconds.wire - before.solver - before.wire;
+        self.seconds.mapping += begun.elapsed().as_secs_f64() - beyond;
         Ok(())
     }
 
@@ -186,6 +203,12 @@ impl Exchange {
         &self.void_fraction
     }
 
+    /// Volume of each cell [m³].
+    #[must_use]
+    pub fn volumes(&self) -> &[f64] {
+        self.solver.mesh().volumes()
+    }
+
     /// The flow by cell.
     #[must_use]
     pub fn values(&self) -> &FlowValues {
@@ -203,6 +226,12 @@ impl Exchange {
     #[must_use]
     pub fn booked(&self) -> Vector3<f64> {
         self.booked + self.held.iter().map(|held| held.impulse).sum::<Vector3<f64>>()
+    }
+
+    /// Where the time of the exchanges went.
+    #[must_use]
+    pub fn seconds(&self) -> ExchangeSeconds {
+        self.seconds
     }
 
     /// Radius over which grains are smoothed [m].
@@ -308,7 +337,11 @@ impl Exchange {
             drag: &self.drag,
             source: &self.source,
         };
-        self.solver.advance(&request, &mut self.values)
+        let begun = Instant::now();
+        self.solver.advance(&request, &mut self.values)?;
+        self.seconds.solver += self.values.seconds;
+        self.seconds.wire += begun.elapsed().as_secs_f64() - self.values.seconds;
+        Ok(())
     }
 }
 

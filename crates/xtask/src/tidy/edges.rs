@@ -16,7 +16,7 @@ const ALLOWED: [(&str, &[&str]); 14] = [
     ("oracle", &["core"]),
     ("scene", &["core"]),
     ("study", &["core", "oracle", "scene"]),
-    ("bench", &["core", "coupling", "dem", "field", "oracle", "scene", "study"]),
+    ("bench", &["core", "coupling", "dem", "field", "gas", "oracle", "scene", "study"]),
     ("cli", &["core", "laws", "field", "gas", "dem", "coupling", "oracle", "scene", "study"]),
     ("xtask", &[]),
 ];
