@@ -1,7 +1,5 @@
 //! What charge does to a bubbling bed.
 
-#![expect(clippy::print_stdout, reason = "how much, for whoever asks with --nocapture")]
-
 use crate::support::{Case, Curve, Table, full_size, plot};
 
 /// Radius of the grains [m], their weight [N], and gaps over the radius at which they touch a wall.

@@ -178,6 +178,8 @@ void Foam::electricField::takeBoundary()
         }
         start += pV.size();
     }
+    // What V starts from is what cells have, whether this process had it or was told
+    V_.correctBoundaryConditions();
 }
 
 

@@ -163,6 +163,51 @@ fn fixed_bed_has_erguns_pressure_drop() {
 }
 
 #[test]
+fn a_bed_lifts_off_at_erguns_least_velocity() {
+    const DIAMETER: f64 = 1e-3;
+    const SOLIDS: f64 = 1500.0;
+    let void = 1.0 - PI / 6.0;
+    let weight = (1.0 - void) * (SOLIDS - DENSITY) * 9.81;
+    let (mut slow, mut fast) = (0.0, 10.0);
+    for _ in 0..100 {
+        let middle = 0.5 * (slow + fast);
+        if ergun(void, DIAMETER, middle) < weight { slow = middle } else { fast = middle }
+    }
+    let gravity = Vector3::new(0.0, 0.0, -9.81);
+    let rises = |over: f64| {
+        let inlet = format!("type fixedValue; value uniform (0 0 {});", over * slow);
+        let sides = [
+            cyclic(),
+            cyclic(),
+            cyclic(),
+            cyclic(),
+            ["patch", &inlet, "type zeroGradient;"],
+            ["patch", "type zeroGradient;", "type fixedValue; value uniform 0;"],
+        ];
+        let (_bench, flow) = solver([8.0, 8.0, 160.0], [4, 4, 80], &sides, 1);
+        let domain = flow.mesh().domain().clone();
+        let (gas, settings) = gas(DragLaw::Gidaspow, GasModel::A);
+        let mut exchange =
+            Exchange::new(gas, settings, gravity, Box::new(flow), DIAMETER).expect("a good mesh");
+        // Free gas below and above a bed of 120 layers: its ends, smoothed over two and a half, resist less.
+        let places = lattice([8, 8, 120], DIAMETER).map(|[x, y, z]| [x, y, z + 20e-3]);
+        let grains = Grains::new(places, 0.5 * DIAMETER, SOLIDS);
+        let mut force = Vector3::zeros();
+        for k in 0..60 {
+            exchange.exchange(&domain, &grains.view(), 1e-3, f64::from(k) * 1e-3).expect("a good flow");
+            force = grains.hold(&mut exchange, 1e-3);
+        }
+        let weight = 9.81 * grains.inverse_mass.iter().map(|inverse| 1.0 / inverse).sum::<f64>();
+        println!(
+            "{over} of the least velocity {slow:.4} m/s: the gas carries {:.4} of the bed",
+            force.z / weight
+        );
+        force.z > weight
+    };
+    assert!(!rises(0.95) && rises(1.05));
+}
+
+#[test]
 fn grains_and_gas_keep_their_momentum() {
     let (_bench, flow) = solver([10.0; 3], [5; 3], &[cyclic(); 6], 1);
     let mesh = flow.mesh().clone();

@@ -5,6 +5,7 @@ mod failures;
 mod fields;
 mod function_object;
 mod gas;
+mod gas_runs;
 mod meshes;
 mod sharing;
 

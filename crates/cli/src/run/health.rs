@@ -47,9 +47,11 @@ impl Allowed {
             pull > 0.0 && domain.is_some_and(|domain| domain.is_periodic(axis))
         });
         let limited = field.is_some_and(|field| field.force_limit.is_some());
+        let charging =
+            scene.electric_field.as_ref().is_some_and(|field| field.enable_collision_charge_transfer);
         Self {
             overlap: scene.time.as_ref().is_some_and(|time| time.allow_overlap),
-            work: round || limited || scene.gas.is_some() || scene.charge_transfer.is_some(),
+            work: round || limited || scene.gas.is_some() || charging,
         }
     }
 }

@@ -1,0 +1,125 @@
+//! Runs in a gas whose flow OpenFOAM computes, as a user starts them.
+
+use super::good;
+use amberfield_tests::foam_case::{brick, write_gas_case};
+use amberfield_tests::{Answer, Bench};
+
+const SCENE: &str = "[domain]\nmin_m = [0, 0, 0]\nmax_m = [0.01, 0.01, 0.03]\nboundary = { x = 'grounded', y = 'grounded', z = 'insulating' }\n\
+    [[materials]]\nname = 'glass'\ndensity_kg_m3 = 1000.0\nyoung_Pa = 5e5\npoisson = 0.22\nrestitution = 0.6\nfriction = 0.3\n\
+    [[walls]]\nplane = { point_m = [0, 0, 0], normal = [0, 0, 1] }\nmaterial = 'glass'\n\
+    [particles]\non_exit = 'delete'\ngenerate = { material = 'glass', count = 700, radius_m = 5e-4, seed = 3, region = { box = { min_m = [0, 0, 0], max_m = [0.01, 0.01, 0.012] } }, charge_C = { bipolar = 2e-12 } }\n\
+    [electric_field]\ntuning = 'model'\ntolerance = 2e-2\n\
+    [gas]\nflow = 'solver'\ndrag = 'di_felice'\ninterval_s = 2e-4\ndensity_kg_m3 = 1.2\nviscosity_Pa_s = 1.8e-5\n\
+    [time]\nstep_s = 'auto'\nend_s = 8e-3\ngravity_m_s2 = [0, 0, -9.81]\n\
+    [solver]\nopenfoam_case = 'foam'\ntimeout_s = 20.0\n[output]\nformats = ['csv']\n";
+
+/// A box that air enters from below, with a case around it.
+fn bed(scene: &str) -> Bench {
+    let bench = Bench::new(scene);
+    let wall = ("wall", "type slip;", "type zeroGradient;", "type fixedValue; value uniform 0;");
+    let below = (
+        "patch",
+        "type interstitialInletVelocity; inletVelocity uniform (0 0 0.6); alpha alpha; value uniform (0 0 0.6);",
+        "type fixedFluxPressure; value uniform 0;",
+        "type zeroGradient;",
+    );
+    let above = (
+        "patch",
+        "type pressureInletOutletVelocity; value uniform (0 0 0);",
+        "type fixedValue; value uniform 0;",
+        "type zeroGradient;",
+    );
+    let sides = [wall, wall, wall, wall, below, above];
+    let (edges, cells) = ([10.0, 10.0, 30.0], [4, 4, 12]);
+    let (mesh, velocity) = brick(edges, cells, &sides.map(|side| (side.0, side.1)));
+    let (_, pressure) = brick(edges, cells, &sides.map(|side| (side.0, side.2)));
+    let (_, potential) = brick(edges, cells, &sides.map(|side| (side.0, side.3)));
+    write_gas_case(&bench, &mesh, &velocity, &pressure, 1.5e-5);
+    bench.write(
+        "foam/0/phiE",
+        format!(
+            "FoamFile {{ version 2.0; format ascii; class volScalarField; object phiE; }}\n\
+             dimensions [1 2 -3 0 0 -1 0];\ninternalField uniform 0;\nboundaryField {{ {potential} }}\n"
+        ),
+    );
+    bench
+}
+
+fn run(bench: &Bench, out: &str, more: &[&str]) -> Answer {
+    bench.run(&[&["run", "scene.toml", "--out", out, "--no-progress"], more].concat())
+}
+
+/// The grains at the end.
+fn grains(bench: &Bench, out: &str) -> String {
+    let last = bench.names(&format!("{out}/particles")).pop().unwrap_or_default();
+    bench.read(&format!("{out}/particles/{last}"))
+}
+
+#[test]
+fn a_run_in_a_gas_goes_on_bit_for_bit_from_its_checkpoint() {
+    for overlap in ["false", "true"] {
+        let set = format!("electric_field.overlap={overlap}");
+        let bench = bed(SCENE);
+        good(&run(&bench, "whole", &["--set", &set]));
+        good(&run(&bench, "parts", &["--set", &set, "--steps", "150"]));
+        let checkpoint = bench.names("parts/checkpoints").pop().expect("a checkpoint");
+        let checkpoint = format!("parts/checkpoints/{checkpoint}");
+        let answer = run(&bench, "parts", &["--set", &set, "--resume", &checkpoint]);
+        good(&answer);
+        assert!(answer.stderr.contains("of momentum"), "{}", answer.stderr);
+        assert_eq!(grains(&bench, "parts"), grains(&bench, "whole"), "overlap = {overlap}");
+    }
+}
+
+#[test]
+fn a_run_in_a_gas_needs_no_charge_and_is_the_same_with_two_ranks() {
+    let scene = SCENE.replace("charge_C = { bipolar = 2e-12 }", "charge_C = { constant = 0.0 }");
+    let scene = scene.replace("[electric_field]\ntuning = 'model'\ntolerance = 2e-2\n", "");
+    let bench = bed(&scene);
+    std::fs::remove_file(bench.path("foam/0/phiE")).expect("it is there");
+    good(&run(&bench, "one", &[]));
+    good(&run(&bench, "two", &["--set", "solver.ranks=2"]));
+    let numbers = |out: &str| -> Vec<f64> {
+        grains(&bench, out)
+            .lines()
+            .skip(1)
+            .flat_map(|line| {
+                line.split(',').skip(1).take(3).map(|x| x.parse().unwrap()).collect::<Vec<f64>>()
+            })
+            .collect()
+    };
+    let (one, two) = (numbers("one"), numbers("two"));
+    let apart = one.iter().zip(&two).map(|(a, b)| (a - b).abs()).fold(0.0, f64::max);
+    assert!(one.len() > 2000 && one.len() == two.len() && apart < 1e-7, "{apart}");
+    let plan = bench.run(&["explain", "scene.toml"]);
+    good(&plan);
+    assert!(plan.stdout.contains("flow of another process, model A; drag (di_felice)"), "{}", plan.stdout);
+    assert!(plan.stdout.contains("gas interval"), "{}", plan.stdout);
+}
+
+#[test]
+fn a_gas_that_cannot_be_is_refused_by_name() {
+    let refused = |bench: &Bench, set: &[&str], code: i32, expected: &str| {
+        let options: Vec<&str> = set.iter().flat_map(|set| ["--set", *set]).collect();
+        let answer = run(bench, "out", &options);
+        assert_eq!(answer.code, Some(code), "{}", answer.stderr);
+        assert!(answer.stderr.contains(expected), "{expected}: {}", answer.stderr);
+    };
+    let bench = bed(SCENE);
+    refused(&bench, &["gas.velocity_m_s=[0, 0, 1]"], 2, "gas.velocity_m_s");
+    refused(&bench, &["gas.flow=\"uniform\""], 2, "needs a flow that is computed");
+    refused(&bench, &["gas.model=\"C\""], 2, "gas.model");
+    refused(&bench, &["gas.model=\"B\"", "gas.viscous_force=true"], 2, "acts on the gas alone");
+    refused(&bench, &["solver.on_solver_loss=\"wait\""], 2, "needs solver.on_solver_loss = \"stop\"");
+    refused(&bench, &["solver.application=\"DPMFoam\""], 2, "cannot compute the flow");
+    refused(&bench, &["gas.interval_s=1.0"], 2, "gas.interval_s is");
+    refused(&bench, &["gas.viscosity_Pa_s=1e-3"], 3, "constant/transportProperties");
+    refused(&bench, &["gas.smoothing_length_m=-1.0"], 2, "gas.smoothing_length_m");
+    let alone = bed(&SCENE[..SCENE.find("[solver]").expect("it has one")]);
+    refused(&alone, &[], 2, "somebody must compute it; add [solver]");
+    std::fs::remove_file(bench.path("foam/0/phiE")).expect("it is there");
+    refused(&bench, &[], 3, "no potential 0/phiE");
+    std::fs::remove_file(bench.path("foam/0/U")).expect("it is there");
+    refused(&bench, &[], 3, "the field solver is gone");
+    assert!(!bench.path("out").exists(), "nothing has begun");
+}
