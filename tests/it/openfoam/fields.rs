@@ -85,3 +85,21 @@ fn coarse_mesh_errs_by_less_than_8_in_1000() {
         assert!(error < MOST, "{charge}: {error:e}");
     }
 }
+
+#[test]
+fn far_tolerances_from_a_tenth_to_1e_12_all_end_and_agree() {
+    let scene = FoamBox::grounded();
+    let field = |tolerance: &str| {
+        let set = format!("electric_field.far_tolerance={tolerance}");
+        good(&scene.field("out.csv", &["--set", &set]));
+        scene.e("out.csv")
+    };
+    let exact = field("1e-12");
+    let mut before = f64::INFINITY;
+    for tolerance in ["1e-1", "1e-3", "1e-6", "1e-9"] {
+        let error = difference(&field(tolerance), &exact);
+        let asked: f64 = tolerance.parse().unwrap();
+        assert!(error <= before && error < asked, "{tolerance}: {error:e}");
+        before = error;
+    }
+}
