@@ -61,6 +61,8 @@ pub struct GasFlow {
     pub viscous_force: bool,
     /// Whether grains in a shear flow are lifted.
     pub saffman_lift: bool,
+    /// Whether the gas flows on while the grains move, who then feel the flow of an interval earlier.
+    pub overlap: bool,
 }
 
 /// The gas around the grains.

@@ -5,7 +5,7 @@ use crate::launch::{Process, RUN, program_name};
 use crate::link::{Link, Message, SideOf};
 use crate::mesh_message::{MeshPart, assemble};
 use crate::remote::{Remote, alive, check_sender, of_solver};
-use crate::remote_flow::RemoteFlow;
+use crate::remote_flow::{PendingFlow, RemoteFlow};
 use crate::run_root::RunRoot;
 use amberfield_core::Vector3;
 use amberfield_field::FieldError;
@@ -58,6 +58,7 @@ pub struct RemoteSolver {
 pub(crate) struct Shared {
     pub(crate) remote: Remote,
     pending: Pending,
+    pub(crate) flow: PendingFlow,
 }
 
 /// A run whose solver has not come yet.
@@ -121,7 +122,11 @@ impl Announced {
         let cells: Vec<usize> = parts.iter().map(|part| part.centres.len()).collect();
         let mesh = Arc::new(assemble(&parts)?);
         let remote = Remote::new(settings, &cells, (link, process, root));
-        let shared = Arc::new(Mutex::new(Shared { remote, pending: Pending::default() }));
+        let shared = Arc::new(Mutex::new(Shared {
+            remote,
+            pending: Pending::default(),
+            flow: PendingFlow::default(),
+        }));
         Ok(RemoteSolver { mesh, shared })
     }
 }
@@ -148,6 +153,7 @@ impl RemoteSolver {
 impl Shared {
     /// Asks for the far field without waiting.
     fn send(&mut self, request: &FarRequest<'_>) -> Result<(), CouplingError> {
+        self.clear_the_way()?;
         let (radius, shape) = match request.source {
             FarSource::Clouds { radius_m, shape } => (radius_m, shape),
             FarSource::NearestCell => (0.0, 0.0),
@@ -209,7 +215,7 @@ impl Shared {
             self.take(&mut values)?;
             self.pending.answer = Some(values);
         }
-        Ok(())
+        self.take_flow_early()
     }
 }
 

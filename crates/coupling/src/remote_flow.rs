@@ -9,6 +9,15 @@ use amberfield_wire::{Layout, MessageKind, Section, Sections, WireError};
 use std::ops::Range;
 use std::sync::{Arc, Mutex};
 
+/// What the gas does while the grains move on.
+#[derive(Debug, Default)]
+pub(crate) struct PendingFlow {
+    /// Whether an answer is open; ∇·τ and the vorticity that it was asked for.
+    asked: Option<[bool; 2]>,
+    /// The answer, if somebody else's question came after it.
+    answer: Option<FlowValues>,
+}
+
 /// Asks the process that also solves for the far field, if the scene has one.
 #[derive(Debug)]
 pub struct RemoteFlow {
@@ -19,46 +28,6 @@ pub struct RemoteFlow {
 impl RemoteFlow {
     pub(crate) fn new(mesh: Arc<FarMesh>, shared: Arc<Mutex<Shared>>) -> Self {
         Self { mesh, shared }
-    }
-
-    fn exchange(&self, request: &FlowRequest<'_>, values: &mut FlowValues) -> Result<(), CouplingError> {
-        let shared = &mut *locked(&self.shared);
-        shared.clear_the_way()?;
-        let flag = |wanted: bool| f64::from(u8::from(wanted));
-        let numbers = [
-            request.interval_s,
-            request.time_s,
-            request.gas.density_kg_m3,
-            request.gas.viscosity_pa_s,
-            flag(request.flow.model == GasModel::B),
-            flag(request.flow.viscous_force),
-            flag(request.flow.saffman_lift),
-        ];
-        let cells = request.void_fraction.len();
-        let layout = |layout: Layout| {
-            layout
-                .with::<f64>(Section::Interval, numbers.len())
-                .with::<f64>(Section::VoidFraction, cells)
-                .with::<f64>(Section::DragCoefficient, cells)
-                .with::<[f64; 3]>(Section::MomentumSource, cells)
-        };
-        shared.remote.ask(MessageKind::Grains, layout, |layout, payload| {
-            layout.section_mut::<f64>(payload, Section::Interval)?.copy_from_slice(&numbers);
-            let void_fraction = layout.section_mut::<f64>(payload, Section::VoidFraction)?;
-            void_fraction.copy_from_slice(request.void_fraction);
-            layout.section_mut::<f64>(payload, Section::DragCoefficient)?.copy_from_slice(request.drag);
-            write_vectors(layout.section_mut(payload, Section::MomentumSource)?, request.source);
-            Ok(())
-        })?;
-        values.velocity.resize(cells, Vector3::zeros());
-        values.pressure_gradient.resize(cells, Vector3::zeros());
-        let count_if = |wanted: bool| if wanted { cells } else { 0 };
-        values.viscous_force.resize(count_if(request.flow.viscous_force), Vector3::zeros());
-        values.vorticity.resize(count_if(request.flow.saffman_lift), Vector3::zeros());
-        (values.iterations, values.residual, values.seconds) = (0, 0.0, 0.0);
-        shared.remote.collect(MessageKind::Flow, |cells, _, sections| read(cells, sections, values))?;
-        let outcome = sound(values);
-        shared.remote.noted(outcome)
     }
 
     fn fetch(&self) -> Result<Vec<Vec<f64>>, CouplingError> {
@@ -92,13 +61,82 @@ impl RemoteFlow {
     }
 }
 
+impl Shared {
+    /// Asks for the flow without waiting.
+    fn send_flow(&mut self, request: &FlowRequest<'_>) -> Result<(), CouplingError> {
+        self.clear_the_way()?;
+        let flag = |wanted: bool| f64::from(u8::from(wanted));
+        let wanted = [request.flow.viscous_force, request.flow.saffman_lift];
+        let numbers = [
+            request.interval_s,
+            request.time_s,
+            request.gas.density_kg_m3,
+            request.gas.viscosity_pa_s,
+            flag(request.flow.model == GasModel::B),
+            flag(wanted[0]),
+            flag(wanted[1]),
+        ];
+        let cells = request.void_fraction.len();
+        let layout = |layout: Layout| {
+            layout
+                .with::<f64>(Section::Interval, numbers.len())
+                .with::<f64>(Section::VoidFraction, cells)
+                .with::<f64>(Section::DragCoefficient, cells)
+                .with::<[f64; 3]>(Section::MomentumSource, cells)
+        };
+        self.remote.ask(MessageKind::Grains, layout, |layout, payload| {
+            layout.section_mut::<f64>(payload, Section::Interval)?.copy_from_slice(&numbers);
+            let void_fraction = layout.section_mut::<f64>(payload, Section::VoidFraction)?;
+            void_fraction.copy_from_slice(request.void_fraction);
+            layout.section_mut::<f64>(payload, Section::DragCoefficient)?.copy_from_slice(request.drag);
+            write_vectors(layout.section_mut(payload, Section::MomentumSource)?, request.source);
+            Ok(())
+        })?;
+        self.flow.asked = Some(wanted);
+        Ok(())
+    }
+
+    /// Waits for the flow that was asked for last.
+    fn take_flow(&mut self, values: &mut FlowValues) -> Result<(), CouplingError> {
+        if let Some(answer) = self.flow.answer.take() {
+            *values = answer;
+            return Ok(());
+        }
+        let [viscous_force, vorticity] = self.flow.asked.take().unwrap_or_default();
+        let cells = self.remote.cell_count();
+        let count_if = |wanted: bool| if wanted { cells } else { 0 };
+        values.velocity.resize(cells, Vector3::zeros());
+        values.pressure_gradient.resize(cells, Vector3::zeros());
+        values.viscous_force.resize(count_if(viscous_force), Vector3::zeros());
+        values.vorticity.resize(count_if(vorticity), Vector3::zeros());
+        (values.iterations, values.residual, values.seconds) = (0, 0.0, 0.0);
+        self.remote.collect(MessageKind::Flow, |cells, _, sections| read(cells, sections, values))?;
+        let outcome = sound(values);
+        self.remote.noted(outcome)
+    }
+
+    /// Takes the flow that is open, before somebody else asks.
+    pub(crate) fn take_flow_early(&mut self) -> Result<(), CouplingError> {
+        if self.flow.asked.is_some() {
+            let mut values = FlowValues::default();
+            self.take_flow(&mut values)?;
+            self.flow.answer = Some(values);
+        }
+        Ok(())
+    }
+}
+
 impl FlowSolver for RemoteFlow {
     fn mesh(&self) -> &FarMesh {
         &self.mesh
     }
 
-    fn advance(&mut self, request: &FlowRequest<'_>, values: &mut FlowValues) -> Result<(), GasError> {
-        self.exchange(request, values).map_err(of_gas)
+    fn ask(&mut self, request: &FlowRequest<'_>) -> Result<(), GasError> {
+        locked(&self.shared).send_flow(request).map_err(of_gas)
+    }
+
+    fn take(&mut self, values: &mut FlowValues) -> Result<(), GasError> {
+        locked(&self.shared).take_flow(values).map_err(of_gas)
     }
 
     fn state(&mut self) -> Result<Vec<Vec<f64>>, GasError> {

@@ -52,11 +52,17 @@ pub trait FlowSolver: fmt::Debug + Send + Sync {
     /// The cells.
     fn mesh(&self) -> &FarMesh;
 
-    /// Advances the flow by an interval.
+    /// Asks for the flow after an interval, without waiting.
+    ///
+    /// # Errors
+    /// A solver that is lost.
+    fn ask(&mut self, request: &FlowRequest<'_>) -> Result<(), GasError>;
+
+    /// Waits for the answer to what was asked last.
     ///
     /// # Errors
     /// A solver that is lost or does not converge.
-    fn advance(&mut self, request: &FlowRequest<'_>, values: &mut FlowValues) -> Result<(), GasError>;
+    fn take(&mut self, values: &mut FlowValues) -> Result<(), GasError>;
 
     /// Everything that the solver needs to go on bit for bit: numbers of its own, by process.
     ///

@@ -22,6 +22,7 @@ fn gas(drag: DragLaw, model: GasModel) -> (Gas, GasFlow) {
         smoothing_length_m: None,
         viscous_force: false,
         saffman_lift: false,
+        overlap: false,
     };
     let gas = Gas {
         drag,

@@ -59,12 +59,14 @@ fn grains(bench: &Bench, out: &str) -> String {
 fn a_run_in_a_gas_goes_on_bit_for_bit_from_its_checkpoint() {
     for overlap in ["false", "true"] {
         let set = format!("electric_field.overlap={overlap}");
+        let gas = format!("gas.overlap={overlap}");
+        let sets = ["--set", &set, "--set", &gas];
         let bench = bed(SCENE);
-        good(&run(&bench, "whole", &["--set", &set]));
-        good(&run(&bench, "parts", &["--set", &set, "--steps", "150"]));
+        good(&run(&bench, "whole", &sets));
+        good(&run(&bench, "parts", &[&sets[..], &["--steps", "150"]].concat()));
         let checkpoint = bench.names("parts/checkpoints").pop().expect("a checkpoint");
         let checkpoint = format!("parts/checkpoints/{checkpoint}");
-        let answer = run(&bench, "parts", &["--set", &set, "--resume", &checkpoint]);
+        let answer = run(&bench, "parts", &[&sets[..], &["--resume", &checkpoint]].concat());
         good(&answer);
         assert!(answer.stderr.contains("of momentum"), "{}", answer.stderr);
         assert_eq!(grains(&bench, "parts"), grains(&bench, "whole"), "overlap = {overlap}");

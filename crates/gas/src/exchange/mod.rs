@@ -93,6 +93,10 @@ pub struct Exchange {
     values: FlowValues,
     response_s: f64,
     warned: bool,
+    /// Interval that the solver works on [s].
+    asked_s: Option<f64>,
+    /// Its answer, if it had to be taken before its time.
+    early: Option<FlowValues>,
     seconds: ExchangeSeconds,
 }
 
@@ -128,6 +132,8 @@ impl Exchange {
             values: FlowValues::default(),
             response_s: f64::INFINITY,
             warned: false,
+            asked_s: None,
+            early: None,
             seconds: ExchangeSeconds::default(),
             solver,
         })
@@ -146,18 +152,18 @@ impl Exchange {
     ) -> Result<(), GasError> {
         let (begun, before) = (Instant::now(), self.seconds);
         self.book();
+        self.take()?;
         self.place(domain, grains);
         self.fill_void(grains);
         if self.values.velocity.is_empty() {
             // The flow as it is at the start.
-            self.advance(0.0, time_s)?;
+            self.ask(0.0, time_s)?;
+            self.take()?;
         }
         self.resist(grains, interval_s);
-        self.advance(interval_s, time_s)?;
-        let volumes = self.solver.mesh().volumes();
-        for (cell, owed) in self.owed.iter_mut().enumerate() {
-            let given = self.values.velocity[cell] * self.drag[cell] - self.source[cell];
-            *owed -= given * (interval_s * volumes[cell]);
+        self.ask(interval_s, time_s)?;
+        if !self.flow.overlap {
+            self.take()?;
         }
         self.hold(grains);
         let beyond = self.seconds.solver + self.seconds.wire - before.solver - before.wire;
@@ -327,7 +333,7 @@ impl Exchange {
         }
     }
 
-    fn advance(&mut self, interval_s: f64, time_s: f64) -> Result<(), GasError> {
+    fn ask(&mut self, interval_s: f64, time_s: f64) -> Result<(), GasError> {
         let request = FlowRequest {
             interval_s,
             time_s,
@@ -338,9 +344,32 @@ impl Exchange {
             source: &self.source,
         };
         let begun = Instant::now();
-        self.solver.advance(&request, &mut self.values)?;
-        self.seconds.solver += self.values.seconds;
-        self.seconds.wire += begun.elapsed().as_secs_f64() - self.values.seconds;
+        self.solver.ask(&request)?;
+        self.seconds.wire += begun.elapsed().as_secs_f64();
+        self.asked_s = Some(interval_s);
+        Ok(())
+    }
+
+    /// Takes the flow that was asked for, if any, and books what the gas gave meanwhile.
+    fn take(&mut self) -> Result<(), GasError> {
+        let Some(interval_s) = self.asked_s.take() else { return Ok(()) };
+        match self.early.take() {
+            Some(values) => self.values = values,
+            None => {
+                let begun = Instant::now();
+                self.solver.take(&mut self.values)?;
+                // What the solver did while grains moved on was not waited for.
+                let waited = begun.elapsed().as_secs_f64();
+                let solving = self.values.seconds.min(waited);
+                self.seconds.solver += solving;
+                self.seconds.wire += waited - solving;
+            }
+        }
+        let volumes = self.solver.mesh().volumes();
+        for (cell, owed) in self.owed.iter_mut().enumerate() {
+            let given = self.values.velocity[cell] * self.drag[cell] - self.source[cell];
+            *owed -= given * (interval_s * volumes[cell]);
+        }
         Ok(())
     }
 }

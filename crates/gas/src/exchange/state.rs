@@ -16,6 +16,11 @@ pub struct ExchangeState {
     booked: Vector3<f64>,
     values: FlowValues,
     response_s: f64,
+    /// What the solver works on, and what it found.
+    asked_s: Option<f64>,
+    early: Option<FlowValues>,
+    drag: Vec<f64>,
+    source: Vec<Vector3<f64>>,
     /// The solver's own.
     solver: Vec<Vec<f64>>,
 }
@@ -34,7 +39,17 @@ impl Exchange {
     /// # Errors
     /// A solver that is lost.
     pub fn state(&mut self) -> Result<ExchangeState, GasError> {
+        // Only a solver that has answered has a state.
+        if self.asked_s.is_some() && self.early.is_none() {
+            let mut early = FlowValues::default();
+            self.solver.take(&mut early)?;
+            self.early = Some(early);
+        }
         Ok(ExchangeState {
+            asked_s: self.asked_s,
+            early: self.early.clone(),
+            drag: self.drag.clone(),
+            source: self.source.clone(),
             held: self.held.clone(),
             places: self.places.clone(),
             cells: self.cells.clone(),
@@ -52,7 +67,8 @@ impl Exchange {
     /// A solver that is lost, a state of another mesh.
     pub fn restore(&mut self, state: &ExchangeState) -> Result<(), GasError> {
         let (cells, theirs) = (self.owed.len(), state.owed.len());
-        let in_mesh = state.cells.iter().all(|&cell| (cell as usize) < cells);
+        let by_cell = [state.drag.len(), state.source.len()];
+        let in_mesh = by_cell == [cells; 2] && state.cells.iter().all(|&cell| (cell as usize) < cells);
         if cells != theirs || state.cells.len() != state.places.len() || !in_mesh {
             return Err(GasError::Settings(format!(
                 "the checkpoint's gas is one of {theirs} cells, the mesh has {cells}; resume with the case that wrote it"
@@ -66,6 +82,10 @@ impl Exchange {
         self.booked = state.booked;
         self.values.clone_from(&state.values);
         self.response_s = state.response_s;
+        self.asked_s = state.asked_s;
+        self.early.clone_from(&state.early);
+        self.drag.clone_from(&state.drag);
+        self.source.clone_from(&state.source);
         self.share();
         Ok(())
     }

@@ -8,7 +8,8 @@ use amberfield_core::{DragLaw, Gas, GasFlow, GasModel};
 /// Density [kg/m³] and viscosity [Pa·s] of dry air at 20 °C and 101325 Pa (CRC Handbook of Chemistry and Physics).
 const AIR: (f64, f64) = (1.204, 1.82e-5);
 /// Keys of a gas whose flow is computed.
-const OF_FLOW: [&str; 5] = ["model", "interval_s", "smoothing_length_m", "viscous_force", "saffman_lift"];
+const OF_FLOW: [&str; 6] =
+    ["model", "interval_s", "smoothing_length_m", "viscous_force", "saffman_lift", "overlap"];
 
 /// Reads `[gas]`: air of 20 °C at rest where nothing else is said.
 pub(super) fn read_gas(document: &Table<'_>) -> Result<Option<Gas>, SceneError> {
@@ -47,6 +48,7 @@ fn read_flow(document: &Table<'_>, table: &Table<'_>) -> Result<GasFlow, SceneEr
         smoothing_length_m: table.number("smoothing_length_m", Range::positive(1e3))?,
         viscous_force: table.boolean("viscous_force")?.unwrap_or(false),
         saffman_lift: table.boolean("saffman_lift")?.unwrap_or(false),
+        overlap: table.boolean("overlap")?.unwrap_or(false),
     };
     if flow.viscous_force && flow.model == GasModel::B {
         return Err(table.bad(
