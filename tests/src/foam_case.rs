@@ -67,13 +67,13 @@ pub fn write_gas_case(bench: &Bench, mesh: &str, velocity: &str, pressure: &str,
     file(
         "system/fvSchemes",
         "dictionary",
-        "ddtSchemes { default Euler; } gradSchemes { default Gauss linear; } divSchemes { default Gauss linear; div(alphaPhi,U) Gauss limitedLinearV 1; }\n\
+        "ddtSchemes { default Euler; } gradSchemes { default Gauss linear; } divSchemes { default Gauss linear; div(alphaPhi,U) Gauss limitedLinearV 1; \"div\\(alphaPhi,(k|epsilon)\\)\" Gauss upwind; }\n\
          laplacianSchemes { default Gauss linear corrected; } interpolationSchemes { default linear; } snGradSchemes { default corrected; }\n",
     );
     file(
         "system/fvSolution",
         "dictionary",
-        "solvers { \"p.*\" { solver GAMG; smoother GaussSeidel; tolerance 1e-10; relTol 0; } \"U.*\" { solver PBiCGStab; preconditioner DILU; tolerance 1e-12; relTol 0; } }\n\
+        "solvers { \"p.*\" { solver GAMG; smoother GaussSeidel; tolerance 1e-10; relTol 0; } \"(U|k|epsilon).*\" { solver PBiCGStab; preconditioner DILU; tolerance 1e-12; relTol 0; } }\n\
          PIMPLE { nOuterCorrectors 4; nCorrectors 3; nNonOrthogonalCorrectors 0; momentumPredictor yes; pRefCell 0; pRefValue 0; }\n",
     );
     file(
