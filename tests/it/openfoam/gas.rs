@@ -324,10 +324,10 @@ fn a_grain_falls_at_the_terminal_speed_of_its_drag_law() {
     let gravity = Vector3::new(0.0, 0.0, -9.81);
     let cases = [
         (DragLaw::Stokes, 2e-5),
-        (DragLaw::SchillerNaumann, 2e-5),
+        (DragLaw::SchillerNaumann, 1.2e-5),
         (DragLaw::SchillerNaumann, 1e-4),
         (DragLaw::SchillerNaumann, 4e-4),
-        (DragLaw::SchillerNaumann, 1.5e-3),
+        (DragLaw::SchillerNaumann, 1.55e-3),
     ];
     for (law, diameter) in cases {
         let weight = (2500.0 - DENSITY) * PI / 6.0 * diameter * diameter * diameter * 9.81;

@@ -2,7 +2,9 @@
 
 use super::good;
 use amberfield_tests::foam_case::{brick, write_gas_case};
-use amberfield_tests::{Answer, Bench};
+use amberfield_tests::{Answer, Bench, DEADLINE};
+use std::process::Stdio;
+use std::time::{Duration, Instant};
 
 const SCENE: &str = "[domain]\nmin_m = [0, 0, 0]\nmax_m = [0.01, 0.01, 0.03]\nboundary = { x = 'grounded', y = 'grounded', z = 'insulating' }\n\
     [[materials]]\nname = 'glass'\ndensity_kg_m3 = 1000.0\nyoung_Pa = 5e5\npoisson = 0.22\nrestitution = 0.6\nfriction = 0.3\n\
@@ -94,6 +96,27 @@ fn a_run_in_a_gas_goes_on_bit_for_bit_from_its_checkpoint() {
         assert!(answer.stderr.contains("of momentum"), "{}", answer.stderr);
         assert_eq!(grains(&bench, "parts"), grains(&bench, "whole"), "overlap = {overlap}");
     }
+}
+
+#[test]
+fn a_run_in_a_gas_that_was_killed_ends_as_if_it_had_not_been() {
+    let bench = bed(SCENE);
+    let often = ["--set", "output.checkpoint_every_s=1e-3"];
+    good(&run(&bench, "whole", &often));
+    let begin = [&["run", "scene.toml", "--out", "killed", "--no-progress"], &often[..]].concat();
+    let mut child = bench.command(&begin).stderr(Stdio::null()).stdout(Stdio::null()).spawn().unwrap();
+    let begun = Instant::now();
+    while bench.names("killed/checkpoints").len() < 3 {
+        assert!(begun.elapsed() < DEADLINE, "checkpoints must come");
+        std::thread::sleep(Duration::from_millis(2));
+    }
+    child.kill().unwrap();
+    child.wait().unwrap();
+    let checkpoint = bench.names("killed/checkpoints").into_iter().rfind(|name| name.ends_with(".amber"));
+    let checkpoint = format!("killed/checkpoints/{}", checkpoint.expect("a whole checkpoint"));
+    good(&run(&bench, "killed", &[&often[..], &["--resume", &checkpoint]].concat()));
+    assert_eq!(grains(&bench, "killed"), grains(&bench, "whole"));
+    good(&bench.run(&["doctor", "--clean"]));
 }
 
 #[test]
