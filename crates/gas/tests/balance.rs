@@ -149,3 +149,85 @@ fn a_state_of_another_mesh_is_refused() {
     let error = exchange(4).restore(&state).unwrap_err().to_string();
     assert!(error.contains("27 cells") && error.contains("64"), "{error}");
 }
+
+/// A gas of one velocity and a mass of its own, which takes all momentum that it is given.
+#[derive(Debug)]
+struct Lump {
+    mesh: FarMesh,
+    mass: f64,
+    velocity: Vector3<f64>,
+}
+
+impl FlowSolver for Lump {
+    fn mesh(&self) -> &FarMesh {
+        &self.mesh
+    }
+
+    fn ask(&mut self, request: &FlowRequest<'_>) -> Result<(), GasError> {
+        let volumes = self.mesh.volumes();
+        let drag: f64 = request.drag.iter().zip(volumes).map(|(drag, volume)| drag * volume).sum();
+        let source: Vector3<f64> =
+            request.source.iter().zip(volumes).map(|(source, volume)| source * *volume).sum();
+        let interval = request.interval_s;
+        self.velocity = (self.velocity * self.mass + source * interval) / (self.mass + drag * interval);
+        Ok(())
+    }
+
+    fn take(&mut self, values: &mut FlowValues) -> Result<(), GasError> {
+        values.velocity = vec![self.velocity; self.mesh.cell_count()];
+        values.pressure_gradient = vec![Vector3::zeros(); self.mesh.cell_count()];
+        Ok(())
+    }
+
+    fn state(&mut self) -> Result<Vec<Vec<f64>>, GasError> {
+        Ok(Vec::new())
+    }
+
+    fn restore(&mut self, _: &[Vec<f64>]) -> Result<(), GasError> {
+        Ok(())
+    }
+}
+
+/// Largest slip of the second half of two hundred exchanges over the first, grains being `loading` times as heavy as the gas, exchanges an interval of so many response times apart.
+fn slip_that_stays(loading: f64, interval_over_response: f64, overlap: bool) -> f64 {
+    let domain = Domain::new(Vector3::zeros(), Vector3::repeat(0.02), [[Boundary::Periodic; 2]; 3]).unwrap();
+    let mesh = FarMesh::new(FarMeshParts::of_box(&domain, [3; 3]).unwrap()).unwrap();
+    let (count, mass, radius) = (50, 1e-6, 5e-4);
+    let solver = Lump { mesh, mass: count as f64 * mass / loading, velocity: Vector3::zeros() };
+    let (gas, flow) = gas(DragLaw::Stokes, GasModel::A, false);
+    let flow = GasFlow { overlap, ..flow };
+    let mut exchange = Exchange::new(gas, flow, Vector3::zeros(), Box::new(solver), 1e-3).unwrap();
+    let place = |i: usize| [1.0, 1.7, 2.3].map(|step: f64| 0.02 * (0.37 * step * i as f64).fract());
+    let centre: Vec<_> = (0..count).map(place).map(|[x, y, z]| [x, y, z, radius]).collect();
+    let mut velocity = vec![Vector3::new(1.0, 0.0, 0.0); count];
+    let inverse_mass = vec![1.0 / mass; count];
+    let interval = interval_over_response * mass / (6.0 * std::f64::consts::PI * 1.8e-5 * radius);
+    let (mut early, mut late) = (0.0_f64, 0.0_f64);
+    for k in 0..200 {
+        let view =
+            GrainsView { centre: &centre, velocity: &velocity, angular: &[], inverse_mass: &inverse_mass };
+        exchange.exchange(&domain, &view, interval, f64::from(k) * interval).unwrap();
+        let step = interval / 50.0;
+        for _ in 0..50 {
+            let mut force = vec![Vector3::zeros(); count];
+            exchange.add_forces(&velocity, step, &mut force);
+            velocity.iter_mut().zip(&force).for_each(|(v, force)| *v += force / mass * step);
+        }
+        let slip = (exchange.values().velocity[0] - velocity[0]).norm();
+        if k < 100 { early = early.max(slip) } else { late = late.max(slip) }
+    }
+    late / early
+}
+
+/// The guard is one response time; five are stable still.
+#[test]
+fn exchanges_as_rare_as_the_guard_allows_and_rarer_are_stable() {
+    for overlap in [false, true] {
+        for loading in [0.1, 1.0, 10.0, 100.0] {
+            for over in [0.1, 0.5, 1.0, 2.0, 5.0] {
+                let stays = slip_that_stays(loading, over, overlap);
+                assert!(stays < 1e-3, "{overlap} {loading} {over}: {stays:e}");
+            }
+        }
+    }
+}
