@@ -190,13 +190,14 @@ impl FlowSolver for Lump {
 
 /// Largest slip of the second half of two hundred exchanges over the first, grains being `loading` times as heavy as the gas, exchanges an interval of so many response times apart.
 fn slip_that_stays(loading: f64, interval_over_response: f64, overlap: bool) -> f64 {
-    let domain = Domain::new(Vector3::zeros(), Vector3::repeat(0.02), [[Boundary::Periodic; 2]; 3]).unwrap();
-    let mesh = FarMesh::new(FarMeshParts::of_box(&domain, [3; 3]).unwrap()).unwrap();
+    let domain =
+        Domain::new(Vector3::zeros(), Vector3::repeat(0.02), [[Boundary::Periodic; 2]; 3]).expect("good");
+    let mesh = FarMesh::new(FarMeshParts::of_box(&domain, [3; 3]).expect("good")).expect("good");
     let (count, mass, radius) = (50, 1e-6, 5e-4);
     let solver = Lump { mesh, mass: count as f64 * mass / loading, velocity: Vector3::zeros() };
     let (gas, flow) = gas(DragLaw::Stokes, GasModel::A, false);
     let flow = GasFlow { overlap, ..flow };
-    let mut exchange = Exchange::new(gas, flow, Vector3::zeros(), Box::new(solver), 1e-3).unwrap();
+    let mut exchange = Exchange::new(gas, flow, Vector3::zeros(), Box::new(solver), 1e-3).expect("good");
     let place = |i: usize| [1.0, 1.7, 2.3].map(|step: f64| 0.02 * (0.37 * step * i as f64).fract());
     let centre: Vec<_> = (0..count).map(place).map(|[x, y, z]| [x, y, z, radius]).collect();
     let mut velocity = vec![Vector3::new(1.0, 0.0, 0.0); count];
@@ -206,7 +207,7 @@ fn slip_that_stays(loading: f64, interval_over_response: f64, overlap: bool) -> 
     for k in 0..200 {
         let view =
             GrainsView { centre: &centre, velocity: &velocity, angular: &[], inverse_mass: &inverse_mass };
-        exchange.exchange(&domain, &view, interval, f64::from(k) * interval).unwrap();
+        exchange.exchange(&domain, &view, interval, f64::from(k) * interval).expect("good");
         let step = interval / 50.0;
         for _ in 0..50 {
             let mut force = vec![Vector3::zeros(); count];
