@@ -184,3 +184,70 @@ impl FieldSide {
         })
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use amberfield_wire::Block64;
+    use std::mem::MaybeUninit;
+
+    /// A message of one interval and three cells.
+    fn message(numbers: [f64; 7], void_fraction: f64, drag: f64, source: f64) -> (Header, Vec<Block64>) {
+        let layout = Layout::new(Header::new(MessageKind::Grains, 1, 1))
+            .with::<f64>(Section::Interval, 7)
+            .with::<f64>(Section::VoidFraction, 3)
+            .with::<f64>(Section::DragCoefficient, 3)
+            .with::<[f64; 3]>(Section::MomentumSource, 3);
+        let mut payload = vec![MaybeUninit::uninit(); layout.blocks()];
+        layout.section_mut::<f64>(&mut payload, Section::Interval).unwrap().copy_from_slice(&numbers);
+        let voids = layout.section_mut::<f64>(&mut payload, Section::VoidFraction).unwrap();
+        voids.copy_from_slice(&[1.0, void_fraction, 0.5]);
+        layout.section_mut::<f64>(&mut payload, Section::DragCoefficient).unwrap()[1] = drag;
+        layout.section_mut::<[f64; 3]>(&mut payload, Section::MomentumSource).unwrap()[1][2] = source;
+        // SAFETY: the sections cover every block.
+        let payload = payload.into_iter().map(|block| unsafe { block.assume_init() }).collect();
+        (*layout.header(), payload)
+    }
+
+    const NUMBERS: [f64; 7] = [1e-4, 0.0, 1.2, 1.8e-5, 0.0, 1.0, 0.0];
+
+    #[test]
+    fn what_grains_do_to_a_gas_is_checked_before_it_is_used() {
+        let read = |void, drag, source, cells| {
+            let (header, payload) = message(NUMBERS, void, drag, source);
+            GrainsInCells::read(&Sections::new(&header, &payload), cells).map(|grains| grains.drag[0])
+        };
+        assert_eq!(read(0.5, 2.0, -3.0, 1..3), Ok(2.0));
+        let count = WireError::Count { section: Section::VoidFraction, theirs: 3, ours: 4 };
+        assert_eq!(read(0.5, 2.0, -3.0, 1..4), Err(count));
+        let refused = |section, value: f64, found: Result<f64, WireError>| match found {
+            Err(WireError::Number { section: theirs, place: 0, value: bad }) => {
+                assert!(theirs == section && (bad == value || value.is_nan() && bad.is_nan()));
+            }
+            other => panic!("{other:?}"),
+        };
+        for bad in [0.0, -0.1, 1.1, f64::NAN] {
+            refused(Section::VoidFraction, bad, read(bad, 2.0, 0.0, 1..3));
+        }
+        for bad in [-1.0, f64::INFINITY, f64::NAN] {
+            refused(Section::DragCoefficient, bad, read(0.5, bad, 0.0, 1..3));
+        }
+        refused(Section::MomentumSource, f64::INFINITY, read(0.5, 1.0, f64::INFINITY, 1..3));
+    }
+
+    #[test]
+    fn an_interval_that_makes_no_sense_is_refused() {
+        let read = |numbers| {
+            let (header, payload) = message(numbers, 1.0, 0.0, 0.0);
+            AskedFlow::read(&Sections::new(&header, &payload))
+        };
+        let asked = read(NUMBERS).unwrap();
+        assert!(asked.viscous_force && !asked.vorticity && !asked.model_b && asked.interval_s == 1e-4);
+        for (place, bad) in [(0, -1.0), (0, f64::NAN), (1, f64::INFINITY), (2, 0.0), (3, -1.0), (4, f64::NAN)]
+        {
+            let mut numbers = NUMBERS;
+            numbers[place] = bad;
+            assert!(matches!(read(numbers), Err(WireError::Number { place: found, .. }) if found == place));
+        }
+    }
+}
