@@ -156,6 +156,8 @@ Foam::solverPerformance Foam::electricField::solve(const dimensionedScalar& epsi
         controls_.set("tolerance", demProcess_.request().tolerance);
         performance = VEqn.solve(controls_);
     }
+    // OpenFOAM keeps a record of every solve until the time changes, which here it may not
+    const_cast<dictionary&>(mesh_.solverPerformanceDict()).remove(V_.name());
     return performance;
 }
 
