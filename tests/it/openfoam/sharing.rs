@@ -125,7 +125,13 @@ fn a_long_run_holds_no_more_at_its_end_than_early_on() {
     let last = *seen.iter().rfind(|held| held.step <= steps * 98 / 100).unwrap();
     println!("{early:?}\n{last:?}");
     assert!(last.step > steps / 2, "{last:?}");
-    assert_eq!((last.files, last.shared), (early.files, early.shared));
+    assert_eq!(last.shared, early.shared);
+    // A process that looks whether its peer lives has two files more for a moment.
+    let least = |from: u64, to: u64| {
+        let files = seen.iter().filter(|held| (from..to).contains(&held.step)).map(|held| held.files);
+        files.reduce(|a, b| [a[0].min(b[0]), a[1].min(b[1])])
+    };
+    assert_eq!(least(steps * 8 / 10, steps * 98 / 100), least(steps / 10, steps * 3 / 10));
     for (early, last) in early.memory.iter().zip(last.memory) {
         assert!(last <= early + FLAT, "{early} bytes early on, {last} at the end");
     }
