@@ -3,8 +3,8 @@
 #![expect(clippy::unwrap_used, reason = "helpers of tests fail as tests do")]
 
 use crate::Bench;
+use amberfield_coupling::foam_command;
 use std::fmt::Write as _;
-use std::process::Command;
 
 /// The six sides of a hexahedron whose corners are numbered as OpenFOAM does.
 const SIDES: [[usize; 4]; 6] =
@@ -16,14 +16,7 @@ const CORE: f64 = 0.42;
 
 /// Writes a case into the folder `foam`: a recipe for its mesh, conditions of the potential by patch, a scheme for gradients.
 pub fn write_case(bench: &Bench, mesh: &str, conditions: &str, gradient: &str) {
-    for folder in ["foam/0", "foam/system"] {
-        std::fs::create_dir_all(bench.path(folder)).unwrap();
-    }
-    let file = |name: &str, class: &str, text: &str| {
-        let object = name.rsplit('/').next().unwrap();
-        let head = format!("FoamFile {{ version 2.0; format ascii; class {class}; object {object}; }}\n");
-        bench.write(&format!("foam/{name}"), head + text);
-    };
+    let file = |name: &str, class: &str, text: &str| write_file(bench, name, class, text);
     file("system/blockMeshDict", "dictionary", mesh);
     file(
         "system/controlDict",
@@ -39,25 +32,28 @@ pub fn write_case(bench: &Bench, mesh: &str, conditions: &str, gradient: &str) {
         ),
     );
     file("system/fvSolution", "dictionary", "solvers {}\n");
-    file(
-        "0/phiE",
-        "volScalarField",
-        &format!(
-            "dimensions [1 2 -3 0 0 -1 0];\ninternalField uniform 0;\nboundaryField {{ {conditions} }}\n"
-        ),
+    write_potential(bench, conditions);
+}
+
+/// Writes the potential of the case in the folder `foam`, with conditions by patch.
+pub fn write_potential(bench: &Bench, conditions: &str) {
+    let text = format!(
+        "dimensions [1 2 -3 0 0 -1 0];\ninternalField uniform 0;\nboundaryField {{ {conditions} }}\n"
     );
+    write_file(bench, "0/phiE", "volScalarField", &text);
+}
+
+/// Writes a file of the case in the folder `foam`, its header first.
+pub fn write_file(bench: &Bench, name: &str, class: &str, text: &str) {
+    let (folder, object) = name.rsplit_once('/').unwrap();
+    std::fs::create_dir_all(bench.path("foam").join(folder)).unwrap();
+    let head = format!("FoamFile {{ version 2.0; format ascii; class {class}; object {object}; }}\n");
+    bench.write(&format!("foam/{name}"), head + text);
 }
 
 /// Writes a case of a gas into the folder `foam`: a recipe for its mesh, conditions of U and p (over the density) by patch, kinematic viscosity [m²/s].
 pub fn write_gas_case(bench: &Bench, mesh: &str, velocity: &str, pressure: &str, viscosity: f64) {
-    for folder in ["foam/0", "foam/system", "foam/constant"] {
-        std::fs::create_dir_all(bench.path(folder)).unwrap();
-    }
-    let file = |name: &str, class: &str, text: &str| {
-        let object = name.rsplit('/').next().unwrap();
-        let head = format!("FoamFile {{ version 2.0; format ascii; class {class}; object {object}; }}\n");
-        bench.write(&format!("foam/{name}"), head + text);
-    };
+    let file = |name: &str, class: &str, text: &str| write_file(bench, name, class, text);
     file("system/blockMeshDict", "dictionary", mesh);
     file(
         "system/controlDict",
@@ -101,12 +97,9 @@ pub fn write_gas_case(bench: &Bench, mesh: &str, velocity: &str, pressure: &str,
 /// # Panics
 /// When it fails.
 pub fn foam_program(bench: &Bench, program: &str, options: &[&str]) {
-    let mut command = Command::new(program);
+    let mut command = foam_command(program);
     // Some leave pictures of what they found where they run.
     command.args(options).arg("-case").arg(bench.path("foam")).current_dir(bench.path(""));
-    if std::env::var_os("WM_PROJECT_DIR").is_none() {
-        command.env("WM_PROJECT_DIR", "/usr/share/openfoam");
-    }
     let output = command.output().expect("OpenFOAM is there; `cargo xtask openfoam` installs it");
     assert!(output.status.success(), "{program}: {}", String::from_utf8_lossy(&output.stderr));
 }

@@ -5,11 +5,12 @@ use crate::launch::{Process, RUN, program_name};
 use crate::link::{Link, Message, SideOf};
 use crate::mesh_message::{MeshPart, assemble};
 use crate::remote::{Remote, alive, check_sender, of_solver};
-use crate::remote_flow::{PendingFlow, RemoteFlow};
+use crate::remote_flow::RemoteFlow;
 use crate::run_root::RunRoot;
 use amberfield_core::Vector3;
 use amberfield_field::FieldError;
 use amberfield_field::far::{FarField, FarMesh, FarRequest, FarSource, FarValues};
+use amberfield_gas::FlowValues;
 use amberfield_wire::{Layout, MessageKind, Section, Sections, WireError};
 use std::ops::Range;
 use std::path::PathBuf;
@@ -39,11 +40,11 @@ pub struct SolverSettings {
 
 /// What is being solved while the grains move on.
 #[derive(Debug, Default)]
-struct Pending {
-    /// Charges of the question that is open.
-    asked: Option<usize>,
+pub(crate) struct Pending<Asked, Answer> {
+    /// What must be known of the question that is open.
+    pub(crate) asked: Option<Asked>,
     /// Its answer, if somebody else's question came after it.
-    answer: Option<FarValues>,
+    pub(crate) answer: Option<Answer>,
 }
 
 /// The far field of another process.
@@ -57,8 +58,10 @@ pub struct RemoteSolver {
 #[derive(Debug)]
 pub(crate) struct Shared {
     pub(crate) remote: Remote,
-    pending: Pending,
-    pub(crate) flow: PendingFlow,
+    /// Charges that were asked for.
+    far: Pending<usize, FarValues>,
+    /// Whether ∇·τ and the vorticity were.
+    pub(crate) flow: Pending<[bool; 2], FlowValues>,
 }
 
 /// A run whose solver has not come yet.
@@ -122,11 +125,8 @@ impl Announced {
         let cells: Vec<usize> = parts.iter().map(|part| part.centres.len()).collect();
         let mesh = Arc::new(assemble(&parts)?);
         let remote = Remote::new(settings, &cells, (link, process, root));
-        let shared = Arc::new(Mutex::new(Shared {
-            remote,
-            pending: Pending::default(),
-            flow: PendingFlow::default(),
-        }));
+        let shared =
+            Arc::new(Mutex::new(Shared { remote, far: Pending::default(), flow: Pending::default() }));
         Ok(RemoteSolver { mesh, shared })
     }
 }
@@ -186,17 +186,17 @@ impl Shared {
             }
             Ok(())
         })?;
-        self.pending.asked = Some(request.positions.len());
+        self.far.asked = Some(request.positions.len());
         Ok(())
     }
 
     /// Waits for the answer to what was asked last.
     fn take(&mut self, values: &mut FarValues) -> Result<(), CouplingError> {
-        if let Some(answer) = self.pending.answer.take() {
+        if let Some(answer) = self.far.answer.take() {
             *values = answer;
             return Ok(());
         }
-        let charges = self.pending.asked.take().unwrap_or(0);
+        let charges = self.far.asked.take().unwrap_or(0);
         let count = self.remote.cell_count();
         values.potential.resize(count, 0.0);
         values.e.resize(count, Vector3::zeros());
@@ -210,10 +210,10 @@ impl Shared {
 
     /// Takes the answer to what is open, before somebody else asks: messages come in the order of their questions.
     pub(crate) fn clear_the_way(&mut self) -> Result<(), CouplingError> {
-        if self.pending.asked.is_some() {
+        if self.far.asked.is_some() {
             let mut values = FarValues::default();
             self.take(&mut values)?;
-            self.pending.answer = Some(values);
+            self.far.answer = Some(values);
         }
         self.take_flow_early()
     }

@@ -1,7 +1,7 @@
 //! Starting the field process, watching it, ending it.
 
 use crate::{CouplingError, SolverSettings};
-use std::ffi::OsString;
+use std::ffi::{OsStr, OsString};
 use std::os::unix::process::CommandExt as _;
 use std::path::{Path, PathBuf};
 use std::process::{Child, Command, ExitStatus, Stdio};
@@ -38,10 +38,10 @@ impl Process {
             failed(format!("its case {} cannot be opened: {error}", settings.case.display()))
         })?;
         provide_mesh(&case).map_err(failed)?;
-        let mut command = Command::new(&program);
+        let mut command = foam_command(&program);
         if settings.ranks > 1 {
             decompose(&case, settings.ranks).map_err(failed)?;
-            command = Command::new("mpirun");
+            command = foam_command("mpirun");
             command.args(["--oversubscribe", "--allow-run-as-root", "-np"]).arg(settings.ranks.to_string());
             command.arg(&program).arg("-parallel");
         }
@@ -51,9 +51,6 @@ impl Process {
             // Its function object reads the run's name, and is found, in the environment.
             Some(_) => command.env(RUN, run).env(LIBRARIES.0, library_path()),
         };
-        if std::env::var_os(PROJECT.0).is_none() {
-            command.env(PROJECT.0, PROJECT.1);
-        }
         let (out, err) = match &settings.log {
             None => (Stdio::null(), Stdio::null()),
             Some(path) => {
@@ -144,6 +141,16 @@ fn library_path() -> OsString {
     std::env::join_paths(own.into_iter().chain(std::env::split_paths(&known))).unwrap_or(known)
 }
 
+/// A program linked to OpenFOAM, with what its libraries want to know.
+#[must_use]
+pub fn foam_command(program: impl AsRef<OsStr>) -> Command {
+    let mut command = Command::new(program);
+    if std::env::var_os(PROJECT.0).is_none() {
+        command.env(PROJECT.0, PROJECT.1);
+    }
+    command
+}
+
 /// Makes the mesh of a case that has only a recipe for it.
 fn provide_mesh(case: &Path) -> Result<(), String> {
     let has = |path: &str| case.join(path).exists();
@@ -183,11 +190,8 @@ fn decompose(case: &Path, ranks: u32) -> Result<(), String> {
 
 /// Runs one of OpenFOAM's own programs on a case.
 fn tool(name: &str, case: &Path, options: &[&str]) -> Result<(), String> {
-    let mut command = Command::new(name);
+    let mut command = foam_command(name);
     command.args(options).arg("-case").arg(case).stdin(Stdio::null());
-    if std::env::var_os(PROJECT.0).is_none() {
-        command.env(PROJECT.0, PROJECT.1);
-    }
     let output = command.output().map_err(|error| format!("{name}: {error}"))?;
     if output.status.success() {
         return Ok(());

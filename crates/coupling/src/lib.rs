@@ -22,7 +22,7 @@ pub use dem_side::{Announced, RemoteSolver, SolverSettings};
 pub use error::CouplingError;
 pub use field_flow::{AskedFlow, FlowReply, GrainsInCells};
 pub use field_side::{Asked, FieldSide, Reply, Request};
-pub use launch::{program_name, solver_program};
+pub use launch::{foam_command, program_name, solver_program};
 pub use mesh_arrays::MeshArrays;
 pub use mesh_message::{MeshPart, assemble};
 pub use patient::PatientSolver;

@@ -9,15 +9,6 @@ use amberfield_wire::{Layout, MessageKind, Section, Sections, WireError};
 use std::ops::Range;
 use std::sync::{Arc, Mutex};
 
-/// What the gas does while the grains move on.
-#[derive(Debug, Default)]
-pub(crate) struct PendingFlow {
-    /// Whether an answer is open; ∇·τ and the vorticity that it was asked for.
-    asked: Option<[bool; 2]>,
-    /// The answer, if somebody else's question came after it.
-    answer: Option<FlowValues>,
-}
-
 /// Asks the process that also solves for the far field, if the scene has one.
 #[derive(Debug)]
 pub struct RemoteFlow {

@@ -184,18 +184,25 @@ impl Simulation {
         }
         let wall_histories = self.walls.as_ref().map(|walls| walls.histories(&self.grains));
         self.grains.spatial_order(&mut self.keys, &mut self.order);
-        self.grains.reorder(&self.order);
-        if let Some(field) = &mut self.field {
-            field.reorder(&self.order);
-        }
-        if let Some(gas) = self.gas.as_mut().and_then(GasStage::flowing_mut) {
-            gas.reorder(&self.order);
-        }
+        let order = std::mem::take(&mut self.order);
+        self.reorder(&order);
+        self.order = order;
         self.neighbours.build(&self.domain, &self.grains, &self.order);
         if let Some(walls) = &mut self.walls {
             walls.build(&self.domain, &self.grains, self.skin, &wall_histories.unwrap_or_default());
         }
         self.travel = 0.0;
+    }
+
+    /// Takes in a new order of the grains, here and in the stages that keep something by grain.
+    fn reorder(&mut self, order: &[u32]) {
+        self.grains.reorder(order);
+        if let Some(field) = &mut self.field {
+            field.reorder(order);
+        }
+        if let Some(gas) = self.gas.as_mut().and_then(GasStage::flowing_mut) {
+            gas.reorder(order);
+        }
     }
 
     /// Handles grains outside; whether any was removed.
@@ -236,13 +243,7 @@ impl Simulation {
         let wall_histories = self.walls.as_ref().map(|walls| walls.histories(&self.grains));
         let mut keep: Vec<u32> = (0..self.grains.len() as u32).collect();
         keep.retain(|&i| gone.binary_search(&(i as usize)).is_err());
-        self.grains.reorder(&keep);
-        if let Some(field) = &mut self.field {
-            field.reorder(&keep);
-        }
-        if let Some(gas) = self.gas.as_mut().and_then(GasStage::flowing_mut) {
-            gas.reorder(&keep);
-        }
+        self.reorder(&keep);
         self.resize_scratch();
         self.neighbours.build(&self.domain, &self.grains, &keep);
         if let Some(walls) = &mut self.walls {

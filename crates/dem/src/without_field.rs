@@ -87,7 +87,7 @@ pub(crate) mod gas {
 
     /// State of an exchange.
     #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
-    pub enum ExchangeState {}
+    pub(crate) enum ExchangeState {}
 
     impl ExchangeState {
         pub(crate) fn fits(&self, _: usize) -> bool {

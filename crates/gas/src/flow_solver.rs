@@ -5,7 +5,7 @@ use amberfield_core::{Gas, GasFlow, Vector3};
 use amberfield_field::far::FarMesh;
 use serde::{Deserialize, Serialize};
 use std::fmt;
-use std::sync::Arc;
+use std::sync::{Arc, Mutex, PoisonError};
 
 /// What a solver is asked: the flow at the end of an interval, with grains that stay as they are at its start.
 ///
@@ -86,6 +86,16 @@ impl ConnectFlow {
     #[must_use]
     pub fn new(connect: impl Fn() -> Result<Box<dyn FlowSolver>, GasError> + Send + Sync + 'static) -> Self {
         Self(Arc::new(connect))
+    }
+
+    /// The one that is there, once: whoever asks again has lost it.
+    #[must_use]
+    pub fn once(solver: impl FlowSolver + 'static) -> Self {
+        let waiting = Mutex::new(Some(Box::new(solver) as Box<dyn FlowSolver>));
+        Self::new(move || {
+            let solver = waiting.lock().unwrap_or_else(PoisonError::into_inner).take();
+            solver.ok_or_else(|| GasError::Solver("the solver of the flow was lost".to_owned()))
+        })
     }
 
     /// Reaches it.

@@ -13,6 +13,8 @@ use rayon::prelude::*;
 const OVER_CELL: f64 = 1.25;
 /// Radius R at least, over the largest diameter: grains in cells smaller than they are spread over some 27 times their volume.
 const OVER_DIAMETER: f64 = 1.5;
+/// Grains that one thread takes at a time.
+pub(crate) const CHUNK: usize = 1024;
 /// Corner of a cell from its centre, at most, over the farthest of its faces.
 const CORNER: f64 = 2.0;
 
@@ -42,6 +44,21 @@ pub struct Share {
     pub cell: u32,
     /// The share; a grain's shares add up to one.
     pub weight: f64,
+}
+
+/// Shares of many grains, grain by grain.
+#[derive(Clone, Debug, Default)]
+pub(crate) struct Shares {
+    /// Where each grain's begin; one more than there are grains.
+    first: Vec<usize>,
+    all: Vec<Share>,
+}
+
+impl Shares {
+    /// Those of a grain.
+    pub(crate) fn of(&self, grain: usize) -> &[Share] {
+        &self.all[self.first[grain]..self.first[grain + 1]]
+    }
 }
 
 impl Mapping {
@@ -94,6 +111,31 @@ impl Mapping {
     #[must_use]
     pub fn radius(&self) -> f64 {
         self.radius
+    }
+
+    /// Shares of all grains at their places [m] in their cells.
+    pub(crate) fn fill(&self, places: &[Vector3<f64>], cells: &[u32], shares: &mut Shares) {
+        let parts: Vec<(Vec<usize>, Vec<Share>)> = places
+            .par_chunks(CHUNK)
+            .zip(cells.par_chunks(CHUNK))
+            .map(|(places, cells)| {
+                let mut found = Vec::new();
+                let one = |(place, &cell): (&Vector3<f64>, &u32)| {
+                    self.shares(place, cell, &mut found);
+                    found.len()
+                };
+                let ends = places.iter().zip(cells).map(one).collect();
+                (ends, found)
+            })
+            .collect();
+        shares.first.clear();
+        shares.first.push(0);
+        shares.all.clear();
+        for (ends, found) in parts {
+            let begin = shares.all.len();
+            shares.first.extend(ends.into_iter().map(|end| begin + end));
+            shares.all.extend(found);
+        }
     }
 
     /// Adds the shares of a grain at a point [m] in a cell.

@@ -1,7 +1,7 @@
 //! Runs in a gas whose flow OpenFOAM computes, as a user starts them.
 
 use super::good;
-use amberfield_tests::foam_case::{brick, write_gas_case};
+use amberfield_tests::foam_case::{brick, write_file, write_gas_case, write_potential};
 use amberfield_tests::{Answer, Bench, DEADLINE};
 use std::process::Stdio;
 use std::time::{Duration, Instant};
@@ -37,26 +37,17 @@ fn bed(scene: &str) -> Bench {
     let (_, pressure) = brick(edges, cells, &sides.map(|side| (side.0, side.2)));
     let (_, potential) = brick(edges, cells, &sides.map(|side| (side.0, side.3)));
     write_gas_case(&bench, &mesh, &velocity, &pressure, 1.5e-5);
-    bench.write(
-        "foam/0/phiE",
-        format!(
-            "FoamFile {{ version 2.0; format ascii; class volScalarField; object phiE; }}\n\
-             dimensions [1 2 -3 0 0 -1 0];\ninternalField uniform 0;\nboundaryField {{ {potential} }}\n"
-        ),
-    );
+    write_potential(&bench, &potential);
     bench
 }
 
 /// k and ε, of OpenFOAM's own model.
 fn add_turbulence(bench: &Bench) {
-    let head = |class: &str, object: &str| {
-        format!("FoamFile {{ version 2.0; format ascii; class {class}; object {object}; }}\n")
-    };
     let field = |name: &str, dimensions: &str, value: f64, above: &str| {
         let text = format!(
             "dimensions {dimensions};\ninternalField uniform {value};\nboundaryField {{ z0 {{ type fixedValue; value uniform {value}; }} \".*\" {{ type {above}; value uniform {value}; }} }}\n"
         );
-        bench.write(&format!("foam/0/{name}"), head("volScalarField", name) + &text);
+        write_file(bench, &format!("0/{name}"), "volScalarField", &text);
     };
     field("k", "[0 2 -2 0 0 0 0]", 1e-3, "zeroGradient");
     field("epsilon", "[0 2 -3 0 0 0 0]", 1e-2, "zeroGradient");
@@ -64,7 +55,7 @@ fn add_turbulence(bench: &Bench) {
     let solution = bench.read("foam/system/fvSolution").replace("nOuterCorrectors 4;", "");
     bench.write("foam/system/fvSolution", solution);
     let model = "simulationType RAS;\nRAS { RASModel kEpsilon; turbulence on; printCoeffs off; }\n";
-    bench.write("foam/constant/turbulenceProperties", head("dictionary", "turbulenceProperties") + model);
+    write_file(bench, "constant/turbulenceProperties", "dictionary", model);
 }
 
 fn run(bench: &Bench, out: &str, more: &[&str]) -> Answer {

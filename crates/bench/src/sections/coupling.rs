@@ -1,5 +1,6 @@
 //! What it costs to have the far field solved by another process.
 
+use super::change_file;
 use crate::Context;
 use crate::beds::{self, Cloud};
 use crate::page::{Table, figure, verdict};
@@ -12,7 +13,7 @@ use amberfield_coupling::{
 use amberfield_dem::{FieldStageSetup, Simulation};
 use amberfield_field::far::{Connect, FarField, FarRequest, FarSolver, FarSource, FarValues};
 use amberfield_field::{ElectricField, FieldValues, Wanted};
-use anyhow::{Context as _, Result};
+use anyhow::Result;
 use serde::{Deserialize, Serialize};
 use std::io::{Read as _, Write as _};
 use std::os::unix::net::UnixStream;
@@ -303,17 +304,14 @@ fn provide_case(root: &Path, case: &Path, edge: f64, cells_along: usize, low: Ve
     let floor = |z: f64| {
         [corner(0.0, 0.0, z), corner(1.0, 0.0, z), corner(1.0, 1.0, z), corner(0.0, 1.0, z)].join(" ")
     };
-    let path = case.join("system/blockMeshDict");
-    let mut text = std::fs::read_to_string(&path)?;
-    for (from, to) in [
-        ("(0 0 0) (6 0 0) (6 6 0) (0 6 0)", floor(0.0)),
-        ("(0 0 10) (6 0 10) (6 6 10) (0 6 10)", floor(1.0)),
-        ("(12 12 20)", format!("({cells_along} {cells_along} {cells_along})")),
-    ] {
-        anyhow::ensure!(text.contains(from), "{} has no {from}", path.display());
-        text = text.replace(from, &to);
-    }
-    std::fs::write(&path, text).with_context(|| path.display().to_string())
+    change_file(
+        &case.join("system/blockMeshDict"),
+        &[
+            ("(0 0 0) (6 0 0) (6 6 0) (0 6 0)", &floor(0.0)),
+            ("(0 0 10) (6 0 10) (6 6 10) (0 6 10)", &floor(1.0)),
+            ("(12 12 20)", &format!("({cells_along} {cells_along} {cells_along})")),
+        ],
+    )
 }
 
 /// The section's part of the page.

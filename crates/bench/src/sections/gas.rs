@@ -1,25 +1,23 @@
 //! Goldschmidt's bed beside DPMFoam, the solver of OpenFOAM's own that moves grains and gas: time, and what comes out.
 
+use super::change_file;
 use crate::Context;
 use crate::page::{Table, figure, verdict};
 use crate::store::Store;
 use amberfield_core::Particles;
-use amberfield_coupling::{Announced, SolverSettings, solver_program};
+use amberfield_coupling::{Announced, SolverSettings, foam_command, solver_program};
 use amberfield_dem::{GasSetup, Setup, Simulation};
-use amberfield_gas::{ConnectFlow, ExchangeSeconds, FlowSolver, GasError};
+use amberfield_gas::{ConnectFlow, ExchangeSeconds};
 use amberfield_scene::{Purpose, read_scene};
 use anyhow::{Context as _, Result, ensure};
 use serde::{Deserialize, Serialize};
 use std::path::{Path, PathBuf};
 use std::process::{Command, Stdio};
-use std::sync::Mutex;
 use std::time::{Duration, Instant};
 
 const NAME: &str = "gas";
 /// Where Debian's package of examples has the case.
 const EXAMPLE: &str = "/usr/share/doc/openfoam-examples/examples/lagrangian/DPMFoam/Goldschmidt";
-/// What running OpenFOAM's programs wants to know, and where Debian has it.
-const PROJECT: (&str, &str) = ("WM_PROJECT_DIR", "/usr/share/openfoam");
 /// Simulated time between two looks [s], and how many there are.
 const LOOKS: (f64, usize) = (0.01, 5);
 const QUICK: (f64, usize) = (2e-4, 1);
@@ -68,7 +66,7 @@ pub(crate) fn measure(context: &Context, root: &Path) -> Result<()> {
 fn ours(root: &Path, place: &Path, lattice: &[[f64; 3]], looks: (f64, usize)) -> Result<Vec<Row>> {
     copy(&root.join("cases/goldschmidt/foam"), &place.join("foam"))?;
     let foam = place.join("foam");
-    change(&foam.join("system/controlDict"), &[("0.1", &format!("{}", looks.0)), ("binary", "ascii")])?;
+    change_file(&foam.join("system/controlDict"), &[("0.1", &format!("{}", looks.0)), ("binary", "ascii")])?;
     let scene = read_scene(&root.join("cases/goldschmidt/scene.toml"), &[], Purpose::Run)?;
     let at = |(place, mut grain): (&[f64; 3], amberfield_core::Grain)| {
         grain.position = (*place).into();
@@ -116,12 +114,7 @@ fn solver_of(case: PathBuf, place: &Path) -> Result<ConnectFlow> {
         far_tolerance: 1e-6,
         log: Some(place.join("log.amberPimpleFoam")),
     };
-    let flow = Mutex::new(Some(Announced::new(settings)?.connect()?.flow()));
-    Ok(ConnectFlow::new(move || {
-        let flow = flow.lock().ok().and_then(|mut flow| flow.take());
-        let flow = flow.ok_or_else(|| GasError::Solver("there is one only".to_owned()))?;
-        Ok(Box::new(flow) as Box<dyn FlowSolver>)
-    }))
+    Ok(ConnectFlow::once(Announced::new(settings)?.connect()?.flow()))
 }
 
 /// What a run has now, after so much time [s].
@@ -157,7 +150,7 @@ impl Dpm {
         let case = place.join("dpm");
         copy(Path::new(EXAMPLE), &case)?;
         let end = between * count as f64;
-        change(
+        change_file(
             &case.join("system/controlDict"),
             &[
                 ("endTime         5;", &format!("endTime {end};")),
@@ -224,11 +217,8 @@ impl Dpm {
 
     /// Runs a program on the case; what it prints.
     fn program(&self, name: &str) -> Result<String> {
-        let mut command = Command::new(name);
+        let mut command = foam_command(name);
         command.arg("-case").arg(&self.case).stdin(Stdio::null());
-        if std::env::var_os(PROJECT.0).is_none() {
-            command.env(PROJECT.0, PROJECT.1);
-        }
         let output = command.output().with_context(|| name.to_owned())?;
         ensure!(output.status.success(), "{name}: {}", String::from_utf8_lossy(&output.stderr));
         Ok(String::from_utf8_lossy(&output.stdout).into_owned())
@@ -250,16 +240,6 @@ fn copy(from: &Path, to: &Path) -> Result<()> {
     let status = Command::new("cp").arg("-r").arg(from).arg(to).status()?;
     ensure!(status.success(), "cannot copy {}", from.display());
     Ok(())
-}
-
-/// Replaces texts in a file that must be there.
-fn change(path: &Path, texts: &[(&str, &str)]) -> Result<()> {
-    let mut text = std::fs::read_to_string(path).with_context(|| path.display().to_string())?;
-    for (from, to) in texts {
-        ensure!(text.contains(from), "{} has no {from}", path.display());
-        text = text.replace(from, to);
-    }
-    Ok(std::fs::write(path, text)?)
 }
 
 /// The section's part of the page.

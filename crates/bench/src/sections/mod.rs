@@ -10,3 +10,16 @@ pub(crate) mod open;
 mod peak;
 pub(crate) mod rates;
 pub(crate) mod scaling;
+
+use anyhow::{Context as _, Result, ensure};
+use std::path::Path;
+
+/// Replaces texts of a file, which must be there.
+fn change_file(path: &Path, texts: &[(&str, &str)]) -> Result<()> {
+    let mut text = std::fs::read_to_string(path).with_context(|| path.display().to_string())?;
+    for (from, to) in texts {
+        ensure!(text.contains(from), "{} has no {from}", path.display());
+        text = text.replace(from, to);
+    }
+    Ok(std::fs::write(path, text)?)
+}

@@ -7,7 +7,7 @@ use amberfield_coupling::{
     Announced, CouplingError, PatientSolver, RemoteSolver, SolverSettings, program_name,
 };
 use amberfield_field::far::{Connect, FarField};
-use amberfield_gas::{ConnectFlow, FlowSolver, GasError};
+use amberfield_gas::ConnectFlow;
 use amberfield_scene::{ElectricFieldSettings, Scene, SolverLoss, SolverSettings as Asked};
 use std::sync::{Mutex, PoisonError};
 use std::time::Duration;
@@ -56,18 +56,12 @@ pub(crate) fn connect_solver(scene: &mut Scene) -> Result<Solver, Failure> {
         Some(domain) => agree(domain, mesh.domain())?,
     }
     let waits = solver.on_solver_loss == SolverLoss::Wait;
-    let flow = flows.then(|| {
-        let flow = Mutex::new(Some(connected.flow()));
-        ConnectFlow::new(move || match taken(&flow) {
-            Some(flow) => Ok(Box::new(flow) as Box<dyn FlowSolver>),
-            None => Err(GasError::Solver("the solver of the flow was lost".to_owned())),
-        })
-    });
+    let flow = flows.then(|| ConnectFlow::once(connected.flow()));
     // The one that is there first, then new ones.
     let first = Mutex::new(Some(connected));
     let field = asked.is_some().then(|| {
         Connect::new(move || {
-            let solver = match taken(&first) {
+            let solver = match first.lock().unwrap_or_else(PoisonError::into_inner).take() {
                 Some(solver) => solver,
                 None => connect(&settings)?,
             };
@@ -79,11 +73,6 @@ pub(crate) fn connect_solver(scene: &mut Scene) -> Result<Solver, Failure> {
         })
     });
     Ok(Solver { field, flow })
-}
-
-/// What is there once.
-fn taken<T>(once: &Mutex<Option<T>>) -> Option<T> {
-    once.lock().unwrap_or_else(PoisonError::into_inner).take()
 }
 
 fn connect(settings: &SolverSettings) -> Result<RemoteSolver, CouplingError> {

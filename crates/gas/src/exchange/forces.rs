@@ -1,7 +1,7 @@
 //! What the flow does to each grain, and all grains of a cell to the flow.
 
-use super::{CHUNK, Exchange, GrainsView, Held, sphere};
-use crate::mapping::Share;
+use super::{Exchange, GrainsView, Held, sphere};
+use crate::mapping::{CHUNK, Share};
 use amberfield_core::{Gas, GasModel, Vector3};
 use amberfield_laws::particle_reynolds::Slip;
 use amberfield_laws::{drag, magnus_lift, saffman_lift};
@@ -21,7 +21,7 @@ impl Exchange {
         let volumes = self.solver.mesh().volumes();
         for (i, held) in self.held.iter().enumerate() {
             let source = grains.velocity[i] * held.drag - held.push;
-            for share in &self.shares[self.first[i]..self.first[i + 1]] {
+            for share in self.shares.of(i) {
                 let per_volume = share.weight / volumes[share.cell as usize];
                 self.drag[share.cell as usize] += held.drag * per_volume;
                 self.source[share.cell as usize] += source * per_volume;
@@ -35,7 +35,7 @@ impl Exchange {
     /// β and L (in `push`) of a grain.
     fn resistance(&self, grains: &GrainsView<'_>, i: usize) -> Held {
         let Gas { density_kg_m3: density, viscosity_pa_s: viscosity, .. } = self.gas;
-        let shares = self.shares_of(i);
+        let shares = self.shares.of(i);
         let diameter = 2.0 * grains.centre[i][3];
         let void_fraction = shares.iter().map(|s| s.weight * self.void_fraction[s.cell as usize]).sum();
         let slip = gathered(shares, &self.values.velocity) - grains.velocity[i];
@@ -63,10 +63,10 @@ impl Exchange {
 
     /// What the flow does to the grains until the next exchange.
     pub(super) fn hold(&mut self, grains: &GrainsView<'_>) {
-        let (first, shares, values, flow) = (&self.first, &self.shares, &self.values, self.flow);
+        let (shares, values, flow) = (&self.shares, &self.values, self.flow);
         let weight = self.gravity * self.gas.density_kg_m3;
         self.held.par_iter_mut().with_min_len(CHUNK).enumerate().for_each(|(i, held)| {
-            let shares = &shares[first[i]..first[i + 1]];
+            let shares = shares.of(i);
             held.push += gathered(shares, &values.velocity) * held.drag;
             let mut density = -weight;
             if flow.model == GasModel::A {

@@ -17,7 +17,7 @@ mod state;
 pub use state::ExchangeState;
 
 use crate::flow_solver::{FlowRequest, FlowSolver, FlowValues};
-use crate::mapping::Share;
+use crate::mapping::{CHUNK, Shares};
 use crate::{GasError, Mapping};
 use amberfield_core::{Domain, Gas, GasFlow, Vector3};
 use rayon::prelude::*;
@@ -27,8 +27,6 @@ use std::time::Instant;
 
 /// ε of a cell at least: Ergun's drag grows without bound as ε goes to 0, and a few grains' shares may fill a small cell.
 const LEAST_VOID: f64 = 0.2;
-/// Grains that one thread takes at a time.
-const CHUNK: usize = 1024;
 
 /// Grains as they are now, in the order of the forces asked for.
 #[derive(Clone, Copy, Debug)]
@@ -80,9 +78,8 @@ pub struct Exchange {
     held: Vec<Held>,
     places: Vec<Vector3<f64>>,
     cells: Vec<u32>,
-    /// Shares at the exchange, grain by grain.
-    first: Vec<usize>,
-    shares: Vec<Share>,
+    /// Shares at the exchange.
+    shares: Shares,
     /// By cell: what grains got of the gas less what it gave [N·s].
     owed: Vec<Vector3<f64>>,
     /// What grains got of it up to the last exchange [N·s].
@@ -122,8 +119,7 @@ impl Exchange {
             held: Vec::new(),
             places: Vec::new(),
             cells: Vec::new(),
-            first: Vec::new(),
-            shares: Vec::new(),
+            shares: Shares::default(),
             owed: vec![Vector3::zeros(); cells],
             booked: Vector3::zeros(),
             void_fraction: vec![1.0; cells],
@@ -255,7 +251,7 @@ impl Exchange {
         let impulse = std::mem::take(&mut self.held[i].impulse);
         self.booked += impulse;
         let slot = self.held[i].slot as usize;
-        for share in &self.shares[self.first[slot]..self.first[slot + 1]] {
+        for share in self.shares.of(slot) {
             self.owed[share.cell as usize] += impulse * share.weight;
         }
     }
@@ -276,36 +272,7 @@ impl Exchange {
             .collect();
         (self.places, self.cells) = found.into_iter().unzip();
         self.held.resize(grains.centre.len(), Held::default());
-        self.share();
-    }
-
-    /// Shares of the grains at their places.
-    fn share(&mut self) {
-        let mapping = &self.mapping;
-        let grains = self.places.par_chunks(CHUNK).zip(self.cells.par_chunks(CHUNK));
-        let parts: Vec<(Vec<usize>, Vec<Share>)> = grains
-            .map(|(places, cells)| {
-                let mut shares = Vec::new();
-                let one = |(place, &cell): (&Vector3<f64>, &u32)| {
-                    mapping.shares(place, cell, &mut shares);
-                    shares.len()
-                };
-                let ends = places.iter().zip(cells).map(one).collect();
-                (ends, shares)
-            })
-            .collect();
-        self.first.clear();
-        self.first.push(0);
-        self.shares.clear();
-        for (ends, shares) in parts {
-            let begin = self.shares.len();
-            self.first.extend(ends.into_iter().map(|end| begin + end));
-            self.shares.extend(shares);
-        }
-    }
-
-    fn shares_of(&self, grain: usize) -> &[Share] {
-        &self.shares[self.first[grain]..self.first[grain + 1]]
+        self.mapping.fill(&self.places, &self.cells, &mut self.shares);
     }
 
     /// ε by cell.
@@ -314,7 +281,7 @@ impl Exchange {
         let volumes = self.solver.mesh().volumes();
         for (i, c) in grains.centre.iter().enumerate() {
             let volume = sphere(2.0 * c[3]);
-            for share in &self.shares[self.first[i]..self.first[i + 1]] {
+            for share in self.shares.of(i) {
                 self.void_fraction[share.cell as usize] -=
                     share.weight * volume / volumes[share.cell as usize];
             }

@@ -86,7 +86,7 @@ impl Exchange {
         self.early.clone_from(&state.early);
         self.drag.clone_from(&state.drag);
         self.source.clone_from(&state.source);
-        self.share();
+        self.mapping.fill(&self.places, &self.cells, &mut self.shares);
         Ok(())
     }
 }
