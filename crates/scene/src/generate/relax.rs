@@ -20,37 +20,65 @@ pub(super) fn relax(
     centres: &mut [Vector3<f64>],
     grid: &mut SizeGrid,
 ) -> Result<(), f64> {
-    let mut moves = vec![Vector3::zeros(); centres.len()];
     let mut worst = f64::INFINITY;
+    let mut pushed = Vec::new();
+    let mut awake = vec![true; radii.len()];
     for _ in 0..MOST_SWEEPS {
-        worst = sweep(region, radii, centres, grid, &mut moves);
+        grid.clear();
+        for (index, (centre, radius)) in centres.iter().zip(radii).enumerate() {
+            grid.insert(index, centre, *radius);
+        }
+        wake_neighbours(&pushed, radii, centres, grid, &mut awake);
+        worst = sweep(region, radii, centres, grid, &mut awake, &mut pushed);
         if worst <= 0.0 {
             return Ok(());
         }
-        for ((centre, step), radius) in centres.iter_mut().zip(&moves).zip(radii) {
-            *centre = region.confine(*centre + step, *radius);
+        for &(index, step) in &pushed {
+            centres[index] = region.confine(centres[index] + step, radii[index]);
         }
     }
     Err(worst)
 }
 
-/// Collects the moves that would undo each overlap; returns the largest true overlap over the sum of the radii.
+/// Wakes all that a pushed grain could touch where it is now. The others are as they were: nobody pushes them.
+fn wake_neighbours(
+    pushed: &[(usize, Vector3<f64>)],
+    radii: &[f64],
+    centres: &[Vector3<f64>],
+    grid: &SizeGrid,
+    awake: &mut [bool],
+) {
+    for &(index, _) in pushed {
+        grid.visit_near(&centres[index], reach(radii[index]), |other| {
+            awake[other] = true;
+            true
+        });
+    }
+}
+
+/// Radius [m] with which a grain looks for others.
+fn reach(radius: f64) -> f64 {
+    radius * (1.0 + 2.0 * SWELLING)
+}
+
+/// Collects the moves that would undo each overlap of the grains that are awake, who sleep again; returns the
+/// largest true overlap over the sum of the radii.
 fn sweep(
     region: &Region,
     radii: &[f64],
     centres: &[Vector3<f64>],
-    grid: &mut SizeGrid,
-    moves: &mut [Vector3<f64>],
+    grid: &SizeGrid,
+    awake: &mut [bool],
+    pushed: &mut Vec<(usize, Vector3<f64>)>,
 ) -> f64 {
-    moves.fill(Vector3::zeros());
-    grid.clear();
-    for (index, (centre, radius)) in centres.iter().zip(radii).enumerate() {
-        grid.insert(index, centre, *radius);
-    }
+    pushed.clear();
     let mut worst: f64 = 0.0;
     for (index, (centre, radius)) in centres.iter().zip(radii).enumerate() {
-        let mut own = Vector3::zeros();
-        grid.visit_near(centre, radius * (1.0 + 2.0 * SWELLING), |other| {
+        if !std::mem::take(&mut awake[index]) {
+            continue;
+        }
+        let mut own = None;
+        grid.visit_near(centre, reach(*radius), |other| {
             if other != index {
                 let sum = radius + radii[other];
                 let apart = region.shortest(centre - centres[other]);
@@ -66,12 +94,12 @@ fn sweep(
                     } else {
                         Vector3::x() * if index < other { 1.0 } else { -1.0 }
                     };
-                    own += away * (share * overlap);
+                    *own.get_or_insert_with(Vector3::zeros) += away * (share * overlap);
                 }
             }
             true
         });
-        moves[index] = own;
+        pushed.extend(own.map(|step| (index, step)));
     }
     worst
 }
