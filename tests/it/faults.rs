@@ -4,7 +4,6 @@ use crate::scenes::CHARGED;
 use amberfield_tests::{Answer, Bench, DEADLINE, Table};
 use rustix::process::{Pid, Signal, kill_process};
 use std::collections::BTreeMap;
-use std::path::Path;
 use std::process::{Command, Stdio};
 use std::time::{Duration, Instant};
 
