@@ -80,24 +80,36 @@ pub fn write_report(
     Ok(path)
 }
 
+/// When, what and where: every combination once, for rows may be added on another machine.
+fn measured(results: &Results) -> String {
+    let points = results.points.iter().map(|row| (&row.date, &row.version, &row.processor, row.threads));
+    let motions = results.motions.iter().map(|row| (&row.date, &row.version, &row.processor, row.threads));
+    let extremes = results.extremes.iter().map(|row| (&row.date, &row.version, &row.processor, row.threads));
+    let mut seen: Vec<String> = Vec::new();
+    for (date, version, processor, threads) in points.chain(motions).chain(extremes) {
+        let plural = if threads == 1 { "" } else { "s" };
+        let text = format!("{date} with amberfield {version} on {processor}, {threads} thread{plural}");
+        if !seen.contains(&text) {
+            seen.push(text);
+        }
+    }
+    seen.join("; ")
+}
+
 fn setting(study: &Study, results: &Results, repeat: &str) -> String {
-    let Results { points: rows, motions, extremes, .. } = results;
-    let of_row = rows.first().map(|row| (&row.date, &row.version, &row.processor, row.threads));
-    let of_motion = motions.first().map(|row| (&row.date, &row.version, &row.processor, row.threads));
-    let of_extreme = extremes.first().map(|row| (&row.date, &row.version, &row.processor, row.threads));
-    let Some((date, version, processor, threads)) = of_row.or(of_motion).or(of_extreme) else {
-        return String::new();
-    };
-    let plural = if threads == 1 { "" } else { "s" };
-    let mut text =
-        format!("Measured {date} with amberfield {version} on {processor}, {threads} thread{plural}. ");
-    if !rows.is_empty() {
+    let rows = &results.points;
+    let measured = measured(results);
+    if measured.is_empty() {
+        return measured;
+    }
+    let mut text = format!("Measured {measured}. ");
+    if let Some(row) = rows.first() {
         let _infallible = write!(
             text,
             "Every point is first compared with the truth at every grain, then timed {} times, all points of a problem taking turns, \
              each turn at least {} s long; times are medians. Errors are the root mean square of |ΔE| over the grains, relative to the larger of E_rms and q_rms n^{{2/3}}/(4πε). \
-             All rows, with the command that repeats each, are in [data](data/{date}-{}.csv). ",
-            study.passes, study.least_s, study.name,
+             All rows, with the command that repeats each, are in [data](data/{}-{}.csv). ",
+            study.passes, study.least_s, row.date, study.name,
         );
     }
     let _infallible = write!(text, "The whole study is repeated by\n\n    {repeat}\n\n");
