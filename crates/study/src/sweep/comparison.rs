@@ -32,36 +32,48 @@ pub(super) fn comparisons(rows: &[Row]) -> Vec<Comparison<'_>> {
     points(false).filter(|(error, ..)| *error > 0.0).map(one).collect()
 }
 
-/// What became of a goal: the worst ratio, and how many were looked at; `None` where nothing was measured.
-pub(super) fn verdict(goal: &Goal, rows: &[Row]) -> Option<(f64, bool, usize)> {
+/// What became of a goal.
+#[derive(Clone, Debug, PartialEq)]
+pub(super) struct Verdict {
+    /// The worst ratio, and the point that has it.
+    pub(super) worst: (f64, String),
+    /// How many points miss the goal.
+    pub(super) missed: usize,
+    /// How many were looked at.
+    pub(super) of: usize,
+}
+
+/// What became of a goal; `None` where nothing was measured.
+pub(super) fn verdict(goal: &Goal, rows: &[Row]) -> Option<Verdict> {
     let ratios = match (goal.times_less, goal.times_as_fast, goal.at_most) {
         (Some(_), ..) => beside(goal, rows, |point| Some(point.error / point.in_time?)),
         (_, Some(_), _) => beside(goal, rows, |point| Some(point.ns / point.as_exact?)),
         _ => prices(goal, rows),
     };
-    let least = ratios.iter().copied().min_by(f64::total_cmp)?;
-    let most = ratios.iter().copied().max_by(f64::total_cmp)?;
-    let met = |wanted: f64| (least, least >= wanted, ratios.len());
-    Some(match (goal.times_less.or(goal.times_as_fast), goal.at_most) {
-        (Some(wanted), _) => met(wanted),
-        (None, Some(bound)) => (most, most <= bound, ratios.len()),
+    // How far a ratio is on the good side of the wanted one.
+    let merit: Box<dyn Fn(f64) -> f64> = match (goal.times_less.or(goal.times_as_fast), goal.at_most) {
+        (Some(wanted), _) => Box::new(move |ratio| ratio - wanted),
+        (None, Some(bound)) => Box::new(move |ratio| bound - ratio),
         (None, None) => return None,
-    })
+    };
+    let (missed, of) = (ratios.iter().filter(|(ratio, _)| merit(*ratio) < 0.0).count(), ratios.len());
+    let worst = ratios.into_iter().min_by(|a, b| merit(a.0).total_cmp(&merit(b.0)))?;
+    Some(Verdict { worst, missed, of })
 }
 
 /// A ratio of every point that the goal is about; 0 where nothing with a promise is as good.
-fn beside(goal: &Goal, rows: &[Row], ratio: impl Fn(&Comparison<'_>) -> Option<f64>) -> Vec<f64> {
+fn beside(goal: &Goal, rows: &[Row], ratio: impl Fn(&Comparison<'_>) -> Option<f64>) -> Vec<(f64, String)> {
     rows.chunk_by(|a, b| a.problem == b.problem)
         .filter(|of_problem| goal.is_about(&of_problem[0].problem))
         .flat_map(comparisons)
         .filter(|point| point.row.method == goal.method)
         .filter(|point| goal.value.as_ref().is_none_or(|value| *value == point.row.value))
-        .map(|point| ratio(&point).unwrap_or(0.0))
+        .map(|point| (ratio(&point).unwrap_or(0.0), name(point.row)))
         .collect()
 }
 
 /// Times of a method on one problem over those on another, value by value.
-fn prices(goal: &Goal, rows: &[Row]) -> Vec<f64> {
+fn prices(goal: &Goal, rows: &[Row]) -> Vec<(f64, String)> {
     let of = |problem: &str| {
         let problem = problem.to_owned();
         rows.iter().filter(move |row| row.problem == problem && row.method == goal.method)
@@ -69,9 +81,14 @@ fn prices(goal: &Goal, rows: &[Row]) -> Vec<f64> {
     let Some([dear, cheap]) = &goal.price else { return Vec::new() };
     let ratio = |row: &Row| {
         let other = of(cheap).find(|other| other.value == row.value)?;
-        Some(row.ns_per_grain()? / other.ns_per_grain()?)
+        Some((row.ns_per_grain()? / other.ns_per_grain()?, name(row)))
     };
     of(dear).filter_map(ratio).collect()
+}
+
+/// A point in words.
+fn name(row: &Row) -> String {
+    format!("{} {} on {}", row.method, row.value, row.problem)
 }
 
 #[cfg(test)]
@@ -104,14 +121,15 @@ mod tests {
             row("b", "cut-off", 0.2, 3.0, false),
         ];
         let judged = |text: &str| verdict(&goal(text), &rows);
-        let near = |found: Option<(f64, bool, usize)>, ratio: f64, met: bool, count: usize| {
-            let (value, is_met, of) = found.unwrap();
-            assert!((value / ratio - 1.0).abs() < 1e-12 && is_met == met && of == count, "{found:?}");
+        let near = |found: Option<Verdict>, ratio: f64, missed: usize, of: usize| {
+            let found = found.unwrap();
+            let right = (found.worst.0 / ratio - 1.0).abs() < 1e-12;
+            assert!(right && found.missed == missed && found.of == of, "{found:?}");
         };
-        near(judged("method = 'cut-off'\ntimes_less = 25"), 20.0, false, 2);
-        near(judged("method = 'cut-off'\ntimes_less = 25\nproblems = ['a']"), 30.0, true, 1);
-        near(judged("method = 'cut-off'\ntimes_as_fast = 1.4"), 1.5, true, 2);
-        near(judged("method = 'p3m'\nprice = ['b', 'a']\nat_most = 1.5"), 1.2, true, 1);
+        near(judged("method = 'cut-off'\ntimes_less = 25"), 20.0, 1, 2);
+        near(judged("method = 'cut-off'\ntimes_less = 25\nproblems = ['a']"), 30.0, 0, 1);
+        near(judged("method = 'cut-off'\ntimes_as_fast = 1.4"), 1.5, 0, 2);
+        near(judged("method = 'p3m'\nprice = ['b', 'a']\nat_most = 1.5"), 1.2, 0, 1);
         assert_eq!(judged("method = 'FMM3D'\ntimes_as_fast = 5"), None);
     }
 }

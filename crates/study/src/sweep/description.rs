@@ -219,6 +219,8 @@ pub struct Goal {
     pub price: Option<[String; 2]>,
     /// See `price`.
     pub at_most: Option<f64>,
+    /// What was tried and what would be next; said where the goal is missed.
+    pub tried: Option<String>,
 }
 
 impl Goal {

@@ -1,6 +1,6 @@
 //! The report: tables, plots and conclusions, from rows only.
 
-use super::comparison::{Comparison, comparisons, verdict};
+use super::comparison::{Comparison, Verdict, comparisons, verdict};
 use super::description::Study;
 use super::extremes::{EnergyRow, ExtremeRow};
 use super::extremes_page;
@@ -122,9 +122,14 @@ fn conclusions(study: &Study, rows: &[Row]) -> String {
     for goal in &study.goals {
         let said = match verdict(goal, rows) {
             None => "not measured".to_owned(),
-            Some((worst, met, count)) => {
-                let word = if met { "**met**" } else { "**missed**" };
-                format!("{word} (worst of {count}: {})", rounded(worst))
+            Some(Verdict { worst: (ratio, at), missed, of }) => {
+                let word = if missed == 0 {
+                    "**met**".to_owned()
+                } else {
+                    format!("**missed** at {missed} of {of}")
+                };
+                let tried = goal.tried.as_deref().filter(|_| missed > 0).map(|tried| format!(". {tried}"));
+                format!("{word} (worst of {of}: {}, {at}){}", rounded(ratio), tried.unwrap_or_default())
             }
         };
         let _infallible = writeln!(text, "* {}: {said}.", goal.text);
