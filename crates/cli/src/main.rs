@@ -56,10 +56,12 @@ fn install_panic_hook() {
     }));
 }
 
+/// This thread is one of them: handing every loop to others and waiting for them would cost a wake-up each.
 fn start_threads(arguments: &Arguments) -> Result<(), Failure> {
-    let Some(threads) = arguments.common.threads else { return Ok(()) };
+    let threads = arguments.common.threads.unwrap_or(0);
     rayon::ThreadPoolBuilder::new()
         .num_threads(threads)
+        .use_current_thread()
         .build_global()
         .map_err(|error| Failure::bad_input(format!("--threads {threads}: {error}; give fewer threads")))
 }
