@@ -8,8 +8,13 @@ use std::path::Path;
 /// Crates with unsafe code.
 const CRATES: [&str; 4] = ["amberfield-wire", "amberfield-field", "amberfield-coupling", "amberfield-capi"];
 /// Tests over OpenFOAM that the sanitizer cannot be in: a solver that is not built with it loads our library, another build of the solver is
-/// meant, or memory is looked at, which the sanitizer does not give back.
-const NOT_THESE: [&str; 3] = ["function_object", "of_a_later_version", "a_long_run_holds"];
+/// meant, memory is looked at, which the sanitizer does not give back, or a patch has eight faces a rank (see [`OPTIONS`]).
+const NOT_THESE: [&str; 4] =
+    ["function_object", "of_a_later_version", "a_long_run_holds", "needs_no_charge_and_is_the_same"];
+/// OpenFOAM keeps what it made until the process ends. And the package's own `Foam::sqr` of normals (slip walls, outlets) reads eight bytes behind
+/// the last: harmless behind an allocation of libc's, but not where one of the sanitizer's ends with its page. With gaps of
+/// 32 bytes between allocations none of the tests' patches ends there, but for those of eight faces.
+const OPTIONS: &str = "detect_leaks=0:max_redzone=32";
 /// The sanitizer needs the target named, so that build scripts do without it.
 const TARGET: &str = "x86_64-unknown-linux-gnu";
 
@@ -28,6 +33,5 @@ pub(crate) fn run(root: &Path) -> Result<()> {
         cargo(root, &["test", "-p", "amberfield-tests", "--test", "commands", "--", "openfoam::"]);
     tests.args(NOT_THESE.iter().flat_map(|name| ["--skip", name]));
     tests.env("AMBERFIELD_SOLVER", build.join("electricFieldFoam"));
-    // OpenFOAM keeps what it made until the process ends.
-    execute(tests.env("ASAN_OPTIONS", "detect_leaks=0"))
+    execute(tests.env("ASAN_OPTIONS", OPTIONS))
 }
