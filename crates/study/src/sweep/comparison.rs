@@ -50,12 +50,13 @@ pub(super) fn verdict(goal: &Goal, rows: &[Row]) -> Option<Verdict> {
         (_, Some(_), _) => beside(goal, rows, |point| Some(point.ns / point.as_exact?)),
         _ => prices(goal, rows),
     };
-    // How far a ratio is on the good side of the wanted one.
-    let merit: Box<dyn Fn(f64) -> f64> = match (goal.times_less.or(goal.times_as_fast), goal.at_most) {
-        (Some(wanted), _) => Box::new(move |ratio| ratio - wanted),
-        (None, Some(bound)) => Box::new(move |ratio| bound - ratio),
+    let (wanted, good) = match (goal.times_less.or(goal.times_as_fast), goal.at_most) {
+        (Some(least), _) => (least, 1.0),
+        (None, Some(most)) => (most, -1.0),
         (None, None) => return None,
     };
+    // How far a ratio is on the good side of the wanted one.
+    let merit = |ratio: f64| good * (ratio - wanted);
     let (missed, of) = (ratios.iter().filter(|(ratio, _)| merit(*ratio) < 0.0).count(), ratios.len());
     let worst = ratios.into_iter().min_by(|a, b| merit(a.0).total_cmp(&merit(b.0)))?;
     Some(Verdict { worst, missed, of })
