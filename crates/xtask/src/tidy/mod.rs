@@ -1,9 +1,11 @@
 //! The rules of this repository that no other tool knows.
 
+mod circles;
 mod dependencies;
 mod edges;
 mod laws;
 mod length;
+mod source;
 mod table_of_contents;
 mod tree;
 mod words;
@@ -40,6 +42,7 @@ pub(crate) fn run(root: &Path) -> Result<()> {
 
 fn all_problems(tree: &Tree) -> Vec<Problem> {
     let mut problems = [
+        circles::problems(tree),
         dependencies::problems(tree),
         edges::problems(tree),
         laws::problems(tree),

@@ -1,9 +1,10 @@
 //! Words that must not appear.
 
 use super::Problem;
+use super::source::{is_test_file, lines_without_tests};
 use super::tree::Tree;
 
-/// This file lists the words and is therefore not searched.
+/// File that lists the words and is therefore not searched.
 const THIS_FILE: &str = "crates/xtask/src/tidy/words.rs";
 
 /// Notes to oneself: nowhere.
@@ -36,14 +37,13 @@ pub(super) fn problems(tree: &Tree) -> Vec<Problem> {
     problems
 }
 
-/// Panics before the test module and outside documentation; folders of tests are left out.
+/// Panics outside tests and documentation.
 fn panics(path: &str, text: &str) -> Vec<Problem> {
-    let is_test = |part: &str| matches!(part, "tests" | "benches" | "examples" | "tests.rs");
-    if path.starts_with("cases/") || path.split('/').any(is_test) {
+    if is_test_file(path) {
         return Vec::new();
     }
-    let code = (1..).zip(text.lines()).take_while(|(_, line)| !line.starts_with("#[cfg(test)]"));
     let mut problems = Vec::new();
+    let code = lines_without_tests(text).into_iter();
     for (line, code) in code.filter(|(_, line)| !line.trim_start().starts_with("//")) {
         for (word, advice) in PANICS.iter().filter(|(word, _)| code.contains(word)) {
             problems.push(Problem {
