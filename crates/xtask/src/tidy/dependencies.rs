@@ -51,7 +51,8 @@ mod tests {
             ),
             (
                 "crates/scene/Cargo.toml",
-                "[package]\npng = 1\n[dependencies]\ncsv.workspace = true\n[dev-dependencies]\nrand = { workspace = true }\n",
+                "[package]\npng = 1\n[dependencies]\ncsv.workspace = true\n\
+                 [dev-dependencies]\nrand = { workspace = true }\n",
             ),
         ]);
         let found: Vec<(usize, String)> =

@@ -1,4 +1,4 @@
-//! Which crate may use which, and what every manifest says.
+//! Edges between crates, of which the table allows some, and what every manifest says.
 
 use super::Problem;
 use super::tree::Tree;
@@ -21,7 +21,8 @@ const ALLOWED: [(&str, &[&str]); 14] = [
     ("xtask", &[]),
 ];
 
-/// What tests may use on top: exact solutions. The oracle itself gets nothing, it judges the others.
+/// Crate of exact solutions, which tests may use on top. The oracle itself gets nothing, it judges the
+/// others.
 const ALLOWED_IN_TESTS: &str = "oracle";
 
 const PREFIX: &str = "amberfield-";
@@ -36,12 +37,11 @@ pub(super) fn problems(tree: &Tree) -> Vec<Problem> {
             report(0, "no description; say in one sentence what this crate alone may do".to_owned());
         }
         let Some((_, allowed)) = ALLOWED.iter().find(|(name, _)| *name == folder) else {
-            report(
-                0,
-                format!(
-                    "crate '{folder}' is not in the table of allowed edges; add it there and to ARCHITECTURE.md"
-                ),
+            let message = format!(
+                "crate '{folder}' is not in the table of allowed edges; \
+                 add it there and to ARCHITECTURE.md"
             );
+            report(0, message);
             continue;
         };
         for edge in edges(text) {
@@ -107,7 +107,8 @@ mod tests {
     fn edges_in_own_tables_and_targets_are_found() {
         let found = messages(
             "crates/oracle/Cargo.toml",
-            "[dependencies.amberfield-laws]\nworkspace = true\n[target.'cfg(unix)'.dependencies]\namberfield-dem.workspace = true\n",
+            "[dependencies.amberfield-laws]\nworkspace = true\n\
+             [target.'cfg(unix)'.dependencies]\namberfield-dem.workspace = true\n",
         );
         assert_eq!(found.iter().map(|(line, _)| *line).collect::<Vec<_>>(), [2, 5]);
     }

@@ -11,7 +11,7 @@ pub(super) struct Tree {
 }
 
 /// Endings of the files that the rules look at.
-const ENDINGS: [&str; 6] = ["rs", "toml", "md", "sh", "yml", "yaml"];
+const ENDINGS: [&str; 12] = ["rs", "toml", "md", "sh", "yml", "yaml", "py", "c", "h", "C", "H", "Dockerfile"];
 /// Folders of the root that are made by runs and builds.
 const SKIPPED: [&str; 4] = ["target", "build", "runs", ".git"];
 
