@@ -30,7 +30,7 @@ pub(crate) fn version(package: &str) -> Option<String> {
     text.strip_prefix("installed ").map(str::to_owned)
 }
 
-/// Where the system gets a release's packages from, as its own sources say.
+/// Address from which the system gets a release's packages, as its own sources say.
 pub(crate) fn mirror(release: &str) -> Option<String> {
     let listed = Command::new("apt-get")
         .args(["indextargets", "--format", "$(SITE)", &format!("Release: {release}")])

@@ -4,14 +4,16 @@ use crate::shell::{cargo, run as execute, works};
 use anyhow::{Context as _, Result};
 use std::path::Path;
 
-/// What bytes are sent to: the targets' names.
+/// Names of the targets to which bytes are sent.
 const TARGETS: [&str; 6] = ["scene", "grains", "surface", "checkpoint", "message", "mesh"];
 /// Longest input [bytes].
 const LONGEST: usize = 4096;
 /// Time of a target unless told [s].
 const SECONDS: u32 = 600;
 
-/// Runs targets for some time each; installs cargo-fuzz first where it is missing. What is found new stays out of the committed corpora.
+/// Runs targets for some time each; installs cargo-fuzz first where it is missing.
+///
+/// Inputs that are found new stay out of the committed corpora.
 pub(crate) fn run(root: &Path, words: &[&str]) -> Result<()> {
     let (seconds, named) = match words {
         ["--seconds", seconds, named @ ..] => (seconds.parse().context("--seconds takes a number")?, named),

@@ -7,15 +7,17 @@ use std::path::Path;
 use std::process::{Command, Stdio};
 use std::time::{Duration, Instant};
 
-/// Debian's release that has the OpenFOAM we build for, and what we call an image of it.
+/// Debian's release that has the OpenFOAM we build for.
 const RELEASE: &str = "bookworm";
+/// Name that we give to an image of that release.
 const BASE: &str = "amberfield-debian:bookworm";
-/// The same where a registry can be reached.
+/// Name of an image of that release in a registry, where one can be reached.
 const STOCK: &str = "debian:bookworm-slim";
-/// Packages of the engine and of what drives two containers at once.
+/// Package of the engine.
 const ENGINE: &str = "docker.io";
+/// Package of the program that drives two containers at once.
 const COMPOSE: &str = "docker-compose";
-/// How long an engine may take to start.
+/// Longest time that an engine may take to start.
 const START: Duration = Duration::from_secs(60);
 
 /// Builds both images.

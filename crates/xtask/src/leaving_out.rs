@@ -1,4 +1,5 @@
-//! What a plain scene pays for the field: instructions of a build with the field crate over those of one without it.
+//! The price of the field for a plain scene: instructions of a build with the field crate over those of one
+//! without it.
 
 use crate::shell::{cargo, run as execute, works};
 use anyhow::{Context, Result, bail};
@@ -8,8 +9,10 @@ use std::process::Command;
 /// Largest share of instructions by which the two builds may differ.
 const MOST: f64 = 0.01;
 const EXAMPLE: &str = "plain_bed";
-/// Keeps the C library from `rep stosb` and `rep movsb`, of which callgrind counts an instruction per byte: whether
-/// the compiler makes a loop or a call of zeroing an array is its own choice, another one in either build.
+/// Keeps the C library from `rep stosb` and `rep movsb`, of which callgrind counts an instruction per byte.
+///
+/// Whether the compiler makes a loop or a call of zeroing an array is its own choice, another one in either
+/// build.
 const NO_REP: &str =
     "glibc.cpu.x86_rep_stosb_threshold=1000000000:glibc.cpu.x86_rep_movsb_threshold=1000000000";
 

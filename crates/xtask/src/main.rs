@@ -1,5 +1,5 @@
-//! Developer commands: `cargo xtask check`, `tidy`, `test`, `deny`, `bench`, `leaving-out`, `openfoam`, `images`,
-//! `fuzz`, `sanitize`, `header`.
+//! Developer commands: `cargo xtask check`, `tidy`, `test`, `deny`, `bench`, `leaving-out`, `openfoam`,
+//! `images`, `fuzz`, `sanitize`, `header`.
 #![expect(clippy::print_stdout, reason = "a program for developers that reports to the terminal")]
 
 mod bench;
@@ -21,26 +21,33 @@ use std::path::Path;
 use std::process::ExitCode;
 
 const USAGE: &str = "\
-cargo xtask check [--without tests]   what CI asks: fmt, clippy, tidy, docs, deny, tests
-cargo xtask test                      every test: documentation examples, units, commands, cases at smoke size;
-                                      builds the field solver and images first (see openfoam, images); uses cargo-nextest where it is installed
-cargo xtask tidy                      the repository's own rules
-cargo xtask deny                      licences and sources of everything that is linked; installs cargo-deny where
-                                      it is missing
+cargo xtask check [--without tests]
+    runs what a change must pass: fmt, clippy, tidy, docs, deny, a quick bench, tests
+cargo xtask test
+    runs every test: documentation examples, units, commands, cases at smoke size. It builds the field
+    solver and the images first (see openfoam, images) and uses cargo-nextest where it is installed
+cargo xtask tidy
+    checks the repository's own rules
+cargo xtask deny
+    checks licences and sources of everything that is linked; installs cargo-deny where it is missing
 cargo xtask bench [--quick] [--peers] [--resume] [--page] [SECTION…]
-                                      measures speed and memory, with --peers beside LAMMPS and FMM3D, which it installs
-                                      into target/peers; writes docs/reports/speed.md
-cargo xtask openfoam                  builds openfoam-solver/; installs OpenFOAM's package and fetches its headers where they
-                                      are missing
-cargo xtask images                    builds the container images of docker/; installs and starts an engine where there is none,
-                                      and makes their base with debootstrap where no registry can be reached
+    measures speed and memory and writes docs/reports/speed.md; with --peers beside LAMMPS and FMM3D,
+    which it installs into target/peers
+cargo xtask openfoam
+    builds openfoam-solver/; installs OpenFOAM's package and fetches its headers where they are missing
+cargo xtask images
+    builds the container images of docker/; installs and starts an engine where there is none, and makes
+    their base with debootstrap where no registry can be reached
 cargo xtask fuzz [--seconds N] [TARGET…]
-                                      any bytes at everything that is read, by cargo-fuzz, ten minutes a target unless told; installs
-                                      cargo-fuzz where it is missing
-cargo xtask sanitize                  the address sanitizer over the crates with unsafe code and over the field solver
-cargo xtask header                    writes the C library's header
-cargo xtask leaving-out               what a plain scene pays for the field: instructions with and without the field
-                                      crate under callgrind; installs valgrind where it is missing";
+    sends any bytes to everything that is read, by cargo-fuzz, ten minutes a target unless told; installs
+    cargo-fuzz where it is missing
+cargo xtask sanitize
+    runs the address sanitizer over the crates with unsafe code and over the field solver
+cargo xtask header
+    writes the C library's header
+cargo xtask leaving-out
+    counts what a plain scene pays for the field: instructions with and without the field crate under
+    callgrind; installs valgrind where it is missing";
 
 fn main() -> ExitCode {
     match run() {

@@ -1,7 +1,8 @@
 //! Everything that `openfoam-solver/` needs, and its build.
 //!
-//! Debian's OpenFOAM package has programs and libraries, but no headers and no wmake: the headers come from the matching source
-//! package, by the system's own package sources turned into source ones, into a folder below `target/`.
+//! Debian's OpenFOAM package has programs and libraries, but no headers and no wmake. The headers come from
+//! the matching source package, by the system's own package sources turned into source ones. They are
+//! unpacked into a folder below `target/`.
 
 use crate::debian;
 use crate::shell::{cargo, run as execute};
@@ -9,7 +10,7 @@ use anyhow::{Context, Result, bail};
 use std::path::{Path, PathBuf};
 use std::process::Command;
 
-/// What is installed from Debian where it is missing; one of the examples is a test.
+/// Packages that are installed from Debian where they are missing; one of the examples is a test.
 const PACKAGES: [&str; 6] = ["openfoam", "openfoam-examples", "g++", "make", "cmake", "bzip2"];
 /// Folders of the headers that the solver includes.
 const HEADERS: [&str; 8] = [
@@ -22,15 +23,16 @@ const HEADERS: [&str; 8] = [
     "TurbulenceModels/incompressible",
     "TurbulenceModels/phaseIncompressible",
 ];
-/// What running anything linked to OpenFOAM wants to know, and where Debian has it.
+/// Variable without which nothing linked to OpenFOAM runs, and the folder that Debian's package has for it.
 const PROJECT: (&str, &str) = ("WM_PROJECT_DIR", "/usr/share/openfoam");
 
-/// Installs what is missing, fetches the headers, builds the C library, the solver and its self-test, and runs that.
+/// Installs what is missing, fetches the headers, builds the C library, the solver and its self-test, and
+/// runs the self-test.
 pub(crate) fn run(root: &Path) -> Result<()> {
     build(root, "build", &[]).map(drop)
 }
 
-/// The same into a folder of `openfoam-solver/`, with more to tell cmake; where the programs are.
+/// Builds into a folder of `openfoam-solver/`, with more to tell cmake, and returns the programs' folder.
 pub(crate) fn build(root: &Path, folder: &str, flags: &[&str]) -> Result<PathBuf> {
     debian::provide(&PACKAGES)?;
     let headers = provide_headers(root)?;

@@ -5,7 +5,8 @@ use crate::{images, openfoam};
 use anyhow::Result;
 use std::path::Path;
 
-/// The field solver, its container images, documentation examples, then unit tests, command tests and cases at smoke size.
+/// Builds the field solver and its container images, then runs documentation examples, unit tests, command
+/// tests and cases at smoke size.
 ///
 /// The documentation examples come first so that the last line counts the tests proper.
 pub(crate) fn run(root: &Path) -> Result<()> {
