@@ -1,4 +1,5 @@
-# The DEM side: the program `amberfield`. `cargo xtask images` builds this image, in a folder with the program.
+# The DEM side: the program `amberfield`.
+# `cargo xtask images` builds this image, in a folder with the program.
 ARG BASE
 FROM ${BASE}
 COPY amberfield /usr/local/bin/

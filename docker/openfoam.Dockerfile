@@ -1,4 +1,5 @@
-# The OpenFOAM side: `electricFieldFoam`, `amberPimpleFoam` and their library. `cargo xtask images` builds this image, in a folder with both.
+# The OpenFOAM side: `electricFieldFoam`, `amberPimpleFoam` and their library.
+# `cargo xtask images` builds this image, in a folder with all three.
 ARG BASE
 FROM ${BASE}
 RUN apt-get update \

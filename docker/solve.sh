@@ -1,6 +1,6 @@
 #!/bin/sh
-# Solves on the case in folder $1 for the run that waits, for a gas too where the case's application is amberPimpleFoam; makes the mesh of a case that has
-# only a recipe for it.
+# Solves on the case in folder $1 for the run that waits, for a gas too where the case's application is
+# amberPimpleFoam. Makes the mesh of a case that has only a recipe for it.
 set -e
 case_folder=$1
 shift

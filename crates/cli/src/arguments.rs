@@ -4,7 +4,8 @@ use amberfield_core::Method;
 use clap::{ArgAction, Args, Parser, Subcommand, ValueEnum};
 use std::path::PathBuf;
 
-/// Electric field and motion of charged grains.
+/// Simulates charged grains: the electric field that they feel, with an error that you choose and that the
+/// program measures, the charge that they trade where they touch, and their motion.
 #[derive(Debug, Parser)]
 #[command(name = "amberfield", version, about, propagate_version = true)]
 pub(crate) struct Arguments {
@@ -17,19 +18,19 @@ pub(crate) struct Arguments {
 /// Options of every command.
 #[derive(Debug, Args)]
 pub(crate) struct Common {
-    /// Number of threads (default: all cores)
+    /// Number of threads [default: all cores]
     #[arg(long, global = true, value_parser = threads)]
     pub(crate) threads: Option<usize>,
-    /// Say more (-vv: much more)
+    /// Writes more to the log (-vv: much more)
     #[arg(short, long, global = true, action = ArgAction::Count, conflicts_with = "quiet")]
     pub(crate) verbose: u8,
-    /// Say only what went wrong
+    /// Writes to the log only what went wrong
     #[arg(short, long, global = true)]
     pub(crate) quiet: bool,
     /// Form of the log on stderr
     #[arg(long, global = true, value_enum, default_value_t = LogFormat::Text)]
     pub(crate) log_format: LogFormat,
-    /// No progress bar and no progress lines
+    /// Shows no progress bar and no progress lines
     #[arg(long, global = true)]
     pub(crate) no_progress: bool,
 }
@@ -43,21 +44,22 @@ pub(crate) enum LogFormat {
     Json,
 }
 
-/// What to do.
+/// Command of the program.
 #[derive(Debug, Subcommand)]
 pub(crate) enum Command {
-    /// Simulate
+    /// Simulates a scene and writes ParaView files, history, checkpoints and a picture
     Run(RunOptions),
-    /// The electric field at the particles of one snapshot, no motion
+    /// Computes the electric field at the particles of one snapshot, without motion
     Field(FieldOptions),
-    /// What will run, what is left out and why, error expected, memory, limits on the time step
+    /// Explains what a scene will run and what it leaves out, with expected error, memory and limits of the
+    /// step
     Explain(ExplainOptions),
-    /// Candidates for the field's parameters, their measured error and time, the choice
+    /// Compares candidates for the field's parameters by their measured error and time, and chooses
     Tune(TuneOptions),
-    /// Error against run time: methods and parameters swept over problems
+    /// Measures error against run time: sweeps methods and parameters over problems
     #[cfg(feature = "plots")]
     Study(StudyOptions),
-    /// What this machine offers, stale runs
+    /// Tells what this machine offers and which stale runs it holds
     Doctor(DoctorOptions),
 }
 
@@ -66,19 +68,19 @@ pub(crate) enum Command {
 pub(crate) struct RunOptions {
     /// Scene file
     pub(crate) scene: PathBuf,
-    /// Run folder (default: named after the scene)
+    /// Folder of the results [default: named after the scene]
     #[arg(long, value_name = "DIR")]
     pub(crate) out: Option<PathBuf>,
-    /// Stop after so many steps of this call
+    /// Stops after this many steps, counted from the start of this call
     #[arg(long, value_name = "N", value_parser = clap::value_parser!(u64).range(1..))]
     pub(crate) steps: Option<u64>,
-    /// Go on from a checkpoint, bit for bit
+    /// Continues from a checkpoint; the results are the same bit for bit as without a stop
     #[arg(long, value_name = "CHECKPOINT", conflicts_with = "overwrite")]
     pub(crate) resume: Option<PathBuf>,
-    /// Replace the results in an existing run folder
+    /// Replaces the results in an existing run folder
     #[arg(long)]
     pub(crate) overwrite: bool,
-    /// Override a key of the scene
+    /// Overrides a key of the scene, for example electric_field.tolerance=1e-3
     #[arg(long, value_name = "KEY=VALUE")]
     pub(crate) set: Vec<String>,
 }
@@ -88,22 +90,23 @@ pub(crate) struct RunOptions {
 pub(crate) struct FieldOptions {
     /// Scene file
     pub(crate) scene: PathBuf,
-    /// Method instead of the scene's
+    /// Method of the field, instead of the scene's: p3m, direct, kolehmainen or cutoff
     #[arg(long, value_name = "M")]
     pub(crate) method: Option<Method>,
-    /// Tolerance instead of the scene's
+    /// Tolerance of the field, instead of the scene's: relative RMS error of E
     #[arg(long, value_name = "T")]
     pub(crate) tolerance: Option<f64>,
-    /// Result (default: named after the scene)
+    /// File of the result [default: named after the scene]
     #[arg(long, value_name = "FILE.csv")]
     pub(crate) out: Option<PathBuf>,
-    /// Also the parts of the field by level
+    /// Writes the parts of the field too: near, middle, far, correction, faces, external
     #[arg(long)]
     pub(crate) components: bool,
-    /// Repetitions for the time measured
-    #[arg(long, value_name = "N", default_value_t = 1, value_parser = clap::value_parser!(u32).range(1..=1_000_000))]
+    /// Number of evaluations of which the time is measured
+    #[arg(long, value_name = "N", default_value_t = 1)]
+    #[arg(value_parser = clap::value_parser!(u32).range(1..=1_000_000))]
     pub(crate) repeat: u32,
-    /// Override a key of the scene
+    /// Overrides a key of the scene, for example electric_field.tolerance=1e-3
     #[arg(long, value_name = "KEY=VALUE")]
     pub(crate) set: Vec<String>,
 }
@@ -113,7 +116,7 @@ pub(crate) struct FieldOptions {
 pub(crate) struct ExplainOptions {
     /// Scene file
     pub(crate) scene: PathBuf,
-    /// Override a key of the scene
+    /// Overrides a key of the scene, for example electric_field.tolerance=1e-3
     #[arg(long, value_name = "KEY=VALUE")]
     pub(crate) set: Vec<String>,
 }
@@ -123,13 +126,13 @@ pub(crate) struct ExplainOptions {
 pub(crate) struct TuneOptions {
     /// Scene file
     pub(crate) scene: PathBuf,
-    /// Tolerance instead of the scene's
+    /// Tolerance of the field, instead of the scene's: relative RMS error of E
     #[arg(long, value_name = "T")]
     pub(crate) tolerance: Option<f64>,
-    /// Table of the candidates (default: named after the scene)
+    /// File of the table of candidates [default: named after the scene]
     #[arg(long, value_name = "FILE.csv")]
     pub(crate) out: Option<PathBuf>,
-    /// Override a key of the scene
+    /// Overrides a key of the scene, for example electric_field.tolerance=1e-3
     #[arg(long, value_name = "KEY=VALUE")]
     pub(crate) set: Vec<String>,
 }
@@ -140,10 +143,10 @@ pub(crate) struct TuneOptions {
 pub(crate) struct StudyOptions {
     /// Study file
     pub(crate) study: PathBuf,
-    /// Folder of the results (default: named after the study)
+    /// Folder of the results [default: named after the study]
     #[arg(long, value_name = "DIR")]
     pub(crate) out: Option<PathBuf>,
-    /// Measure nothing: write the page anew from the newest rows in the folder
+    /// Measures nothing; writes the page anew from the newest rows in the folder
     #[arg(long)]
     pub(crate) page: bool,
 }
@@ -151,7 +154,7 @@ pub(crate) struct StudyOptions {
 /// Options of `doctor`.
 #[derive(Debug, Args)]
 pub(crate) struct DoctorOptions {
-    /// Remove what stale runs below the current folder left behind
+    /// Removes what stale runs below the current folder left behind
     #[arg(long)]
     pub(crate) clean: bool,
 }
