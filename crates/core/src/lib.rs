@@ -8,6 +8,7 @@
 mod charge_transfer;
 pub mod constants;
 mod domain;
+mod far_question;
 mod field_settings;
 mod gas;
 mod material;
@@ -18,6 +19,7 @@ mod wall;
 
 pub use charge_transfer::ChargeTransfer;
 pub use domain::{Axis, Boundary, Domain, DomainError, Side};
+pub use far_question::{FarQuestion, SourceCloud};
 pub use field_settings::{CouplingInterval, FieldSettings, ForceLimit, Method, Tuning};
 pub use gas::{DragLaw, Gas, GasFlow, GasModel};
 pub use material::{Material, MaterialId};

@@ -10,7 +10,7 @@ const ALLOWED: [(&str, &[&str]); 14] = [
     ("field", &["core", "laws"]),
     ("gas", &["core", "laws", "field"]),
     ("dem", &["core", "laws", "field", "gas"]),
-    ("wire", &[]),
+    ("wire", &["core"]),
     ("coupling", &["core", "field", "gas", "wire"]),
     ("capi", &["core", "field", "wire", "coupling"]),
     ("oracle", &["core"]),
