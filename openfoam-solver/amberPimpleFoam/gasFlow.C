@@ -125,9 +125,9 @@ Foam::gasFlow::gasFlow(Time& time, fvMesh& mesh, fieldSide& demProcess)
 
 void Foam::gasFlow::checkGas() const
 {
-    const AmberfieldRequest& request = demProcess_.request();
+    const AmberfieldFlowQuestion& gas = demProcess_.request().flow;
     const scalar ours = gMax(transport_.nu()().primitiveField());
-    const scalar theirs = request.gas_viscosity/request.gas_density;
+    const scalar theirs = gas.viscosity_pa_s/gas.density_kg_m3;
     if (mag(ours - theirs) > sameViscosity*theirs)
     {
         demProcess_.fail
@@ -142,7 +142,7 @@ void Foam::gasFlow::checkGas() const
 
 void Foam::gasFlow::answer()
 {
-    const AmberfieldRequest request = demProcess_.request();
+    const AmberfieldFlowQuestion question = demProcess_.request().flow;
     const auto begun = std::chrono::steady_clock::now();
     scalar residual = 0;
     iterations_ = 0;
@@ -153,8 +153,8 @@ void Foam::gasFlow::answer()
     (
         voidFraction, drag_.primitiveFieldRef(), source_.primitiveFieldRef()
     );
-    drag_.primitiveFieldRef() /= request.gas_density;
-    source_.primitiveFieldRef() /= request.gas_density;
+    drag_.primitiveFieldRef() /= question.density_kg_m3;
+    source_.primitiveFieldRef() /= question.density_kg_m3;
 
     if (!begun_)
     {
@@ -164,15 +164,15 @@ void Foam::gasFlow::answer()
         alphaPhi_ = fvc::interpolate(alpha_)*phi_;
         begun_ = true;
     }
-    if (request.interval > 0)
+    if (question.interval_s > 0)
     {
         const scalarField through(fvc::surfaceSum(mag(phi_))().primitiveField());
-        const scalar courant = 0.5*request.interval*gMax(scalarField(through/mesh_.V().field()));
+        const scalar courant = 0.5*question.interval_s*gMax(scalarField(through/mesh_.V().field()));
         const scalar most = pimple_.dict().lookupOrDefault<scalar>("maxCo", 1);
         const label steps = max(label(1), label(std::ceil(courant/most)));
         const scalarField before(alpha_.primitiveField());
 
-        time_.setDeltaT(request.interval/steps, false);
+        time_.setDeltaT(question.interval_s/steps, false);
         for (label i = 1; i <= steps; ++i)
         {
             ++time_;
@@ -181,14 +181,14 @@ void Foam::gasFlow::answer()
             const scalar share = scalar(i)/steps;
             alpha_.primitiveFieldRef() = (1 - share)*before + share*voidFraction;
             alpha_.correctBoundaryConditions();
-            step(request.model_b == 1);
+            step(question.model_b == 1);
             residual = max(residual, missing());
             time_.write();
         }
     }
     const std::chrono::duration<scalar> taken = std::chrono::steady_clock::now() - begun;
 
-    answer(request.gas_density, residual, taken.count());
+    answer(question.density_kg_m3, residual, taken.count());
 }
 
 
@@ -289,11 +289,11 @@ void Foam::gasFlow::answer
     const scalar seconds
 )
 {
-    const AmberfieldRequest& request = demProcess_.request();
+    const AmberfieldFlowQuestion& question = demProcess_.request().flow;
     const vectorField gradient(density*fvc::grad(p_)().primitiveField());
     vectorField viscous;
     vectorField vorticity;
-    if (request.viscous_force == 1)
+    if (question.viscous_force == 1)
     {
         const volScalarField muEff(density*turbulence_->nuEff());
         viscous =
@@ -301,7 +301,7 @@ void Foam::gasFlow::answer
             fvc::laplacian(muEff, U_) + fvc::div(muEff*dev2(T(fvc::grad(U_))))
         )().primitiveField();
     }
-    if (request.vorticity == 1)
+    if (question.vorticity == 1)
     {
         vorticity = fvc::curl(U_)().primitiveField();
     }
@@ -316,9 +316,9 @@ void Foam::gasFlow::answer
     flow.pressure_gradient = numbers(gradient);
     flow.viscous_force = numbers(viscous);
     flow.vorticity = numbers(vorticity);
-    flow.iterations = uint64_t(iterations_);
-    flow.residual = residual;
-    flow.seconds = seconds;
+    flow.answer.iterations = uint64_t(iterations_);
+    flow.answer.residual = residual;
+    flow.answer.seconds = seconds;
     demProcess_.reply(flow);
 }
 

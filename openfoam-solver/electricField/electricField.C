@@ -112,7 +112,7 @@ void Foam::electricField::answer()
 {
     const dimensionedScalar epsilon
     (
-        "epsilon", dimensionSet(-1, -3, 4, 0, 0, 2, 0), demProcess_.request().permittivity
+        "epsilon", dimensionSet(-1, -3, 4, 0, 0, 2, 0), demProcess_.request().far.permittivity_f_m
     );
 
     demProcess_.density(rho_.primitiveFieldRef());
@@ -153,7 +153,7 @@ Foam::solverPerformance Foam::electricField::solve(const dimensionedScalar& epsi
 
         VEqn.setReference(Pstream::master() ? 0 : -1, 0);
 
-        controls_.set("tolerance", demProcess_.request().tolerance);
+        controls_.set("tolerance", demProcess_.request().far.tolerance);
         performance = VEqn.solve(controls_);
     }
     // OpenFOAM keeps a record of every solve until the time changes, which here it may not
@@ -197,7 +197,7 @@ void Foam::electricField::removeMean(const scalar epsilon)
     reduce(flux, sumOp<scalar>());
     const scalar net = gSum(rho_.primitiveField()*mesh_.V()) + epsilon*flux;
     const scalar all = gSum(mag(rho_.primitiveField())*mesh_.V());
-    if (!demProcess_.request().neutralising_background && mag(net) > mostMismatch*all)
+    if (!demProcess_.request().far.neutralising_background && mag(net) > mostMismatch*all)
     {
         demProcess_.fail
         (

@@ -43,7 +43,7 @@ void Foam::functionObjects::electricField::answerUpTo(const scalar time)
     while (!over_)
     {
         over_ = !pending_ && !demProcess_.wait();
-        pending_ = !over_ && demProcess_.request().time > time;
+        pending_ = !over_ && demProcess_.request().far.time_s > time;
         if (over_ || pending_)
         {
             return;

@@ -185,19 +185,14 @@ void Foam::fieldSide::reply
 )
 {
     noTraps quiet;
-    check
-    (
-        amberfield_field_reply
-        (
-            field_,
-            V.cdata(),
-            reinterpret_cast<const scalar*>(E.cdata()),
-            uint64_t(V.size()),
-            uint64_t(iterations),
-            residual,
-            seconds
-        )
-    );
+    AmberfieldFar far;
+    far.cells = uint64_t(V.size());
+    far.potential = V.cdata();
+    far.e = reinterpret_cast<const scalar*>(E.cdata());
+    far.iterations = uint64_t(iterations);
+    far.residual = residual;
+    far.seconds = seconds;
+    check(amberfield_field_reply(field_, &far));
 }
 
 

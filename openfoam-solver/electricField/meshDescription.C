@@ -145,12 +145,24 @@ Foam::meshDescription::meshDescription(const volScalarField& V)
             const vector& c = patch.Cf()[i];
             const vector& n = nf[i];
             const symmTensor m(spread(mesh.faces()[patch.start() + i], mesh.points(), c));
-            boundary_.push_back
-            ({{
-                c.x(), c.y(), c.z(), n.x(), n.y(), n.z(), patch.magSf()[i],
-                double(patch.faceCells()[i]), isConductor(pV) ? 1.0 : 0.0, values[i],
-                m.xx(), m.xy(), m.xz(), m.yy(), m.yz(), m.zz()
-            }});
+
+            AmberfieldBoundaryFace described;
+            for (direction axis = 0; axis < 3; ++axis)
+            {
+                described.centre_m[axis] = c[axis];
+                described.normal[axis] = n[axis];
+            }
+            described.area_m2 = patch.magSf()[i];
+            described.cell = uint64_t(patch.faceCells()[i]);
+            described.is_conductor = isConductor(pV) ? 1 : 0;
+            described.prescribed = values[i];
+            described.spread_xx_m2 = m.xx();
+            described.spread_xy_m2 = m.xy();
+            described.spread_xz_m2 = m.xz();
+            described.spread_yy_m2 = m.yy();
+            described.spread_yz_m2 = m.yz();
+            described.spread_zz_m2 = m.zz();
+            boundary_.push_back(described);
         }
     }
     const globalIndex globalBoundary(label(boundary_.size()));
@@ -211,12 +223,12 @@ Foam::meshDescription::meshDescription(const volScalarField& V)
     const boundBox box(mesh.points(), true);
     for (direction axis = 0; axis < 3; ++axis)
     {
-        view_.low[axis] = box.min()[axis];
-        view_.high[axis] = box.max()[axis];
-        view_.periodic[axis] = returnReduce(periodic[axis], orOp<bool>()) ? 1 : 0;
+        view_.outline.low_m[axis] = box.min()[axis];
+        view_.outline.high_m[axis] = box.max()[axis];
+        view_.outline.periodic[axis] = returnReduce(periodic[axis], orOp<bool>()) ? 1 : 0;
     }
-    view_.first_cell = uint64_t(globalCells.toGlobal(0));
-    view_.all_cells = uint64_t(globalCells.size());
+    view_.outline.first_cell = uint64_t(globalCells.toGlobal(0));
+    view_.outline.all_cells = uint64_t(globalCells.size());
     view_.first_boundary = uint64_t(globalBoundary.toGlobal(0));
     view_.cells = uint64_t(mesh.nCells());
     view_.faces = uint64_t(count);
@@ -228,5 +240,5 @@ Foam::meshDescription::meshDescription(const volScalarField& V)
     view_.face_offsets = offsets_.cdata();
     view_.face_neighbours = neighbours_.data();
     view_.face_shifts = reinterpret_cast<const double*>(shifts_.cdata());
-    view_.boundary_faces = boundary_.empty() ? nullptr : boundary_.front().data();
+    view_.boundary_faces = boundary_.data();
 }

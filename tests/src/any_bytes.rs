@@ -2,9 +2,12 @@
 //! changes of them through.
 
 use amberfield_core::{Boundary, Domain, Vector3};
-use amberfield_coupling::{GrainsInCells, MeshArrays, MeshPart, Request, assemble};
+use amberfield_coupling::{GrainsInCells, MeshArrays, MeshPart, Question, assemble};
 use amberfield_field::far::{FarMesh, FarMeshParts};
 use amberfield_scene::{Purpose, read_checkpoint, read_scene, write_checkpoint};
+use amberfield_wire::payloads::{
+    BoundaryFace, FarAnswer, FarQuestion, FlowAnswer, FlowQuestion, MeshOutline,
+};
 use amberfield_wire::{Block64, Header, Section, SectionEntry, Sections};
 use std::path::PathBuf;
 use std::sync::OnceLock;
@@ -36,11 +39,11 @@ const SECTIONS: [Section; 32] = [
     Section::ImagePositions,
     Section::ImageCharges,
     Section::Boundary,
-    Section::Request,
+    Section::FarQuestion,
     Section::Potential,
     Section::Field,
     Section::Cells,
-    Section::Answer,
+    Section::FarAnswer,
     Section::Centres,
     Section::Volumes,
     Section::FirstFace,
@@ -50,8 +53,8 @@ const SECTIONS: [Section; 32] = [
     Section::FaceShifts,
     Section::BoundaryFaces,
     Section::Guess,
-    Section::MeshNumbers,
-    Section::Interval,
+    Section::MeshOutline,
+    Section::FlowQuestion,
     Section::VoidFraction,
     Section::DragCoefficient,
     Section::MomentumSource,
@@ -160,10 +163,15 @@ fn message(bytes: &[u8]) {
             sections.get::<i64>(section).map(<[i64]>::len),
             sections.get::<f64>(section).map(|numbers| numbers.iter().sum::<f64>()),
             sections.get::<[f64; 3]>(section).map(<[[f64; 3]]>::len),
-            sections.get::<[f64; 16]>(section).map(<[[f64; 16]]>::len),
+            sections.get::<BoundaryFace>(section).map(<[BoundaryFace]>::len),
+            sections.get::<MeshOutline>(section).map(<[MeshOutline]>::len),
+            sections.get::<FarQuestion>(section).map(<[FarQuestion]>::len),
+            sections.get::<FarAnswer>(section).map(<[FarAnswer]>::len),
+            sections.get::<FlowQuestion>(section).map(<[FlowQuestion]>::len),
+            sections.get::<FlowAnswer>(section).map(<[FlowAnswer]>::len),
         );
     }
-    let _answer = (sections.text(), Request::read(&header, &sections).is_ok());
+    let _answer = (sections.text(), Question::read(&header, &sections).is_ok());
     let _answer = GrainsInCells::read(&sections, 1..3).is_ok();
     if let Ok(part) = MeshPart::read(&sections) {
         let _answer = assemble(&[part]);
@@ -201,29 +209,27 @@ fn mesh(bytes: &[u8]) {
     let mut neighbours = part.face_neighbours.to_vec();
     let mut shifts = part.face_shifts.to_vec();
     let mut boundary = part.boundary_faces.to_vec();
-    let mut corners = part.corners;
-    let (mut first_cell, mut all_cells) = (part.first_cell, part.all_cells);
+    let mut outline = part.outline;
     for change in bytes.chunks_exact(11) {
         let place = usize::from(change[1]) | usize::from(change[2]) << 8;
         let word = u64::from_le_bytes(change[3..].try_into().expect("eight bytes"));
         let number = f64::from_bits(word);
         match change[0] % 10 {
-            0 => corners[place % 2][(place >> 1) % 3] = number,
-            1 => first_cell = word,
-            2 => all_cells = word,
+            0 if place % 2 == 0 => outline.low_m[(place >> 1) % 3] = number,
+            0 => outline.high_m[(place >> 1) % 3] = number,
+            1 => outline.first_cell = word,
+            2 => outline.all_cells = word,
             3 => set(&mut volumes, place, number),
             4 => set(&mut first_face, place, word),
             5 => set(&mut neighbours, place, word as i64),
             6 => set_in(&mut centres, place, number),
             7 => set_in(&mut normals, place, number),
             8 => set_in(&mut shifts, place, number),
-            _ => set_in(&mut boundary, place, number),
+            _ => set_in_face(&mut boundary, place, word),
         }
     }
     let changed = MeshPart {
-        corners,
-        first_cell,
-        all_cells,
+        outline,
         centres: &centres,
         volumes: &volumes,
         first_face: &first_face,
@@ -249,4 +255,24 @@ fn set<T>(numbers: &mut [T], place: usize, number: T) {
 fn set_in<const N: usize>(vectors: &mut [[f64; N]], place: usize, number: f64) {
     let count = vectors.len() * N;
     vectors[place % count / N][place % N] = number;
+}
+
+/// Sets one of the sixteen numbers of a face, in the order of its fields.
+fn set_in_face(faces: &mut [BoundaryFace], place: usize, word: u64) {
+    let count = 16 * faces.len();
+    let (face, number) = (&mut faces[place % count / 16], f64::from_bits(word));
+    match place % 16 {
+        axis @ 0..3 => face.centre_m[axis] = number,
+        axis @ 3..6 => face.normal[axis - 3] = number,
+        6 => face.area_m2 = number,
+        7 => face.cell = word,
+        8 => face.is_conductor = word,
+        9 => face.prescribed = number,
+        10 => face.spread_xx_m2 = number,
+        11 => face.spread_xy_m2 = number,
+        12 => face.spread_xz_m2 = number,
+        13 => face.spread_yy_m2 = number,
+        14 => face.spread_yz_m2 = number,
+        _ => face.spread_zz_m2 = number,
+    }
 }

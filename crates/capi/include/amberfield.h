@@ -16,7 +16,7 @@ typedef enum AmberfieldStatus {
   AmberfieldStatus_Failed = 2,
 } AmberfieldStatus;
 
-// What the DEM process asks for.
+// Kind of question of the DEM process.
 typedef enum AmberfieldQuestion {
   // The electric field: density, boundary, guess, then reply.
   AmberfieldQuestion_Field = 0,
@@ -28,6 +28,20 @@ typedef enum AmberfieldQuestion {
   AmberfieldQuestion_Restore = 3,
 } AmberfieldQuestion;
 
+// What a face of the box is.
+typedef enum AmberfieldBoundary {
+  // A conductor at V = 0.
+  AmberfieldBoundary_Grounded = 0,
+  // A conductor at the potential `value` [V].
+  AmberfieldBoundary_Potential = 1,
+  // A surface with the outward normal field `value` [V/m]; 0 is an insulator.
+  AmberfieldBoundary_NormalField = 2,
+  // Joined to the opposite face.
+  AmberfieldBoundary_Periodic = 3,
+  // Free space beyond.
+  AmberfieldBoundary_Open = 4,
+} AmberfieldBoundary;
+
 // One rank of a field process.
 typedef struct AmberfieldField AmberfieldField;
 
@@ -38,18 +52,52 @@ typedef struct AmberfieldField AmberfieldField;
 // memory and a solver's warm start. Call it every so many steps and keep E in between, as the fix of an electric force would.
 typedef struct AmberfieldHost AmberfieldHost;
 
-// One rank's part of the mesh. Vectors are three doubles each; lengths in m.
-typedef struct AmberfieldMesh {
-  // Lower corner of all ranks' cells.
-  double low[3];
-  // Upper corner of all ranks' cells.
-  double high[3];
+// Box and periodic axes of the mesh of all ranks, and where the cells of one rank are among them.
+typedef struct AmberfieldMeshOutline {
+  // Lower corner of the cells of all ranks [m].
+  double low_m[3];
+  // Upper corner of the cells of all ranks [m].
+  double high_m[3];
   // 1 for every axis that cyclic patches join.
   uint64_t periodic[3];
-  // Cells of lower ranks.
+  // Number of cells of lower ranks, which is the number of this rank's first cell.
   uint64_t first_cell;
-  // Cells of all ranks.
+  // Number of cells of all ranks.
   uint64_t all_cells;
+} AmberfieldMeshOutline;
+
+// Face on the boundary of one rank's cells, and the condition there.
+typedef struct AmberfieldBoundaryFace {
+  // Centre [m].
+  double centre_m[3];
+  // Unit normal out of the mesh.
+  double normal[3];
+  // Area [m^2].
+  double area_m2;
+  // Cell of this rank that the face belongs to.
+  uint64_t cell;
+  // 1: the potential is prescribed; 0: its outward slope is.
+  uint64_t is_conductor;
+  // Prescribed potential [V] or outward slope [V/m].
+  double prescribed;
+  // Mean over the corners of (x - x of the centre)^2 [m^2].
+  double spread_xx_m2;
+  // Mean over the corners of (x - x of the centre)(y - y of the centre) [m^2].
+  double spread_xy_m2;
+  // Mean over the corners of (x - x of the centre)(z - z of the centre) [m^2].
+  double spread_xz_m2;
+  // Mean over the corners of (y - y of the centre)^2 [m^2].
+  double spread_yy_m2;
+  // Mean over the corners of (y - y of the centre)(z - z of the centre) [m^2].
+  double spread_yz_m2;
+  // Mean over the corners of (z - z of the centre)^2 [m^2].
+  double spread_zz_m2;
+} AmberfieldBoundaryFace;
+
+// One rank's part of the mesh. Vectors are three doubles each; lengths in m.
+typedef struct AmberfieldMesh {
+  // Box of all ranks' cells, periodic axes, and where this rank's cells are among all.
+  struct AmberfieldMeshOutline outline;
   // Boundary faces of lower ranks.
   uint64_t first_boundary;
   // Cells of this rank.
@@ -72,39 +120,93 @@ typedef struct AmberfieldMesh {
   const int64_t *face_neighbours;
   // What is added to the neighbour's coordinates (0 unless the face is cyclic).
   const double *face_shifts;
-  // By boundary face sixteen numbers: centre, outward unit normal, area, cell of this rank, 1 where the potential is
-  // prescribed and 0 where its outward slope is, the value [V or V/m], mean over its corners of the squared distance from the
-  // centre as a tensor (xx xy xz yy yz zz).
-  const double *boundary_faces;
+  // Boundary faces of this rank, with the conditions there.
+  const struct AmberfieldBoundaryFace *boundary_faces;
 } AmberfieldMesh;
 
-// A question, and the numbers that belong to it; the others are 0.
+// Cloud of charge that stands for a grain in the far part of the field.
+//
+// A Kaiser-Bessel cloud of a radius and a shape, or, with the radius 0, the grain's charge spread over the
+// cell that the grain is in.
+typedef struct AmberfieldSourceCloud {
+  // Radius at which the cloud ends [m]; 0: the charge is spread over its cell.
+  double radius_m;
+  // Shape of the Kaiser-Bessel cloud, a number; 0 where the radius is 0.
+  double shape;
+} AmberfieldSourceCloud;
+
+// Scalars of the question for the far part of a field.
+//
+// The question is for the solution of div(grad(potential)) = -density/permittivity, where the density is that
+// of the clouds. Charges, their positions and the values on the boundary are arrays beside it.
+typedef struct AmberfieldFarQuestion {
+  // Cloud that every charge is.
+  struct AmberfieldSourceCloud cloud;
+  // Absolute permittivity of the medium [F/m].
+  double permittivity_f_m;
+  // 1: the mean density is taken off where no face prescribes the potential; 0: it is not.
+  uint64_t neutralising_background;
+  // Time at which the charges are where they are [s].
+  double time_s;
+  // Relative tolerance of the linear solver; 0: the solver's own.
+  double tolerance;
+} AmberfieldFarQuestion;
+
+// Scalars of the question for the flow of a gas at the end of an interval.
+typedef struct AmberfieldFlowQuestion {
+  // Length of the interval [s]; 0: the flow as it is, nothing moves.
+  double interval_s;
+  // Time at which the interval begins [s].
+  double time_s;
+  // Density of the gas [kg/m^3].
+  double density_kg_m3;
+  // Viscosity of the gas [Pa s].
+  double viscosity_pa_s;
+  // 1: the pressure acts on the gas alone (model B); 0: on gas and grains (model A).
+  uint64_t model_b;
+  // 1: the divergence of the viscous stress is wanted.
+  uint64_t viscous_force;
+  // 1: the vorticity is wanted.
+  uint64_t vorticity;
+} AmberfieldFlowQuestion;
+
+// Question of the DEM process, with the scalars that belong to it.
 typedef struct AmberfieldRequest {
   // What is asked.
   enum AmberfieldQuestion question;
   // Number of the solve.
   uint64_t solve;
-  // Time of the charges, or at which the interval begins [s].
-  double time;
-  // Permittivity of the medium [F/m].
-  double permittivity;
-  // Relative tolerance of the linear solver.
-  double tolerance;
-  // 1 where the mean density is to be taken off if no face fixes the potential.
-  uint64_t neutralising_background;
-  // Length of the interval [s]; 0: the flow as it is.
-  double interval;
-  // Density of the gas [kg/m^3].
-  double gas_density;
-  // Viscosity of the gas [Pa s].
-  double gas_viscosity;
-  // 1 where the pressure acts on the gas alone (model B).
-  uint64_t model_b;
-  // 1 where the divergence of the viscous stress is wanted.
-  uint64_t viscous_force;
-  // 1 where the vorticity is wanted.
-  uint64_t vorticity;
+  // The question for the far field; all 0 unless that is what is asked.
+  struct AmberfieldFarQuestion far;
+  // The question for the flow; all 0 unless that is what is asked.
+  struct AmberfieldFlowQuestion flow;
 } AmberfieldRequest;
+
+// The far field at this rank's cell centres, and how it was found.
+typedef struct AmberfieldFar {
+  // This rank's cells.
+  uint64_t cells;
+  // Potential [V].
+  const double *potential;
+  // Electric field [V/m], three doubles each.
+  const double *e;
+  // Iterations of the linear solver.
+  uint64_t iterations;
+  // Final residual of the linear solver, relative.
+  double residual;
+  // Time that the linear solver took [s].
+  double seconds;
+} AmberfieldFar;
+
+// Numbers that a rank answers beside the flow at its cells.
+typedef struct AmberfieldFlowAnswer {
+  // Iterations of the linear solver for the pressure.
+  uint64_t iterations;
+  // What continuity misses: RMS over the cells of d(void fraction)/dt + div(void fraction * velocity), times the interval.
+  double residual;
+  // Time that the solver took [s].
+  double seconds;
+} AmberfieldFlowAnswer;
 
 // The flow at this rank's cell centres. Vectors are three doubles each.
 typedef struct AmberfieldFlow {
@@ -118,12 +220,8 @@ typedef struct AmberfieldFlow {
   const double *viscous_force;
   // Vorticity [1/s], or NULL where it is not wanted.
   const double *vorticity;
-  // Iterations of the linear solver for the pressure.
-  uint64_t iterations;
-  // What continuity misses: RMS over the cells of d(void fraction)/dt + div(void fraction * velocity), times the interval.
-  double residual;
-  // Time that it took [s].
-  double seconds;
+  // Iterations, residual and time of the solver.
+  struct AmberfieldFlowAnswer answer;
 } AmberfieldFlow;
 
 // A face of the box.
@@ -185,7 +283,7 @@ const char *amberfield_field_error(const struct AmberfieldField *field);
 enum AmberfieldStatus amberfield_field_send_mesh(struct AmberfieldField *field,
                                                  const struct AmberfieldMesh *mesh);
 
-// Waits for the next request; AmberfieldStatus_Over when there will be none.
+// Waits for the next question; AmberfieldStatus_Over when there will be none.
 //
 // # Safety
 // As amberfield_field_error; `request` may be written.
@@ -215,18 +313,11 @@ enum AmberfieldStatus amberfield_field_guess(struct AmberfieldField *field,
                                              double *potential,
                                              uint64_t cells);
 
-// Answers a request: potential [V] and E [V/m] (three doubles each) at this rank's cell centres; iterations of the linear
-// solver, its final residual, relative, and the time that it took [s].
+// Answers the question for the far field.
 //
 // # Safety
-// As amberfield_field_error; the arrays have `cells` entries.
-enum AmberfieldStatus amberfield_field_reply(struct AmberfieldField *field,
-                                             const double *potential,
-                                             const double *e,
-                                             uint64_t cells,
-                                             uint64_t iterations,
-                                             double residual,
-                                             double seconds);
+// As amberfield_field_error; the arrays of `far` have as many entries as it has cells.
+enum AmberfieldStatus amberfield_field_reply(struct AmberfieldField *field, const struct AmberfieldFar *far);
 
 // Tells the DEM process why this one cannot go on.
 //

@@ -3,6 +3,7 @@
 use crate::field_side::{AmberfieldField, AmberfieldStatus, with};
 use crate::foreign::{slice, slice_mut};
 use amberfield_coupling::{CouplingError, FlowReply};
+use amberfield_wire::payloads::FlowAnswer;
 use amberfield_wire::{Section, WireError};
 
 /// The flow at this rank's cell centres. Vectors are three doubles each.
@@ -19,12 +20,8 @@ pub struct AmberfieldFlow {
     pub viscous_force: *const f64,
     /// Vorticity [1/s], or NULL where it is not wanted.
     pub vorticity: *const f64,
-    /// Iterations of the linear solver for the pressure.
-    pub iterations: u64,
-    /// What continuity misses: RMS over the cells of d(void fraction)/dt + div(void fraction * velocity), times the interval.
-    pub residual: f64,
-    /// Time that it took [s].
-    pub seconds: f64,
+    /// Iterations, residual and time of the solver.
+    pub answer: FlowAnswer,
 }
 
 /// Copies what the grains do to the gas in this rank's cells, which feels source - drag * velocity [N/m^3]: void fraction, drag [kg/(m^3 s)], source (three doubles each).
@@ -78,9 +75,7 @@ pub unsafe extern "C" fn amberfield_field_reply_flow(
         pressure_gradient: array(flow.pressure_gradient),
         viscous_force: array(flow.viscous_force),
         vorticity: array(flow.vorticity),
-        iterations: flow.iterations,
-        residual: flow.residual,
-        seconds: flow.seconds,
+        answer: flow.answer,
     };
     // SAFETY: the caller's promise.
     unsafe { with(field, |side| side.reply_flow(&reply).map(|()| AmberfieldStatus::Ok)) }

@@ -1,7 +1,8 @@
 //! The field side: open the run, send the mesh, wait, take density and boundary data, answer, close.
 
 use crate::foreign::{close, guarded, slice, slice_mut};
-use amberfield_coupling::{AskedFlow, FieldSide, MeshPart, Reply, Request};
+use amberfield_coupling::{FieldSide, MeshPart, Question, Reply};
+use amberfield_wire::payloads::{BoundaryFace, FarQuestion, FlowQuestion, MeshOutline, SourceCloud};
 use std::ffi::{CStr, CString, c_char};
 
 /// How a call ended.
@@ -27,16 +28,8 @@ pub struct AmberfieldField {
 #[repr(C)]
 #[derive(Debug)]
 pub struct AmberfieldMesh {
-    /// Lower corner of all ranks' cells.
-    pub low: [f64; 3],
-    /// Upper corner of all ranks' cells.
-    pub high: [f64; 3],
-    /// 1 for every axis that cyclic patches join.
-    pub periodic: [u64; 3],
-    /// Cells of lower ranks.
-    pub first_cell: u64,
-    /// Cells of all ranks.
-    pub all_cells: u64,
+    /// Box of all ranks' cells, periodic axes, and where this rank's cells are among all.
+    pub outline: MeshOutline,
     /// Boundary faces of lower ranks.
     pub first_boundary: u64,
     /// Cells of this rank.
@@ -59,13 +52,29 @@ pub struct AmberfieldMesh {
     pub face_neighbours: *const i64,
     /// What is added to the neighbour's coordinates (0 unless the face is cyclic).
     pub face_shifts: *const f64,
-    /// By boundary face sixteen numbers: centre, outward unit normal, area, cell of this rank, 1 where the potential is
-    /// prescribed and 0 where its outward slope is, the value [V or V/m], mean over its corners of the squared distance from the
-    /// centre as a tensor (xx xy xz yy yz zz).
-    pub boundary_faces: *const f64,
+    /// Boundary faces of this rank, with the conditions there.
+    pub boundary_faces: *const BoundaryFace,
 }
 
-/// What the DEM process asks for.
+/// The far field at this rank's cell centres, and how it was found.
+#[repr(C)]
+#[derive(Debug)]
+pub struct AmberfieldFar {
+    /// This rank's cells.
+    pub cells: u64,
+    /// Potential [V].
+    pub potential: *const f64,
+    /// Electric field [V/m], three doubles each.
+    pub e: *const f64,
+    /// Iterations of the linear solver.
+    pub iterations: u64,
+    /// Final residual of the linear solver, relative.
+    pub residual: f64,
+    /// Time that the linear solver took [s].
+    pub seconds: f64,
+}
+
+/// Kind of question of the DEM process.
 #[repr(C)]
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum AmberfieldQuestion {
@@ -79,7 +88,7 @@ pub enum AmberfieldQuestion {
     Restore = 3,
 }
 
-/// A question, and the numbers that belong to it; the others are 0.
+/// Question of the DEM process, with the scalars that belong to it.
 #[repr(C)]
 #[derive(Clone, Copy, Debug)]
 pub struct AmberfieldRequest {
@@ -87,75 +96,38 @@ pub struct AmberfieldRequest {
     pub question: AmberfieldQuestion,
     /// Number of the solve.
     pub solve: u64,
-    /// Time of the charges, or at which the interval begins [s].
-    pub time: f64,
-    /// Permittivity of the medium [F/m].
-    pub permittivity: f64,
-    /// Relative tolerance of the linear solver.
-    pub tolerance: f64,
-    /// 1 where the mean density is to be taken off if no face fixes the potential.
-    pub neutralising_background: u64,
-    /// Length of the interval [s]; 0: the flow as it is.
-    pub interval: f64,
-    /// Density of the gas [kg/m^3].
-    pub gas_density: f64,
-    /// Viscosity of the gas [Pa s].
-    pub gas_viscosity: f64,
-    /// 1 where the pressure acts on the gas alone (model B).
-    pub model_b: u64,
-    /// 1 where the divergence of the viscous stress is wanted.
-    pub viscous_force: u64,
-    /// 1 where the vorticity is wanted.
-    pub vorticity: u64,
+    /// The question for the far field; all 0 unless that is what is asked.
+    pub far: FarQuestion,
+    /// The question for the flow; all 0 unless that is what is asked.
+    pub flow: FlowQuestion,
 }
 
-const NO_REQUEST: AmberfieldRequest = AmberfieldRequest {
-    question: AmberfieldQuestion::Field,
-    solve: 0,
-    time: 0.0,
-    permittivity: 0.0,
-    tolerance: 0.0,
+const NO_FAR_QUESTION: FarQuestion = FarQuestion {
+    cloud: SourceCloud::nearest_cell(),
+    permittivity_f_m: 0.0,
     neutralising_background: 0,
-    interval: 0.0,
-    gas_density: 0.0,
-    gas_viscosity: 0.0,
+    time_s: 0.0,
+    tolerance: 0.0,
+};
+
+const NO_FLOW_QUESTION: FlowQuestion = FlowQuestion {
+    interval_s: 0.0,
+    time_s: 0.0,
+    density_kg_m3: 0.0,
+    viscosity_pa_s: 0.0,
     model_b: 0,
     viscous_force: 0,
     vorticity: 0,
 };
 
 impl AmberfieldRequest {
-    fn of(request: Request) -> Self {
-        match request {
-            Request::Charges(asked) => Self {
-                solve: asked.solve,
-                time: asked.time_s,
-                permittivity: asked.permittivity,
-                tolerance: asked.tolerance,
-                neutralising_background: u64::from(asked.neutralising_background),
-                ..NO_REQUEST
-            },
-            Request::Flow(AskedFlow {
-                interval_s,
-                time_s,
-                density,
-                viscosity,
-                model_b,
-                viscous_force,
-                vorticity,
-            }) => Self {
-                question: AmberfieldQuestion::Flow,
-                time: time_s,
-                interval: interval_s,
-                gas_density: density,
-                gas_viscosity: viscosity,
-                model_b: u64::from(model_b),
-                viscous_force: u64::from(viscous_force),
-                vorticity: u64::from(vorticity),
-                ..NO_REQUEST
-            },
-            Request::State => Self { question: AmberfieldQuestion::State, ..NO_REQUEST },
-            Request::Restore => Self { question: AmberfieldQuestion::Restore, ..NO_REQUEST },
+    fn of(question: Question, solve: u64) -> Self {
+        let only = |question| Self { question, solve, far: NO_FAR_QUESTION, flow: NO_FLOW_QUESTION };
+        match question {
+            Question::Far(far) => Self { far, ..only(AmberfieldQuestion::Field) },
+            Question::Flow(flow) => Self { flow, ..only(AmberfieldQuestion::Flow) },
+            Question::State => only(AmberfieldQuestion::State),
+            Question::Restore => only(AmberfieldQuestion::Restore),
         }
     }
 }
@@ -206,10 +178,7 @@ pub unsafe extern "C" fn amberfield_field_send_mesh(
     // SAFETY: the caller's promise; three doubles have the layout of an array of three.
     let part = unsafe {
         MeshPart {
-            corners: [mesh.low, mesh.high],
-            periodic: mesh.periodic.map(|periodic| periodic != 0),
-            first_cell: mesh.first_cell,
-            all_cells: mesh.all_cells,
+            outline: mesh.outline,
             centres: slice(mesh.centres.cast(), cells),
             volumes: slice(mesh.volumes, cells),
             first_face: slice(mesh.first_face, cells + 1),
@@ -217,7 +186,7 @@ pub unsafe extern "C" fn amberfield_field_send_mesh(
             face_offsets: slice(mesh.face_offsets, faces),
             face_neighbours: slice(mesh.face_neighbours, faces),
             face_shifts: slice(mesh.face_shifts.cast(), faces),
-            boundary_faces: slice(mesh.boundary_faces.cast(), mesh.boundary as usize),
+            boundary_faces: slice(mesh.boundary_faces, mesh.boundary as usize),
         }
     };
     // SAFETY: the caller's promise.
@@ -226,7 +195,7 @@ pub unsafe extern "C" fn amberfield_field_send_mesh(
     }
 }
 
-/// Waits for the next request; AmberfieldStatus_Over when there will be none.
+/// Waits for the next question; AmberfieldStatus_Over when there will be none.
 ///
 /// # Safety
 /// As amberfield_field_error; `request` may be written.
@@ -240,8 +209,8 @@ pub unsafe extern "C" fn amberfield_field_wait(
         with(field, |side| {
             Ok(match side.wait()? {
                 None => AmberfieldStatus::Over,
-                Some(asked) => {
-                    *request = AmberfieldRequest::of(asked);
+                Some(question) => {
+                    *request = AmberfieldRequest::of(question, side.solve());
                     AmberfieldStatus::Ok
                 }
             })
@@ -308,29 +277,24 @@ pub unsafe extern "C" fn amberfield_field_guess(
     }
 }
 
-/// Answers a request: potential [V] and E [V/m] (three doubles each) at this rank's cell centres; iterations of the linear
-/// solver, its final residual, relative, and the time that it took [s].
+/// Answers the question for the far field.
 ///
 /// # Safety
-/// As amberfield_field_error; the arrays have `cells` entries.
+/// As amberfield_field_error; the arrays of `far` have as many entries as it has cells.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn amberfield_field_reply(
     field: *mut AmberfieldField,
-    potential: *const f64,
-    e: *const f64,
-    cells: u64,
-    iterations: u64,
-    residual: f64,
-    seconds: f64,
+    far: *const AmberfieldFar,
 ) -> AmberfieldStatus {
     // SAFETY: the caller's promise.
     unsafe {
+        let far = &*far;
         let reply = Reply {
-            potential: slice(potential, cells as usize),
-            e: slice(e.cast(), cells as usize),
-            iterations,
-            residual,
-            seconds,
+            potential: slice(far.potential, far.cells as usize),
+            e: slice(far.e.cast(), far.cells as usize),
+            iterations: far.iterations,
+            residual: far.residual,
+            seconds: far.seconds,
         };
         with(field, |side| side.reply(&reply).map(|()| AmberfieldStatus::Ok))
     }

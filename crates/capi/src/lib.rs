@@ -13,7 +13,7 @@ pub use field_flow::{
     amberfield_field_state,
 };
 pub use field_side::{
-    AmberfieldField, AmberfieldMesh, AmberfieldQuestion, AmberfieldRequest, AmberfieldStatus,
+    AmberfieldFar, AmberfieldField, AmberfieldMesh, AmberfieldQuestion, AmberfieldRequest, AmberfieldStatus,
     amberfield_field_boundary, amberfield_field_close, amberfield_field_density, amberfield_field_error,
     amberfield_field_fail, amberfield_field_guess, amberfield_field_open, amberfield_field_reply,
     amberfield_field_send_mesh, amberfield_field_wait,

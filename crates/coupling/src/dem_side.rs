@@ -11,6 +11,7 @@ use amberfield_core::Vector3;
 use amberfield_field::FieldError;
 use amberfield_field::far::{FarField, FarMesh, FarRequest, FarSource, FarValues};
 use amberfield_gas::FlowValues;
+use amberfield_wire::payloads::{FarAnswer, FarQuestion, FlowQuestion, SourceCloud};
 use amberfield_wire::{Layout, MessageKind, Section, Sections, WireError};
 use std::ops::Range;
 use std::path::PathBuf;
@@ -39,12 +40,17 @@ pub struct SolverSettings {
 }
 
 /// What is being solved while the grains move on.
-#[derive(Debug, Default)]
+#[derive(Debug)]
 pub(crate) struct Pending<Asked, Answer> {
     /// What must be known of the question that is open.
     pub(crate) asked: Option<Asked>,
     /// Its answer, if somebody else's question came after it.
     pub(crate) answer: Option<Answer>,
+}
+
+impl<Asked, Answer> Pending<Asked, Answer> {
+    /// Nothing is asked, nothing came.
+    pub(crate) const NOTHING: Self = Self { asked: None, answer: None };
 }
 
 /// The far field of another process.
@@ -60,8 +66,7 @@ pub(crate) struct Shared {
     pub(crate) remote: Remote,
     /// Charges that were asked for.
     far: Pending<usize, FarValues>,
-    /// Whether ∇·τ and the vorticity were.
-    pub(crate) flow: Pending<[bool; 2], FlowValues>,
+    pub(crate) flow: Pending<FlowQuestion, FlowValues>,
 }
 
 /// A run whose solver has not come yet.
@@ -125,8 +130,7 @@ impl Announced {
         let cells: Vec<usize> = parts.iter().map(|part| part.centres.len()).collect();
         let mesh = Arc::new(assemble(&parts)?);
         let remote = Remote::new(settings, &cells, (link, process, root));
-        let shared =
-            Arc::new(Mutex::new(Shared { remote, far: Pending::default(), flow: Pending::default() }));
+        let shared = Arc::new(Mutex::new(Shared { remote, far: Pending::NOTHING, flow: Pending::NOTHING }));
         Ok(RemoteSolver { mesh, shared })
     }
 }
@@ -154,16 +158,19 @@ impl Shared {
     /// Asks for the far field without waiting.
     fn send(&mut self, request: &FarRequest<'_>) -> Result<(), CouplingError> {
         self.clear_the_way()?;
-        let (radius, shape) = match request.source {
-            FarSource::Clouds { radius_m, shape } => (radius_m, shape),
-            FarSource::NearestCell => (0.0, 0.0),
+        let question = FarQuestion {
+            cloud: match request.source {
+                FarSource::Clouds { radius_m, shape } => SourceCloud { radius_m, shape },
+                FarSource::NearestCell => SourceCloud::nearest_cell(),
+            },
+            permittivity_f_m: request.permittivity,
+            neutralising_background: u64::from(request.neutralising_background),
+            time_s: request.time_s,
+            tolerance: self.remote.settings.far_tolerance,
         };
-        let background = f64::from(u8::from(request.neutralising_background));
-        let tolerance = self.remote.settings.far_tolerance;
-        let numbers = [request.permittivity, radius, shape, tolerance, background, request.time_s];
         let layout = |layout: Layout| {
             let layout = layout
-                .with::<f64>(Section::Request, numbers.len())
+                .with::<FarQuestion>(Section::FarQuestion, 1)
                 .with::<[f64; 3]>(Section::Positions, request.positions.len())
                 .with::<f64>(Section::Charges, request.charges.len())
                 .with::<[f64; 3]>(Section::ImagePositions, request.image_positions.len())
@@ -175,7 +182,7 @@ impl Shared {
             }
         };
         self.remote.ask(MessageKind::Charges, layout, |layout, payload| {
-            layout.section_mut::<f64>(payload, Section::Request)?.copy_from_slice(&numbers);
+            layout.section_mut::<FarQuestion>(payload, Section::FarQuestion)?.fill(question);
             write_vectors(layout.section_mut(payload, Section::Positions)?, request.positions);
             layout.section_mut::<f64>(payload, Section::Charges)?.copy_from_slice(request.charges);
             write_vectors(layout.section_mut(payload, Section::ImagePositions)?, request.image_positions);
@@ -229,7 +236,7 @@ fn read(of_rank: Range<usize>, sections: &Sections<'_>, values: &mut FarValues) 
         [] => &[],
         _ => sections.exactly::<u64>(Section::Cells, values.cells.len())?,
     };
-    let answer = sections.exactly::<f64>(Section::Answer, 5)?;
+    let answer = sections.one::<FarAnswer>(Section::FarAnswer)?;
     values.potential[of_rank.clone()].copy_from_slice(potential);
     read_vectors(&mut values.e[of_rank], field);
     for (place, (known, &cell)) in values.cells.iter_mut().zip(cells).enumerate() {
@@ -241,10 +248,10 @@ fn read(of_rank: Range<usize>, sections: &Sections<'_>, values: &mut FarValues) 
         }
         *known = first as u32 + cell as u32;
     }
-    values.outside += answer[1] as u64;
-    values.iterations = values.iterations.max(answer[2] as u64);
-    values.residual = values.residual.max(answer[3]);
-    values.seconds = values.seconds.max(answer[4]);
+    values.outside = values.outside.saturating_add(answer.outside);
+    values.iterations = values.iterations.max(answer.iterations);
+    values.residual = values.residual.max(answer.residual);
+    values.seconds = values.seconds.max(answer.seconds);
     Ok(())
 }
 

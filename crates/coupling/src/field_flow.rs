@@ -2,53 +2,9 @@
 
 use crate::CouplingError;
 use crate::field_side::{FieldSide, of_dem};
+use amberfield_wire::payloads::FlowAnswer;
 use amberfield_wire::{Element, Header, Layout, MessageKind, Section, Sections, WireError};
 use std::ops::Range;
-
-/// An interval of the flow that the DEM process asks for.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub struct AskedFlow {
-    /// Its length [s]; 0: the flow as it is.
-    pub interval_s: f64,
-    /// Its start [s].
-    pub time_s: f64,
-    /// Density of the gas [kg/m³].
-    pub density: f64,
-    /// Its viscosity [Pa·s].
-    pub viscosity: f64,
-    /// Whether the pressure acts on the gas alone (model B).
-    pub model_b: bool,
-    /// Whether ∇·τ is wanted.
-    pub viscous_force: bool,
-    /// Whether the vorticity is.
-    pub vorticity: bool,
-}
-
-impl AskedFlow {
-    /// What a message asks for.
-    ///
-    /// # Errors
-    /// Numbers that are missing or cannot be used.
-    pub fn read(sections: &Sections<'_>) -> Result<Self, WireError> {
-        let numbers = sections.exactly::<f64>(Section::Interval, 7)?;
-        let sound = |place: usize, number: f64| {
-            let positive = !(2..4).contains(&place) || number > 0.0;
-            number.is_finite() && positive && (place != 0 || number >= 0.0)
-        };
-        if let Some(place) = (0..numbers.len()).find(|&place| !sound(place, numbers[place])) {
-            return Err(WireError::Number { section: Section::Interval, place, value: numbers[place] });
-        }
-        Ok(Self {
-            interval_s: numbers[0],
-            time_s: numbers[1],
-            density: numbers[2],
-            viscosity: numbers[3],
-            model_b: numbers[4] != 0.0,
-            viscous_force: numbers[5] != 0.0,
-            vorticity: numbers[6] != 0.0,
-        })
-    }
-}
 
 /// What a rank answers: the flow at its cell centres.
 #[derive(Clone, Copy, Debug)]
@@ -61,12 +17,8 @@ pub struct FlowReply<'a> {
     pub viscous_force: &'a [[f64; 3]],
     /// ∇ × u [1/s]; empty unless wanted.
     pub vorticity: &'a [[f64; 3]],
-    /// Iterations of the linear solver for p.
-    pub iterations: u64,
-    /// What continuity misses.
-    pub residual: f64,
-    /// Time that it took [s].
-    pub seconds: f64,
+    /// Iterations, residual and time.
+    pub answer: FlowAnswer,
 }
 
 /// What the grains do to the gas in a rank's cells.
@@ -142,13 +94,12 @@ impl FieldSide {
         for (section, array) in arrays {
             layout = layout.with::<[f64; 3]>(section, array.len());
         }
-        let layout = layout.with::<f64>(Section::FlowAnswer, 3);
+        let layout = layout.with::<FlowAnswer>(Section::FlowAnswer, 1);
         self.answer(&layout, |payload| {
             for (section, array) in arrays {
                 layout.section_mut::<[f64; 3]>(payload, section)?.copy_from_slice(array);
             }
-            let answer = [reply.iterations as f64, reply.residual, reply.seconds];
-            layout.section_mut::<f64>(payload, Section::FlowAnswer)?.copy_from_slice(&answer);
+            layout.section_mut::<FlowAnswer>(payload, Section::FlowAnswer)?.fill(reply.answer);
             Ok(())
         })
     }
@@ -188,18 +139,20 @@ impl FieldSide {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::field_side::Question;
     use amberfield_wire::Block64;
+    use amberfield_wire::payloads::FlowQuestion;
     use std::mem::MaybeUninit;
 
     /// A message of one interval and three cells.
-    fn message(numbers: [f64; 7], void_fraction: f64, drag: f64, source: f64) -> (Header, Vec<Block64>) {
+    fn message(question: FlowQuestion, void_fraction: f64, drag: f64, source: f64) -> (Header, Vec<Block64>) {
         let layout = Layout::new(Header::new(MessageKind::Grains, 1, 1))
-            .with::<f64>(Section::Interval, 7)
+            .with::<FlowQuestion>(Section::FlowQuestion, 1)
             .with::<f64>(Section::VoidFraction, 3)
             .with::<f64>(Section::DragCoefficient, 3)
             .with::<[f64; 3]>(Section::MomentumSource, 3);
         let mut payload = vec![MaybeUninit::uninit(); layout.blocks()];
-        layout.section_mut::<f64>(&mut payload, Section::Interval).unwrap().copy_from_slice(&numbers);
+        layout.section_mut::<FlowQuestion>(&mut payload, Section::FlowQuestion).unwrap().fill(question);
         let voids = layout.section_mut::<f64>(&mut payload, Section::VoidFraction).unwrap();
         voids.copy_from_slice(&[1.0, void_fraction, 0.5]);
         layout.section_mut::<f64>(&mut payload, Section::DragCoefficient).unwrap()[1] = drag;
@@ -209,12 +162,20 @@ mod tests {
         (*layout.header(), payload)
     }
 
-    const NUMBERS: [f64; 7] = [1e-4, 0.0, 1.2, 1.8e-5, 0.0, 1.0, 0.0];
+    const QUESTION: FlowQuestion = FlowQuestion {
+        interval_s: 1e-4,
+        time_s: 0.0,
+        density_kg_m3: 1.2,
+        viscosity_pa_s: 1.8e-5,
+        model_b: 0,
+        viscous_force: 1,
+        vorticity: 0,
+    };
 
     #[test]
     fn what_grains_do_to_a_gas_is_checked_before_it_is_used() {
         let read = |void, drag, source, cells| {
-            let (header, payload) = message(NUMBERS, void, drag, source);
+            let (header, payload) = message(QUESTION, void, drag, source);
             GrainsInCells::read(&Sections::new(&header, &payload), cells).map(|grains| grains.drag[0])
         };
         assert_eq!(read(0.5, 2.0, -3.0, 1..3), Ok(2.0));
@@ -237,17 +198,22 @@ mod tests {
 
     #[test]
     fn an_interval_that_makes_no_sense_is_refused() {
-        let read = |numbers| {
-            let (header, payload) = message(numbers, 1.0, 0.0, 0.0);
-            AskedFlow::read(&Sections::new(&header, &payload))
+        let read = |question| {
+            let (header, payload) = message(question, 1.0, 0.0, 0.0);
+            Question::read(&header, &Sections::new(&header, &payload))
         };
-        let asked = read(NUMBERS).unwrap();
-        assert!(asked.viscous_force && !asked.vorticity && !asked.model_b && asked.interval_s == 1e-4);
-        for (place, bad) in [(0, -1.0), (0, f64::NAN), (1, f64::INFINITY), (2, 0.0), (3, -1.0), (4, f64::NAN)]
-        {
-            let mut numbers = NUMBERS;
-            numbers[place] = bad;
-            assert!(matches!(read(numbers), Err(WireError::Number { place: found, .. }) if found == place));
+        assert_eq!(read(QUESTION), Ok(Question::Flow(QUESTION)));
+        for (name, bad) in [
+            ("interval_s", FlowQuestion { interval_s: -1.0, ..QUESTION }),
+            ("interval_s", FlowQuestion { interval_s: f64::NAN, ..QUESTION }),
+            ("time_s", FlowQuestion { time_s: f64::INFINITY, ..QUESTION }),
+            ("density_kg_m3", FlowQuestion { density_kg_m3: 0.0, ..QUESTION }),
+            ("viscosity_pa_s", FlowQuestion { viscosity_pa_s: -1.0, ..QUESTION }),
+        ] {
+            assert!(
+                matches!(read(bad), Err(WireError::Field { name: found, .. }) if found == name),
+                "{name}"
+            );
         }
     }
 }

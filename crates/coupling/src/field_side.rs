@@ -1,12 +1,12 @@
 //! The field side: opens the run, sends its mesh, waits for a question, answers.
 
 use crate::CouplingError;
-use crate::field_flow::AskedFlow;
 use crate::link::{Link, Message, SideOf};
 use crate::mesh_message::{MeshPart, mesh_header, own_cells};
 use crate::run_root::RunRoot;
 use amberfield_core::Vector3;
 use amberfield_field::far::{FarMesh, SmoothDensity};
+use amberfield_wire::payloads::{FarAnswer, FarQuestion, FlowQuestion, SourceCloud, check_far_question};
 use amberfield_wire::{Block64, Header, Layout, MessageKind, Section, Sections, WireError};
 use std::mem::MaybeUninit;
 use std::ops::Range;
@@ -15,75 +15,42 @@ use std::time::{Duration, Instant};
 /// How long a field process waits for the run's services, and looks for the DEM process between messages.
 const OPENING: Duration = Duration::from_secs(30);
 
-/// What the DEM process asks for.
+/// Question of the DEM process.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub enum Request {
+pub enum Question {
     /// The far field.
-    Charges(Asked),
-    /// An interval of the flow.
-    Flow(AskedFlow),
-    /// The state of the flow.
+    Far(FarQuestion),
+    /// The flow at the end of an interval.
+    Flow(FlowQuestion),
+    /// The state of the flow, for a checkpoint.
     State,
     /// To take in a state of the flow.
     Restore,
 }
 
-impl Request {
-    /// What a message asks for.
+impl Question {
+    /// Reads the question that a message asks.
     ///
     /// # Errors
-    /// A message that asks for nothing, numbers that are missing or cannot be used.
+    /// A message that asks nothing, numbers that are missing or cannot be used.
     pub fn read(header: &Header, sections: &Sections<'_>) -> Result<Self, WireError> {
         let is = |kind: MessageKind| header.kind == kind as u32;
-        Ok(if is(MessageKind::Grains) {
-            Self::Flow(AskedFlow::read(sections)?)
+        if is(MessageKind::Charges) {
+            let question = sections.one::<FarQuestion>(Section::FarQuestion)?;
+            check_far_question(question)?;
+            Ok(Self::Far(*question))
+        } else if is(MessageKind::Grains) {
+            let question = sections.one::<FlowQuestion>(Section::FlowQuestion)?;
+            question.check()?;
+            Ok(Self::Flow(*question))
         } else if is(MessageKind::Checkpoint) {
-            Self::State
+            Ok(Self::State)
         } else if is(MessageKind::Restore) {
-            Self::Restore
+            Ok(Self::Restore)
         } else {
-            Self::Charges(Asked::read(header, sections)?)
-        })
-    }
-}
-
-/// The far field that the DEM process asks for.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Asked {
-    /// Number of the solve.
-    pub solve: u64,
-    /// Permittivity of the medium [F/m].
-    pub permittivity: f64,
-    /// Relative tolerance of the linear solver.
-    pub tolerance: f64,
-    /// Whether the mean density is to be taken off where no face fixes the potential.
-    pub neutralising_background: bool,
-    /// Time of the charges [s].
-    pub time_s: f64,
-}
-
-impl Asked {
-    /// What a message asks for.
-    ///
-    /// # Errors
-    /// Another kind of message, numbers that are missing or no numbers, a permittivity that is not positive.
-    pub fn read(header: &Header, sections: &Sections<'_>) -> Result<Self, WireError> {
-        if header.kind != MessageKind::Charges as u32 {
             let Header { kind, solve, rank, ranks, .. } = *header;
-            return Err(WireError::Unexpected { kind, solve, rank, ranks });
+            Err(WireError::Unexpected { kind, solve, rank, ranks })
         }
-        let numbers = sections.exactly::<f64>(Section::Request, 6)?;
-        let sound = |place: usize, number: f64| number.is_finite() && (place > 0 || number > 0.0);
-        if let Some(place) = (0..numbers.len()).find(|&place| !sound(place, numbers[place])) {
-            return Err(WireError::Number { section: Section::Request, place, value: numbers[place] });
-        }
-        Ok(Self {
-            solve: header.solve,
-            permittivity: numbers[0],
-            tolerance: numbers[3],
-            neutralising_background: numbers[4] != 0.0,
-            time_s: numbers[5],
-        })
     }
 }
 
@@ -112,7 +79,7 @@ pub struct FieldSide {
     mesh: Option<FarMesh>,
     first_cell: usize,
     first_boundary: usize,
-    density: Option<([f64; 2], SmoothDensity)>,
+    density: Option<(SourceCloud, SmoothDensity)>,
     asked: Option<Message>,
     cells: Vec<u64>,
     last_cells: Vec<u32>,
@@ -157,7 +124,7 @@ impl FieldSide {
     /// A mesh that makes no sense, a DEM process that is gone.
     pub fn send_mesh(&mut self, part: &MeshPart<'_>, first_boundary: usize) -> Result<(), CouplingError> {
         self.mesh = Some(own_cells(part)?);
-        self.first_cell = part.first_cell as usize;
+        self.first_cell = part.outline.first_cell as usize;
         self.first_boundary = first_boundary;
         let layout = part.layout(mesh_header(self.link.run(), self.rank, self.ranks));
         self.link.send(&layout, 1, |payload| part.write(&layout, payload))
@@ -167,7 +134,7 @@ impl FieldSide {
     ///
     /// # Errors
     /// A DEM process that is gone, a message that makes no sense.
-    pub fn wait(&mut self) -> Result<Option<Request>, CouplingError> {
+    pub fn wait(&mut self) -> Result<Option<Question>, CouplingError> {
         self.asked = None;
         let message = match self.link.receive(0, Duration::MAX, || self.link.dem_is_alive()) {
             Ok(message) => message,
@@ -179,9 +146,9 @@ impl FieldSide {
                 return Err(error);
             }
         };
-        let request = Request::read(message.header(), &message.sections()).map_err(of_dem)?;
+        let question = Question::read(message.header(), &message.sections()).map_err(of_dem)?;
         self.asked = Some(message);
-        Ok(Some(request))
+        Ok(Some(question))
     }
 
     /// Boundary data of this rank's faces: potentials [V] or outward slopes [V/m].
@@ -213,10 +180,9 @@ impl FieldSide {
     /// # Errors
     /// Charges that are not finite.
     pub fn density(&mut self, density: &mut [f64]) -> Result<(), CouplingError> {
-        let numbers = self.section::<f64>(Section::Request)?;
-        let cloud = [numbers[1], numbers[2]];
+        let cloud = self.sections()?.one::<FarQuestion>(Section::FarQuestion).map_err(of_dem)?.cloud;
         self.check_charges()?;
-        if cloud[0] == 0.0 {
+        if cloud.is_nearest_cell() {
             return self.map(density);
         }
         // Clouds belong to no cell, and the DEM side knows where its grains are.
@@ -232,7 +198,7 @@ impl FieldSide {
             let reach = Vector3::repeat(0.5 * mesh.largest_cell());
             let whole = mesh.domain();
             let (low, high) = ((low - reach).sup(&whole.min()), (high + reach).inf(&whole.max()));
-            self.density = Some((cloud, SmoothDensity::new(whole, low, high, cloud[0], cloud[1])));
+            self.density = Some((cloud, SmoothDensity::new(whole, low, high, cloud.radius_m, cloud.shape)));
         }
         let message = self.asked.as_ref().ok_or_else(no_request)?;
         let sections = message.sections();
@@ -308,15 +274,20 @@ impl FieldSide {
             .with::<f64>(Section::Potential, reply.potential.len())
             .with::<[f64; 3]>(Section::Field, reply.e.len())
             .with::<u64>(Section::Cells, self.cells.len())
-            .with::<f64>(Section::Answer, 5);
-        let answer =
-            [self.charge, self.outside as f64, reply.iterations as f64, reply.residual, reply.seconds];
+            .with::<FarAnswer>(Section::FarAnswer, 1);
+        let answer = FarAnswer {
+            charge_c: self.charge,
+            outside: self.outside,
+            iterations: reply.iterations,
+            residual: reply.residual,
+            seconds: reply.seconds,
+        };
         let cells = std::mem::take(&mut self.cells);
         let sent = self.answer(&layout, |payload| {
             layout.section_mut::<f64>(payload, Section::Potential)?.copy_from_slice(reply.potential);
             layout.section_mut::<[f64; 3]>(payload, Section::Field)?.copy_from_slice(reply.e);
             layout.section_mut::<u64>(payload, Section::Cells)?.copy_from_slice(&cells);
-            layout.section_mut::<f64>(payload, Section::Answer)?.copy_from_slice(&answer);
+            layout.section_mut::<FarAnswer>(payload, Section::FarAnswer)?.fill(answer);
             Ok(())
         });
         self.cells = cells;
@@ -339,6 +310,12 @@ impl FieldSide {
         self.link.send(layout, 1, write)?;
         self.asked = None;
         Ok(())
+    }
+
+    /// Number of the solve that is asked for; 0 when nothing is.
+    #[must_use]
+    pub fn solve(&self) -> u64 {
+        self.asked.as_ref().map_or(0, |message| message.header().solve)
     }
 
     /// This rank's number.

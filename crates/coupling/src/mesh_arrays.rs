@@ -1,8 +1,9 @@
 //! A mesh in the wire's arrays: for field solvers in Rust, of tests and measurements.
 
-use crate::mesh_message::{BOUNDARY_NUMBERS, MeshPart};
+use crate::mesh_message::MeshPart;
 use amberfield_core::Axis;
-use amberfield_field::far::{Condition, FarMesh, Neighbour};
+use amberfield_field::far::{BoundaryFace, Condition, FarMesh, Neighbour};
+use amberfield_wire::payloads::{self, MeshOutline};
 
 /// A whole mesh in arrays as a solver of one rank sends them.
 #[derive(Clone, Debug)]
@@ -13,7 +14,7 @@ pub struct MeshArrays {
     offsets: Vec<f64>,
     neighbours: Vec<i64>,
     shifts: Vec<[f64; 3]>,
-    boundary: Vec<[f64; BOUNDARY_NUMBERS]>,
+    boundary: Vec<payloads::BoundaryFace>,
 }
 
 impl MeshArrays {
@@ -29,33 +30,6 @@ impl MeshArrays {
             Neighbour::Cell { cell, shift } => (i64::from(cell), shift.into()),
             Neighbour::Boundary(face) => (-1 - i64::from(face), [0.0; 3]),
         };
-        let boundary = mesh.boundary().iter().map(|face| {
-            let (kind, value) = match face.condition {
-                Condition::Potential(volts) => (1.0, volts),
-                Condition::Slope(slope) => (0.0, slope),
-            };
-            let (c, n) = (face.centre, face.normal);
-            let m = face.spread;
-            let [xx, xy, xz, yy, yz, zz] = [m.m11, m.m12, m.m13, m.m22, m.m23, m.m33];
-            [
-                c.x,
-                c.y,
-                c.z,
-                n.x,
-                n.y,
-                n.z,
-                face.area,
-                f64::from(face.cell),
-                kind,
-                value,
-                xx,
-                xy,
-                xz,
-                yy,
-                yz,
-                zz,
-            ]
-        });
         Self {
             centres: mesh.centres().iter().map(|&centre| centre.into()).collect(),
             first_face,
@@ -63,7 +37,7 @@ impl MeshArrays {
             offsets: faces.iter().map(|face| face.offset).collect(),
             neighbours: faces.iter().map(|face| beyond(face.neighbour).0).collect(),
             shifts: faces.iter().map(|face| beyond(face.neighbour).1).collect(),
-            boundary: boundary.collect(),
+            boundary: mesh.boundary().iter().map(boundary_face).collect(),
         }
     }
 
@@ -72,10 +46,13 @@ impl MeshArrays {
     pub fn part<'a>(&'a self, mesh: &'a FarMesh) -> MeshPart<'a> {
         let whole = mesh.domain();
         MeshPart {
-            corners: [whole.min().into(), whole.max().into()],
-            periodic: Axis::ALL.map(|axis| whole.is_periodic(axis)),
-            first_cell: 0,
-            all_cells: self.centres.len() as u64,
+            outline: MeshOutline {
+                low_m: whole.min().into(),
+                high_m: whole.max().into(),
+                periodic: Axis::ALL.map(|axis| u64::from(whole.is_periodic(axis))),
+                first_cell: 0,
+                all_cells: self.centres.len() as u64,
+            },
             centres: &self.centres,
             volumes: mesh.volumes(),
             first_face: &self.first_face,
@@ -85,5 +62,27 @@ impl MeshArrays {
             face_shifts: &self.shifts,
             boundary_faces: &self.boundary,
         }
+    }
+}
+
+/// A boundary face as it travels.
+fn boundary_face(face: &BoundaryFace) -> payloads::BoundaryFace {
+    let (is_conductor, prescribed) = match face.condition {
+        Condition::Potential(volts) => (1, volts),
+        Condition::Slope(slope) => (0, slope),
+    };
+    payloads::BoundaryFace {
+        centre_m: face.centre.into(),
+        normal: face.normal.into(),
+        area_m2: face.area,
+        cell: u64::from(face.cell),
+        is_conductor,
+        prescribed,
+        spread_xx_m2: face.spread.m11,
+        spread_xy_m2: face.spread.m12,
+        spread_xz_m2: face.spread.m13,
+        spread_yy_m2: face.spread.m22,
+        spread_yz_m2: face.spread.m23,
+        spread_zz_m2: face.spread.m33,
     }
 }

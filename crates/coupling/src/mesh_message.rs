@@ -4,25 +4,15 @@ use crate::CouplingError;
 use amberfield_core::{Boundary, Domain, Matrix3, Vector3};
 use amberfield_field::FieldError;
 use amberfield_field::far::{BoundaryFace, CellFace, Condition, FarMesh, FarMeshParts, Neighbour};
+use amberfield_wire::payloads::{self, MeshOutline};
 use amberfield_wire::{Block64, Header, Layout, MessageKind, Section, Sections, WireError};
 use std::mem::MaybeUninit;
-
-/// Numbers of a boundary face, see [`Section::BoundaryFaces`].
-pub(crate) const BOUNDARY_NUMBERS: usize = 16;
-/// Numbers of a mesh, see [`Section::MeshNumbers`].
-const MESH_NUMBERS: usize = 11;
 
 /// One rank's part of a mesh, in arrays as the wire has them: see [`Section`].
 #[derive(Clone, Copy, Debug)]
 pub struct MeshPart<'a> {
-    /// Lower and upper corner of all ranks' cells [m].
-    pub corners: [[f64; 3]; 2],
-    /// Axes that cyclic faces join.
-    pub periodic: [bool; 3],
-    /// First cell of this rank among all ranks' cells.
-    pub first_cell: u64,
-    /// Cells of all ranks.
-    pub all_cells: u64,
+    /// Box of all ranks' cells, periodic axes, and where this rank's cells are among all.
+    pub outline: MeshOutline,
     /// Cell centres [m].
     pub centres: &'a [[f64; 3]],
     /// Cell volumes [m³].
@@ -37,14 +27,14 @@ pub struct MeshPart<'a> {
     pub face_neighbours: &'a [i64],
     /// What is added to the neighbours' coordinates [m].
     pub face_shifts: &'a [[f64; 3]],
-    /// By boundary face: centre, normal, area, cell of this rank, 1 for a prescribed potential (0: slope), its value.
-    pub boundary_faces: &'a [[f64; BOUNDARY_NUMBERS]],
+    /// Boundary faces of this rank, with the conditions there.
+    pub boundary_faces: &'a [payloads::BoundaryFace],
 }
 
 impl MeshPart<'_> {
     pub(crate) fn layout(&self, header: Header) -> Layout {
         Layout::new(header)
-            .with::<f64>(Section::MeshNumbers, MESH_NUMBERS)
+            .with::<MeshOutline>(Section::MeshOutline, 1)
             .with::<[f64; 3]>(Section::Centres, self.centres.len())
             .with::<f64>(Section::Volumes, self.volumes.len())
             .with::<u64>(Section::FirstFace, self.first_face.len())
@@ -52,7 +42,7 @@ impl MeshPart<'_> {
             .with::<f64>(Section::FaceOffsets, self.face_offsets.len())
             .with::<i64>(Section::FaceNeighbours, self.face_neighbours.len())
             .with::<[f64; 3]>(Section::FaceShifts, self.face_shifts.len())
-            .with::<[f64; BOUNDARY_NUMBERS]>(Section::BoundaryFaces, self.boundary_faces.len())
+            .with::<payloads::BoundaryFace>(Section::BoundaryFaces, self.boundary_faces.len())
     }
 
     pub(crate) fn write(
@@ -60,11 +50,7 @@ impl MeshPart<'_> {
         layout: &Layout,
         payload: &mut [MaybeUninit<Block64>],
     ) -> Result<(), WireError> {
-        let [low, high] = self.corners;
-        let periodic = self.periodic.map(|periodic| f64::from(u8::from(periodic)));
-        let numbers = low.into_iter().chain(high).chain(periodic);
-        let numbers: Vec<f64> = numbers.chain([self.first_cell as f64, self.all_cells as f64]).collect();
-        layout.section_mut::<f64>(payload, Section::MeshNumbers)?.copy_from_slice(&numbers);
+        layout.section_mut::<MeshOutline>(payload, Section::MeshOutline)?.fill(self.outline);
         layout.section_mut::<[f64; 3]>(payload, Section::Centres)?.copy_from_slice(self.centres);
         layout.section_mut::<f64>(payload, Section::Volumes)?.copy_from_slice(self.volumes);
         layout.section_mut::<u64>(payload, Section::FirstFace)?.copy_from_slice(self.first_face);
@@ -72,7 +58,7 @@ impl MeshPart<'_> {
         layout.section_mut::<f64>(payload, Section::FaceOffsets)?.copy_from_slice(self.face_offsets);
         layout.section_mut::<i64>(payload, Section::FaceNeighbours)?.copy_from_slice(self.face_neighbours);
         layout.section_mut::<[f64; 3]>(payload, Section::FaceShifts)?.copy_from_slice(self.face_shifts);
-        let faces = layout.section_mut::<[f64; BOUNDARY_NUMBERS]>(payload, Section::BoundaryFaces)?;
+        let faces = layout.section_mut::<payloads::BoundaryFace>(payload, Section::BoundaryFaces)?;
         faces.copy_from_slice(self.boundary_faces);
         Ok(())
     }
@@ -82,15 +68,10 @@ impl MeshPart<'_> {
     /// # Errors
     /// A section that is missing or does not fit the others.
     pub fn read<'a>(sections: &Sections<'a>) -> Result<MeshPart<'a>, WireError> {
-        let numbers = sections.exactly::<f64>(Section::MeshNumbers, MESH_NUMBERS)?;
-        let corner = |from: usize| [numbers[from], numbers[from + 1], numbers[from + 2]];
         let centres = sections.get::<[f64; 3]>(Section::Centres)?;
         let face_normals = sections.get::<[f64; 3]>(Section::FaceNormals)?;
         Ok(MeshPart {
-            corners: [corner(0), corner(3)],
-            periodic: corner(6).map(|number| number != 0.0),
-            first_cell: numbers[9] as u64,
-            all_cells: numbers[10] as u64,
+            outline: *sections.one(Section::MeshOutline)?,
             centres,
             volumes: sections.exactly(Section::Volumes, centres.len())?,
             first_face: sections.exactly(Section::FirstFace, centres.len() + 1)?,
@@ -131,8 +112,9 @@ pub fn assemble(parts: &[MeshPart<'_>]) -> Result<FarMesh, CouplingError> {
             let face = first_face.saturating_add(*face);
             u32::try_from(face).map_err(|_| broken(format!("a face's number is {face}")))
         };
-        if part.first_cell != first as u64 {
-            return Err(broken(format!("a rank's cells begin at {} instead of {first}", part.first_cell)));
+        let announced = part.outline.first_cell;
+        if announced != first as u64 {
+            return Err(broken(format!("a rank's cells begin at {announced} instead of {first}")));
         }
         whole.centres.extend(part.centres.iter().map(|&centre| Vector3::from(centre)));
         whole.volumes.extend(part.volumes);
@@ -148,32 +130,40 @@ pub fn assemble(parts: &[MeshPart<'_>]) -> Result<FarMesh, CouplingError> {
             let normal = Vector3::from(part.face_normals[face]);
             whole.faces.push(CellFace { normal, offset: part.face_offsets[face], neighbour });
         }
-        for &[cx, cy, cz, nx, ny, nz, area, cell, kind, value, xx, xy, xz, yy, yz, zz] in part.boundary_faces
-        {
-            whole.boundary.push(BoundaryFace {
-                centre: Vector3::new(cx, cy, cz),
-                normal: Vector3::new(nx, ny, nz),
-                area,
-                spread: Matrix3::new(xx, xy, xz, xy, yy, yz, xz, yz, zz),
-                cell: index((first as i64).saturating_add(cell as i64))?,
-                condition: if kind == 0.0 { Condition::Slope(value) } else { Condition::Potential(value) },
-            });
+        for face in part.boundary_faces {
+            whole.boundary.push(boundary_face(face, first)?);
         }
     }
-    if parts[0].all_cells != whole.centres.len() as u64 {
-        return Err(broken(format!(
-            "{} cells were announced, {} came",
-            parts[0].all_cells,
-            whole.centres.len()
-        )));
+    let (announced, came) = (parts[0].outline.all_cells, whole.centres.len());
+    if announced != came as u64 {
+        return Err(broken(format!("{announced} cells were announced, {came} came")));
     }
     Ok(FarMesh::new(whole)?)
 }
 
+/// A boundary face as it travels, of a rank whose first cell has the number `first` among all.
+fn boundary_face(face: &payloads::BoundaryFace, first: usize) -> Result<BoundaryFace, CouplingError> {
+    let payloads::BoundaryFace { spread_xx_m2: xx, spread_xy_m2: xy, spread_xz_m2: xz, .. } = *face;
+    let payloads::BoundaryFace { spread_yy_m2: yy, spread_yz_m2: yz, spread_zz_m2: zz, .. } = *face;
+    let cell = i64::try_from(face.cell).unwrap_or(i64::MAX);
+    Ok(BoundaryFace {
+        centre: Vector3::from(face.centre_m),
+        normal: Vector3::from(face.normal),
+        area: face.area_m2,
+        spread: Matrix3::new(xx, xy, xz, xy, yy, yz, xz, yz, zz),
+        cell: index((first as i64).saturating_add(cell))?,
+        condition: match face.is_conductor {
+            0 => Condition::Slope(face.prescribed),
+            _ => Condition::Potential(face.prescribed),
+        },
+    })
+}
+
 /// One rank's own cells and what lies beyond them, for mapping charges: neighbours of other ranks are the mesh's end.
 pub(crate) fn own_cells(part: &MeshPart<'_>) -> Result<FarMesh, CouplingError> {
-    let own = part.first_cell..part.first_cell + part.centres.len() as u64;
-    let mut boundary: Vec<[f64; BOUNDARY_NUMBERS]> = part.boundary_faces.to_vec();
+    let first = part.outline.first_cell;
+    let own = first..first + part.centres.len() as u64;
+    let mut boundary = part.boundary_faces.to_vec();
     let mut neighbours = part.face_neighbours.to_vec();
     for (cell, ends) in part.first_face.windows(2).enumerate() {
         let faces = ends[0] as usize..ends[1] as usize;
@@ -182,19 +172,15 @@ pub(crate) fn own_cells(part: &MeshPart<'_>) -> Result<FarMesh, CouplingError> {
                 continue;
             }
             if own.contains(&(*neighbour as u64)) {
-                *neighbour -= part.first_cell as i64;
+                *neighbour -= first as i64;
             } else {
-                let ([cx, cy, cz], [nx, ny, nz]) = (part.centres[cell], *normal);
                 *neighbour = -1 - boundary.len() as i64;
-                let mut face = [0.0; BOUNDARY_NUMBERS];
-                face[..8].copy_from_slice(&[cx, cy, cz, nx, ny, nz, 1.0, cell as f64]);
-                boundary.push(face);
+                boundary.push(end_of_part(part.centres[cell], *normal, cell as u64));
             }
         }
     }
     let alone = MeshPart {
-        first_cell: 0,
-        all_cells: part.centres.len() as u64,
+        outline: MeshOutline { first_cell: 0, all_cells: part.centres.len() as u64, ..part.outline },
         face_neighbours: &neighbours,
         boundary_faces: &boundary,
         ..*part
@@ -202,10 +188,28 @@ pub(crate) fn own_cells(part: &MeshPart<'_>) -> Result<FarMesh, CouplingError> {
     assemble(&[alone])
 }
 
+/// A face between a cell of this rank and one of another: only where it is and that it ends the part counts.
+fn end_of_part(centre_m: [f64; 3], normal: [f64; 3], cell: u64) -> payloads::BoundaryFace {
+    payloads::BoundaryFace {
+        centre_m,
+        normal,
+        area_m2: 1.0,
+        cell,
+        is_conductor: 0,
+        prescribed: 0.0,
+        spread_xx_m2: 0.0,
+        spread_xy_m2: 0.0,
+        spread_xz_m2: 0.0,
+        spread_yy_m2: 0.0,
+        spread_yz_m2: 0.0,
+        spread_zz_m2: 0.0,
+    }
+}
+
 fn domain_of(part: &MeshPart<'_>) -> Result<Domain, CouplingError> {
-    let [low, high] = part.corners.map(Vector3::from);
-    let faces = part.periodic.map(|periodic| [if periodic { Boundary::Periodic } else { Boundary::Open }; 2]);
-    Domain::new(low, high, faces).map_err(|error| broken(error.to_string()))
+    let MeshOutline { low_m, high_m, periodic, .. } = part.outline;
+    let faces = periodic.map(|joined| [if joined == 0 { Boundary::Open } else { Boundary::Periodic }; 2]);
+    Domain::new(Vector3::from(low_m), Vector3::from(high_m), faces).map_err(|error| broken(error.to_string()))
 }
 
 fn index(number: i64) -> Result<u32, CouplingError> {

@@ -5,6 +5,7 @@ use crate::dem_side::{Shared, locked, read_vectors, write_vectors};
 use amberfield_core::{GasModel, Vector3};
 use amberfield_field::far::FarMesh;
 use amberfield_gas::{FlowRequest, FlowSolver, FlowValues, GasError};
+use amberfield_wire::payloads::{FlowAnswer, FlowQuestion};
 use amberfield_wire::{Layout, MessageKind, Section, Sections, WireError};
 use std::ops::Range;
 use std::sync::{Arc, Mutex};
@@ -56,34 +57,32 @@ impl Shared {
     /// Asks for the flow without waiting.
     fn send_flow(&mut self, request: &FlowRequest<'_>) -> Result<(), CouplingError> {
         self.clear_the_way()?;
-        let flag = |wanted: bool| f64::from(u8::from(wanted));
-        let wanted = [request.flow.viscous_force, request.flow.saffman_lift];
-        let numbers = [
-            request.interval_s,
-            request.time_s,
-            request.gas.density_kg_m3,
-            request.gas.viscosity_pa_s,
-            flag(request.flow.model == GasModel::B),
-            flag(wanted[0]),
-            flag(wanted[1]),
-        ];
+        let question = FlowQuestion {
+            interval_s: request.interval_s,
+            time_s: request.time_s,
+            density_kg_m3: request.gas.density_kg_m3,
+            viscosity_pa_s: request.gas.viscosity_pa_s,
+            model_b: u64::from(request.flow.model == GasModel::B),
+            viscous_force: u64::from(request.flow.viscous_force),
+            vorticity: u64::from(request.flow.saffman_lift),
+        };
         let cells = request.void_fraction.len();
         let layout = |layout: Layout| {
             layout
-                .with::<f64>(Section::Interval, numbers.len())
+                .with::<FlowQuestion>(Section::FlowQuestion, 1)
                 .with::<f64>(Section::VoidFraction, cells)
                 .with::<f64>(Section::DragCoefficient, cells)
                 .with::<[f64; 3]>(Section::MomentumSource, cells)
         };
         self.remote.ask(MessageKind::Grains, layout, |layout, payload| {
-            layout.section_mut::<f64>(payload, Section::Interval)?.copy_from_slice(&numbers);
+            layout.section_mut::<FlowQuestion>(payload, Section::FlowQuestion)?.fill(question);
             let void_fraction = layout.section_mut::<f64>(payload, Section::VoidFraction)?;
             void_fraction.copy_from_slice(request.void_fraction);
             layout.section_mut::<f64>(payload, Section::DragCoefficient)?.copy_from_slice(request.drag);
             write_vectors(layout.section_mut(payload, Section::MomentumSource)?, request.source);
             Ok(())
         })?;
-        self.flow.asked = Some(wanted);
+        self.flow.asked = Some(question);
         Ok(())
     }
 
@@ -93,13 +92,16 @@ impl Shared {
             *values = answer;
             return Ok(());
         }
-        let [viscous_force, vorticity] = self.flow.asked.take().unwrap_or_default();
+        let asked = self.flow.asked.take();
         let cells = self.remote.cell_count();
-        let count_if = |wanted: bool| if wanted { cells } else { 0 };
+        let count_if = |wanted: fn(&FlowQuestion) -> u64| match &asked {
+            Some(question) if wanted(question) != 0 => cells,
+            _ => 0,
+        };
         values.velocity.resize(cells, Vector3::zeros());
         values.pressure_gradient.resize(cells, Vector3::zeros());
-        values.viscous_force.resize(count_if(viscous_force), Vector3::zeros());
-        values.vorticity.resize(count_if(vorticity), Vector3::zeros());
+        values.viscous_force.resize(count_if(|question| question.viscous_force), Vector3::zeros());
+        values.vorticity.resize(count_if(|question| question.vorticity), Vector3::zeros());
         (values.iterations, values.residual, values.seconds) = (0, 0.0, 0.0);
         self.remote.collect(MessageKind::Flow, |cells, _, sections| read(cells, sections, values))?;
         let outcome = sound(values);
@@ -157,10 +159,10 @@ fn read(of_rank: Range<usize>, sections: &Sections<'_>, values: &mut FlowValues)
             read_vectors(&mut array[of_rank.clone()], theirs);
         }
     }
-    let answer = sections.exactly::<f64>(Section::FlowAnswer, 3)?;
-    values.iterations = values.iterations.max(answer[0] as u64);
-    values.residual = values.residual.max(answer[1]);
-    values.seconds = values.seconds.max(answer[2]);
+    let answer = sections.one::<FlowAnswer>(Section::FlowAnswer)?;
+    values.iterations = values.iterations.max(answer.iterations);
+    values.residual = values.residual.max(answer.residual);
+    values.seconds = values.seconds.max(answer.seconds);
     Ok(())
 }
 

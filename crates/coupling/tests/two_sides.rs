@@ -2,7 +2,7 @@
 
 use amberfield_core::{Boundary, Domain, Vector3};
 use amberfield_coupling::{
-    Announced, BoxSolver, FieldSide, MeshArrays, Reply, Request, SolverSettings, stale_runs,
+    Announced, BoxSolver, FieldSide, MeshArrays, Question, Reply, SolverSettings, stale_runs,
 };
 use amberfield_field::far::{FarField, FarRequest, FarSource, FarValues};
 use std::time::Duration;
@@ -34,15 +34,15 @@ fn echo(run: &str) {
     let mesh = solver.mesh();
     let mut side = FieldSide::open(run, 0, 1).expect("the run is there");
     side.send_mesh(&MeshArrays::of(mesh).part(mesh), 0).expect("a good mesh");
-    while let Some(request) = side.wait().expect("the DEM side lives") {
-        let Request::Charges(asked) = request else { panic!("{request:?}") };
+    while let Some(question) = side.wait().expect("the DEM side lives") {
+        let Question::Far(asked) = question else { panic!("{question:?}") };
         let mut density = vec![0.0; mesh.cell_count()];
         side.density(&mut density).expect("good charges");
         assert_eq!(
             side.boundary(mesh.boundary().len()).expect("one number a face").len(),
             mesh.boundary().len()
         );
-        let e = vec![[1.0, 2.0, asked.permittivity]; mesh.cell_count()];
+        let e = vec![[1.0, 2.0, asked.permittivity_f_m]; mesh.cell_count()];
         side.reply(&Reply { potential: &density, e: &e, iterations: 3, residual: 1e-9, seconds: 0.5 })
             .expect("it lives");
     }

@@ -86,6 +86,16 @@ pub enum WireError {
         /// Its value.
         value: f64,
     },
+    /// A field of a structure that cannot be used.
+    #[error("{name} of section {section:?} is {value}: not a number that can be used")]
+    Field {
+        /// Section that holds the structure.
+        section: Section,
+        /// Name of the field.
+        name: &'static str,
+        /// Value in the message.
+        value: f64,
+    },
     /// A number that names nothing.
     #[error("element {place} of section {section:?} is {value}, which is not below {count}")]
     Index {

@@ -5,7 +5,7 @@ use iceoryx2::prelude::ZeroCopySend;
 use std::mem::{align_of, offset_of, size_of};
 
 /// Raised with every change of a message.
-pub const PROTOCOL_VERSION: u32 = 3;
+pub const PROTOCOL_VERSION: u32 = 4;
 /// Sections of a message at most.
 pub(crate) const MOST_SECTIONS: usize = 20;
 
@@ -69,18 +69,16 @@ pub enum Section {
     ImageCharges = 5,
     /// By boundary face: potential [V] or outward slope [V/m].
     Boundary = 6,
-    /// Numbers of a request: permittivity [F/m], radius of the clouds [m] (0: nearest cell), shape, relative tolerance of the
-    /// linear solver, 1 for a neutralising background, time of the charges [s].
-    Request = 7,
+    /// Scalars of the question for the far field: one [`crate::payloads::FarQuestion`].
+    FarQuestion = 7,
     /// Potential at the cells' centres [V].
     Potential = 8,
     /// E at the cells' centres [V/m].
     Field = 9,
     /// Cell of each charge (`u64`), `u64::MAX` where it is another rank's; empty unless the source is by cell.
     Cells = 10,
-    /// Numbers of an answer: charge in the cells [C], charges outside the mesh, iterations, residual, time of the
-    /// linear solver [s].
-    Answer = 11,
+    /// Scalars of the answer to it: one [`crate::payloads::FarAnswer`].
+    FarAnswer = 11,
     /// Cell centres [m].
     Centres = 12,
     /// Cell volumes [m³].
@@ -95,15 +93,14 @@ pub enum Section {
     FaceNeighbours = 17,
     /// What is added to a neighbour's coordinates [m].
     FaceShifts = 18,
-    /// By boundary face, 16 numbers: centre [m], outward unit normal, area [m²], cell of this rank, 1 for a prescribed potential
-    /// and 0 for a prescribed slope, its value [V or V/m], mean over its corners x of (x − centre)(x − centre)ᵀ [m²] (xx, xy, xz,
-    /// yy, yz, zz).
+    /// Faces on the boundary: a [`crate::payloads::BoundaryFace`] each.
     BoundaryFaces = 19,
+    /// Outline of the mesh: one [`crate::payloads::MeshOutline`].
+    MeshOutline = 20,
     /// Potential at the cells' centres of all ranks to start the linear solver from [V]; absent: from where it is.
     Guess = 21,
-    /// Numbers of an interval of the flow: its length [s] (0: nothing moves), its start [s], density [kg/m³] and viscosity [Pa·s] of the gas, 0 for model A and 1 for model
-    /// B, 1 where ∇·τ is wanted, 1 where the vorticity is.
-    Interval = 22,
+    /// Scalars of the question for the flow: one [`crate::payloads::FlowQuestion`].
+    FlowQuestion = 22,
     /// ε by cell of all ranks.
     VoidFraction = 23,
     /// K by cell of all ranks [kg/(m³ s)]: the gas feels S − K u.
@@ -118,14 +115,12 @@ pub enum Section {
     ViscousForce = 28,
     /// ∇ × u at the cells' centres [1/s]; empty unless wanted.
     Vorticity = 29,
-    /// Numbers of an interval's answer: iterations for p, what continuity misses (RMS of ∂ε/∂t + ∇·(ε u), times the interval), time of the solver [s].
+    /// Scalars of the answer to it: one [`crate::payloads::FlowAnswer`].
     FlowAnswer = 30,
     /// State of the flow: numbers of the solver's own; all ranks', one after the other, when they are sent back.
     FlowState = 31,
-    /// How many of them each rank has (`u64`).
+    /// Number of them that each rank has (`u64`).
     FlowStateSizes = 32,
-    /// Numbers of a mesh: lower and upper corner [m], 1 for each periodic axis, first cell of this rank, cells of all ranks.
-    MeshNumbers = 20,
 }
 
 /// Where a section lies.

@@ -123,6 +123,17 @@ impl<'a> Sections<'a> {
         Ok(found)
     }
 
+    /// A section of one element, in place.
+    ///
+    /// # Errors
+    /// As [`Self::get`], and another number of elements.
+    pub fn one<T: Element>(&self, section: Section) -> Result<&'a T, WireError> {
+        match self.exactly::<T>(section, 1)? {
+            [element] => Ok(element),
+            several => Err(WireError::Count { section, theirs: several.len(), ours: 1 }),
+        }
+    }
+
     /// The text of a message; empty where it has none.
     #[must_use]
     pub fn text(&self) -> String {
