@@ -1,10 +1,10 @@
 //! The process that solves, as the DEM side sees it: one question at a time, an answer of every rank.
 
+use super::launch::Process;
+use super::solver::SolverSettings;
 use crate::CouplingError;
-use crate::dem_side::SolverSettings;
-use crate::launch::Process;
-use crate::link::Link;
-use crate::run_root::RunRoot;
+use crate::meeting::Link;
+use crate::meeting::RunRoot;
 use amberfield_wire::{Block64, Header, Layout, MessageKind, Sections, WireError};
 use std::mem::MaybeUninit;
 use std::ops::Range;

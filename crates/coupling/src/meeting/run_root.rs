@@ -80,7 +80,7 @@ impl RunRoot {
         loop {
             let mut waiting = own_runs();
             waiting.retain(|name| {
-                Path::new(SHARED).join(name).join(INVITATION).exists() && crate::link::dem_is_alive_in(name)
+                Path::new(SHARED).join(name).join(INVITATION).exists() && super::link::dem_is_alive_in(name)
             });
             match waiting.as_slice() {
                 [name] => return Self::open(name),
@@ -218,7 +218,7 @@ pub(crate) fn no_room(bytes: usize, why: &dyn std::fmt::Display) -> CouplingErro
 #[must_use]
 pub fn stale_runs(clean: bool) -> Vec<String> {
     let mut stale = own_runs();
-    stale.retain(|name| !crate::link::dem_is_alive_in(name));
+    stale.retain(|name| !super::link::dem_is_alive_in(name));
     if clean {
         stale.iter().for_each(|name| remove(name));
     }

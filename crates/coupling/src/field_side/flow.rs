@@ -1,7 +1,7 @@
 //! The field side of a gas's flow: what the grains do to it, and the answer.
 
+use super::side::{FieldSide, of_dem};
 use crate::CouplingError;
-use crate::field_side::{FieldSide, of_dem};
 use amberfield_wire::payloads::FlowAnswer;
 use amberfield_wire::{Element, Header, Layout, MessageKind, Section, Sections, WireError};
 use std::ops::Range;

@@ -3,8 +3,8 @@
 //! A publish-subscribe service and an event service for either direction. Messages are written in place in shared memory and read
 //! in place; events wake the receiver, who looks first and then waits in short slices, so that a peer that dies is noticed.
 
+use super::run_root::{RunRoot, check_room, no_room};
 use crate::CouplingError;
-use crate::run_root::{RunRoot, check_room, no_room};
 use amberfield_wire::{Block64, Header, Layout, MessageKind, Section, Sections, WireError};
 use iceoryx2::node::NodeView as _;
 use iceoryx2::port::listener::Listener;

@@ -1,6 +1,6 @@
 //! A mesh in the wire's arrays: for field solvers in Rust, of tests and measurements.
 
-use crate::mesh_message::MeshPart;
+use super::part::MeshPart;
 use amberfield_core::Axis;
 use amberfield_field::far::{BoundaryFace, Condition, FarMesh, Neighbour};
 use amberfield_wire::payloads::{self, MeshOutline};

@@ -1,12 +1,12 @@
 //! The DEM side: owns the run, starts the field process, asks it for fields.
 
+use super::flow::RemoteFlow;
+use super::launch::{Process, RUN, program_name};
+use super::remote::{Remote, alive, check_sender, of_solver};
 use crate::CouplingError;
-use crate::launch::{Process, RUN, program_name};
-use crate::link::{Link, Message, SideOf};
-use crate::mesh_message::{MeshPart, assemble};
-use crate::remote::{Remote, alive, check_sender, of_solver};
-use crate::remote_flow::RemoteFlow;
-use crate::run_root::RunRoot;
+use crate::meeting::RunRoot;
+use crate::meeting::{Link, Message, SideOf};
+use crate::mesh::{MeshPart, assemble};
 use amberfield_core::Vector3;
 use amberfield_field::FieldError;
 use amberfield_field::far::{FarField, FarMesh, FarRequest, FarSource, FarValues};

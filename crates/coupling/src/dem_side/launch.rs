@@ -1,6 +1,7 @@
 //! Starting the field process, watching it, ending it.
 
-use crate::{CouplingError, SolverSettings};
+use super::solver::SolverSettings;
+use crate::CouplingError;
 use std::ffi::{OsStr, OsString};
 use std::os::unix::process::CommandExt as _;
 use std::path::{Path, PathBuf};

@@ -1,9 +1,9 @@
 //! The field side: opens the run, sends its mesh, waits for a question, answers.
 
 use crate::CouplingError;
-use crate::link::{Link, Message, SideOf};
-use crate::mesh_message::{MeshPart, mesh_header, own_cells};
-use crate::run_root::RunRoot;
+use crate::meeting::RunRoot;
+use crate::meeting::{Link, Message, SideOf};
+use crate::mesh::{MeshPart, mesh_header, own_cells};
 use amberfield_core::Vector3;
 use amberfield_field::far::{FarMesh, SmoothDensity};
 use amberfield_wire::payloads::{FarAnswer, FarQuestion, FlowQuestion, SourceCloud, check_far_question};

@@ -1,7 +1,7 @@
 //! The flow of a gas in another process.
 
+use super::solver::{Shared, locked, read_vectors, write_vectors};
 use crate::CouplingError;
-use crate::dem_side::{Shared, locked, read_vectors, write_vectors};
 use amberfield_core::{GasModel, Vector3};
 use amberfield_field::far::FarMesh;
 use amberfield_gas::{FlowRequest, FlowSolver, FlowValues, GasError};

@@ -1,7 +1,7 @@
 //! A field solver that may be lost and found again.
 
+use super::solver::{Announced, RemoteSolver, SolverSettings};
 use crate::CouplingError;
-use crate::dem_side::{Announced, RemoteSolver, SolverSettings};
 use amberfield_field::FieldError;
 use amberfield_field::far::{FarField, FarMesh, FarRequest, FarValues};
 

@@ -1,0 +1,7 @@
+//! The place where both processes meet: a run's folder in shared memory, and the two channels in it.
+
+mod link;
+mod run_root;
+
+pub(crate) use link::{Link, Message, SideOf};
+pub use run_root::{RunRoot, stale_runs};

@@ -1,0 +1,8 @@
+//! The mesh of a field solver as it travels from its ranks to the DEM side.
+
+mod arrays;
+mod part;
+
+pub use arrays::MeshArrays;
+pub use part::{MeshPart, assemble};
+pub(crate) use part::{mesh_header, own_cells};
