@@ -4,7 +4,7 @@ use amberfield_field::FieldError;
 use amberfield_wire::WireError;
 use std::time::Duration;
 
-/// What went wrong between the two processes.
+/// Failure between the two processes.
 #[derive(Debug, thiserror::Error)]
 #[non_exhaustive]
 pub enum CouplingError {
@@ -14,44 +14,46 @@ pub enum CouplingError {
     /// A message makes no sense.
     #[error("message from the {peer}: {error}")]
     Wire {
-        /// Who sent it.
+        /// Sender of the message.
         peer: &'static str,
-        /// What is wrong.
+        /// Fault of the message.
         error: WireError,
     },
     /// The peer said that it ends.
     #[error("the {peer} ended: {reason}")]
     Ended {
-        /// Who ended.
+        /// Process that ended.
         peer: &'static str,
-        /// What it said.
+        /// Reason that it gave.
         reason: String,
     },
     /// The peer is gone without a word.
     #[error("the {peer} is gone ({how}) at solve {solve}; see its log")]
     Lost {
-        /// Who is gone.
+        /// Process that is gone.
         peer: &'static str,
-        /// How that was seen.
+        /// Sign by which that was seen.
         how: String,
         /// Solve that was waited for.
         solve: u64,
     },
     /// The peer did not answer in time.
     #[error(
-        "no answer from the {peer} to solve {solve} within {waited:?}; raise solver.timeout_s if it is only slow"
+        "no answer from the {peer} to solve {solve} within {waited:?}; raise solver.timeout_s if it is \
+         only slow"
     )]
     TimedOut {
-        /// Who was waited for.
+        /// Process that was waited for.
         peer: &'static str,
         /// Solve that was waited for.
         solve: u64,
-        /// How long.
+        /// Time that was waited.
         waited: Duration,
     },
     /// The field process cannot be started.
     #[error(
-        "cannot start the field solver {program}: {why} (`cargo xtask openfoam` builds it; the environment variable AMBERFIELD_SOLVER names another)"
+        "cannot start the field solver {program}: {why} (`cargo xtask openfoam` builds it; the environment \
+         variable AMBERFIELD_SOLVER names another)"
     )]
     Start {
         /// Program.

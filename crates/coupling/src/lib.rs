@@ -1,7 +1,8 @@
-//! Who waits for whom: the far field and the flow of a gas in another process, or a stand-in for the field in this one.
+//! Who waits for whom: the far field and the flow of a gas in another process, or a stand-in for the field in
+//! this one.
 //!
-//! The only code that opens iceoryx2 (`meeting/link.rs`). The DEM side owns the run's folder in shared memory and creates
-//! everything in it; the field side opens what it finds.
+//! The only code that opens iceoryx2 (`meeting/link.rs`). The DEM side owns the run's folder in shared memory
+//! and creates everything in it; the field side opens what it finds.
 
 mod dem_side;
 mod error;

@@ -1,4 +1,5 @@
-//! Nothing is copied between the processes: both map the same memory, and an exchange allocates next to nothing.
+//! Nothing is copied between the processes: both map the same memory, and an exchange allocates next to
+//! nothing.
 
 use amberfield_core::{Boundary, Domain, Vector3};
 use amberfield_coupling::{Announced, BoxSolver, FieldSide, MeshArrays, Reply, SolverSettings};
@@ -108,8 +109,8 @@ fn payloads_lie_in_shared_memory_and_exchanges_allocate_nothing_of_their_size() 
         remote.solve(&request, &mut values).expect("it answers");
     }
     let each = (ALLOCATED.load(Ordering::Relaxed) - before) / EXCHANGES;
-    // Out go 32 bytes a charge, back come 32 a cell. What is left, some 100 kB whatever the payload, is iceoryx2's waiting for
-    // events.
+    // Out go 32 bytes a charge, back come 32 a cell. What is left, some 100 kB whatever the payload, is
+    // iceoryx2's waiting for events.
     let carried = 32 * (CHARGES + values.potential.len());
     assert!(50 * each < carried, "an exchange of {carried} bytes allocated {each}");
     drop(remote);

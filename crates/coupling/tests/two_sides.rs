@@ -1,4 +1,5 @@
-//! Both sides of the wire in one process: what travels is what the twin solver makes of it, and nothing is left behind.
+//! Both sides of the wire in one process: what travels is what the twin solver makes of it, and nothing is
+//! left behind.
 
 use amberfield_core::{Boundary, Domain, Vector3};
 use amberfield_coupling::{

@@ -1,6 +1,6 @@
 //! The flow of a gas in another process.
 
-use super::solver::{Shared, locked, read_vectors, write_vectors};
+use super::shared::{Shared, locked, read_vectors, write_vectors};
 use crate::CouplingError;
 use amberfield_core::{GasModel, Vector3};
 use amberfield_field::far::FarMesh;
@@ -18,7 +18,7 @@ pub struct RemoteFlow {
 }
 
 impl RemoteFlow {
-    pub(crate) fn new(mesh: Arc<FarMesh>, shared: Arc<Mutex<Shared>>) -> Self {
+    pub(super) fn new(mesh: Arc<FarMesh>, shared: Arc<Mutex<Shared>>) -> Self {
         Self { mesh, shared }
     }
 
@@ -109,7 +109,7 @@ impl Shared {
     }
 
     /// Takes the flow that is open, before somebody else asks.
-    pub(crate) fn take_flow_early(&mut self) -> Result<(), CouplingError> {
+    pub(super) fn take_flow_early(&mut self) -> Result<(), CouplingError> {
         if self.flow.asked.is_some() {
             let mut values = FlowValues::default();
             self.take_flow(&mut values)?;
@@ -173,7 +173,8 @@ fn sound(values: &FlowValues) -> Result<(), CouplingError> {
     for (name, array) in ["u", "∇p", "∇·τ", "∇ × u"].into_iter().zip(arrays) {
         if let Some(cell) = array.iter().position(|value| !value.sum().is_finite()) {
             return Err(CouplingError::Flow(format!(
-                "the flow's {name} in cell {cell} is {:?}; make gas.interval_s shorter, and look at the solver's log",
+                "the flow's {name} in cell {cell} is {:?}; make gas.interval_s shorter, and look at the \
+                 solver's log",
                 array[cell].as_slice()
             )));
         }

@@ -1,6 +1,6 @@
 //! Starting the field process, watching it, ending it.
 
-use super::solver::SolverSettings;
+use super::settings::SolverSettings;
 use crate::CouplingError;
 use std::ffi::{OsStr, OsString};
 use std::os::unix::process::CommandExt as _;
@@ -8,30 +8,30 @@ use std::path::{Path, PathBuf};
 use std::process::{Child, Command, ExitStatus, Stdio};
 use std::time::{Duration, Instant};
 
-/// The program, and the one that computes the flow of a gas too.
+/// Names of the field solver, and of the one that computes the flow of a gas too.
 const PROGRAMS: [&str; 2] = ["electricFieldFoam", "amberPimpleFoam"];
-/// The variable that names where they are: the path of one of them.
+/// Variable with the path of one of the two programs.
 const VARIABLE: &str = "AMBERFIELD_SOLVER";
-/// What OpenFOAM's libraries want to know before they start, and where Debian's package has it.
+/// Variable that OpenFOAM's libraries need before they start, and its value for Debian's package.
 const PROJECT: (&str, &str) = ("WM_PROJECT_DIR", "/usr/share/openfoam");
-/// What a function object inside another solver reads the run's name in.
-pub(crate) const RUN: &str = "AMBERFIELD_RUN";
-/// Where the system looks for libraries, and the one with our function object.
+/// Variable in which a function object inside another solver finds the run's name.
+pub(super) const RUN: &str = "AMBERFIELD_RUN";
+/// Variable with the folders of libraries, and the library with our function object.
 const LIBRARIES: (&str, &str) = ("LD_LIBRARY_PATH", "libelectricField.so");
 
-/// A field process of ours.
+/// Field process that this program has started.
 #[derive(Debug)]
-pub(crate) struct Process {
+pub(super) struct Process {
     child: Child,
     ended: Option<ExitStatus>,
     log: Option<PathBuf>,
-    /// How long it may take to leave once it was told to.
+    /// Time that it may take to end once it was told to.
     farewell: Duration,
 }
 
 impl Process {
     /// Starts the solver of a case for a run.
-    pub(crate) fn start(settings: &SolverSettings, run: &str) -> Result<Self, CouplingError> {
+    pub(super) fn start(settings: &SolverSettings, run: &str) -> Result<Self, CouplingError> {
         let program =
             settings.application.as_ref().map_or_else(|| solver_program(settings.flow), PathBuf::from);
         let failed = |why: String| CouplingError::Start { program: program.display().to_string(), why };
@@ -68,7 +68,7 @@ impl Process {
     }
 
     /// Whether it still runs; else how it ended.
-    pub(crate) fn check(&mut self) -> Result<(), String> {
+    pub(super) fn check(&mut self) -> Result<(), String> {
         if self.ended.is_none() {
             self.ended = self.child.try_wait().ok().flatten();
         }
@@ -81,7 +81,7 @@ impl Process {
     }
 
     /// Waits until it has ended, for a while if it was told to, then kills it.
-    pub(crate) fn end(&mut self, told: bool) {
+    pub(super) fn end(&mut self, told: bool) {
         let start = Instant::now();
         while told && self.check().is_ok() && start.elapsed() < self.farewell {
             std::thread::sleep(Duration::from_millis(2));
@@ -99,7 +99,7 @@ impl Drop for Process {
     }
 }
 
-/// What OpenFOAM says of a fatal error: the lines before it says where.
+/// Text of OpenFOAM's fatal error: the lines before those that say where.
 fn last_words(log: &str) -> String {
     let lines = log.lines().map(str::trim).skip_while(|line| !line.contains("FOAM FATAL")).skip(1);
     let lines = lines
@@ -115,8 +115,8 @@ pub fn program_name(flow: bool) -> &'static str {
     PROGRAMS[usize::from(flow)]
 }
 
-/// The solver's program: the one that the environment names (or beside it, for the flow of a gas), one beside this program, one that the
-/// project has built above it, or one on the path.
+/// The solver's program: the one that the environment names (or beside it, for the flow of a gas), one beside
+/// this program, one that the project has built above it, or one on the path.
 #[must_use]
 pub fn solver_program(flow: bool) -> PathBuf {
     let name = program_name(flow);
@@ -167,8 +167,8 @@ fn provide_mesh(case: &Path) -> Result<(), String> {
     tool("blockMesh", case, &[])
 }
 
-/// Cuts a case into as many parts as there are ranks, along x unless it says otherwise, anew where its mesh or potential is
-/// newer than the parts.
+/// Cuts a case into as many parts as there are ranks, along x unless it says otherwise, anew where its mesh
+/// or potential is newer than the parts.
 fn decompose(case: &Path, ranks: u32) -> Result<(), String> {
     let time_of = |path: PathBuf| path.metadata().and_then(|data| data.modified()).ok();
     let part = |rank: u32| time_of(case.join(format!("processor{rank}/constant/polyMesh/points")));
@@ -181,7 +181,8 @@ fn decompose(case: &Path, ranks: u32) -> Result<(), String> {
     if !dictionary.is_file() {
         let text = format!(
             "FoamFile {{ version 2.0; format ascii; class dictionary; object decomposeParDict; }}\n\
-             numberOfSubdomains {ranks};\nmethod hierarchical;\nhierarchicalCoeffs {{ n ({ranks} 1 1); delta 0.001; order xyz; }}\n"
+             numberOfSubdomains {ranks};\nmethod hierarchical;\n\
+             hierarchicalCoeffs {{ n ({ranks} 1 1); delta 0.001; order xyz; }}\n"
         );
         std::fs::write(&dictionary, text)
             .map_err(|error| format!("cannot write {}: {error}", dictionary.display()))?;

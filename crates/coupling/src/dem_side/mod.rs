@@ -1,12 +1,18 @@
-//! The DEM side: makes the run's place, starts the field process, asks it for the far field and the flow of a gas.
+//! The DEM side: makes the run's place, starts the field process, asks it for the far field and the flow of a
+//! gas.
 
+mod announced;
+mod far;
 mod flow;
 mod launch;
 mod patient;
 mod remote;
-mod solver;
+mod settings;
+mod shared;
 
+pub use announced::Announced;
+pub use far::RemoteSolver;
 pub use flow::RemoteFlow;
 pub use launch::{foam_command, program_name, solver_program};
 pub use patient::PatientSolver;
-pub use solver::{Announced, RemoteSolver, SolverSettings};
+pub use settings::SolverSettings;

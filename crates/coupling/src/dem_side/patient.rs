@@ -1,6 +1,8 @@
 //! A field solver that may be lost and found again.
 
-use super::solver::{Announced, RemoteSolver, SolverSettings};
+use super::announced::Announced;
+use super::far::RemoteSolver;
+use super::settings::SolverSettings;
 use crate::CouplingError;
 use amberfield_field::FieldError;
 use amberfield_field::far::{FarField, FarMesh, FarRequest, FarValues};
@@ -8,7 +10,8 @@ use amberfield_field::far::{FarField, FarMesh, FarRequest, FarValues};
 /// Solvers that are started for one solve before it is given up.
 const ATTEMPTS: usize = 3;
 
-/// Starts a lost solver again, or waits for somebody to, and asks again from where the lost one was: the answer is the same.
+/// Starts a lost solver again, or waits for somebody to, and asks again from where the lost one was: the
+/// answer is the same.
 #[derive(Debug)]
 pub struct PatientSolver {
     settings: SolverSettings,
@@ -19,7 +22,7 @@ pub struct PatientSolver {
 }
 
 impl PatientSolver {
-    /// Around a solver that is there.
+    /// Wraps a solver that is there.
     #[must_use]
     pub fn new(settings: SolverSettings, solver: RemoteSolver) -> Self {
         let mesh = solver.mesh().clone();
@@ -32,7 +35,8 @@ impl PatientSolver {
         let (old, new) = (&self.mesh, solver.mesh());
         if old.centres() != new.centres() || old.boundary() != new.boundary() {
             return Err(FieldError::Solver(format!(
-                "the field solver came back with another mesh or other conditions ({} cells instead of {}, {} boundary faces instead of {}); restore the case, then resume",
+                "the field solver came back with another mesh or other conditions ({} cells instead of {}, \
+                 {} boundary faces instead of {}); restore the case, then resume",
                 new.cell_count(),
                 old.cell_count(),
                 new.boundary().len(),

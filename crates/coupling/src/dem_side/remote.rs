@@ -1,7 +1,7 @@
 //! The process that solves, as the DEM side sees it: one question at a time, an answer of every rank.
 
 use super::launch::Process;
-use super::solver::SolverSettings;
+use super::settings::SolverSettings;
 use crate::CouplingError;
 use crate::meeting::Link;
 use crate::meeting::RunRoot;
@@ -11,13 +11,13 @@ use std::ops::Range;
 
 /// A process that solves, with all its ranks.
 #[derive(Debug)]
-pub(crate) struct Remote {
-    pub(crate) settings: SolverSettings,
+pub(super) struct Remote {
+    pub(super) settings: SolverSettings,
     /// First cell of each rank, and the number of all.
     first: Vec<usize>,
     /// Number of the last question.
     solve: u64,
-    /// Whether it was answered.
+    /// Whether the last question was answered.
     healthy: bool,
     // Dropped in this order: the link says goodbye, the process ends, the run's place goes.
     link: Link,
@@ -27,7 +27,7 @@ pub(crate) struct Remote {
 
 impl Remote {
     /// A process whose ranks have so many cells.
-    pub(crate) fn new(
+    pub(super) fn new(
         settings: SolverSettings,
         cells: &[usize],
         (link, process, root): (Link, Option<Process>, RunRoot),
@@ -40,12 +40,12 @@ impl Remote {
     }
 
     /// Cells of all ranks.
-    pub(crate) fn cell_count(&self) -> usize {
+    pub(super) fn cell_count(&self) -> usize {
         self.first[self.first.len() - 1]
     }
 
     /// Asks without waiting: `layout` adds sections to a header, `write` fills them.
-    pub(crate) fn ask(
+    pub(super) fn ask(
         &mut self,
         kind: MessageKind,
         layout: impl FnOnce(Layout) -> Layout,
@@ -58,8 +58,9 @@ impl Remote {
         self.noted(outcome)
     }
 
-    /// Waits for every rank's answer to what was asked last: `take` gets the cells that are the rank's, its number and what it says.
-    pub(crate) fn collect(
+    /// Waits for every rank's answer to what was asked last: `take` gets the cells that are the rank's, its
+    /// number and what it says.
+    pub(super) fn collect(
         &mut self,
         kind: MessageKind,
         mut take: impl FnMut(Range<usize>, usize, &Sections<'_>) -> Result<(), WireError>,
@@ -82,8 +83,8 @@ impl Remote {
         Ok(())
     }
 
-    /// Whether an exchange went well decides how the solver is told goodbye.
-    pub(crate) fn noted<T>(&mut self, outcome: Result<T, CouplingError>) -> Result<T, CouplingError> {
+    /// Notes whether an exchange went well, which decides how the solver is told to end.
+    pub(super) fn noted<T>(&mut self, outcome: Result<T, CouplingError>) -> Result<T, CouplingError> {
         self.healthy = outcome.is_ok();
         outcome
     }
@@ -100,17 +101,17 @@ impl Drop for Remote {
 }
 
 /// Whether a process of ours still runs.
-pub(crate) fn alive(process: &mut Option<Process>) -> Result<(), String> {
+pub(super) fn alive(process: &mut Option<Process>) -> Result<(), String> {
     process.as_mut().map_or(Ok(()), Process::check)
 }
 
-/// What is wrong with a message of the solver.
-pub(crate) fn of_solver(error: WireError) -> CouplingError {
+/// Error about a message of the solver.
+pub(super) fn of_solver(error: WireError) -> CouplingError {
     CouplingError::Wire { peer: "field solver", error }
 }
 
 /// Refuses a message of another kind, of another solve, or of a rank that there is not.
-pub(crate) fn check_sender(
+pub(super) fn check_sender(
     header: &Header,
     ranks: u32,
     kind: MessageKind,

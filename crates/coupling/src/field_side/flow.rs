@@ -6,16 +6,16 @@ use amberfield_wire::payloads::FlowAnswer;
 use amberfield_wire::{Element, Header, Layout, MessageKind, Section, Sections, WireError};
 use std::ops::Range;
 
-/// What a rank answers: the flow at its cell centres.
+/// Answer of a rank to the question for the flow, at its cell centres.
 #[derive(Clone, Copy, Debug)]
 pub struct FlowReply<'a> {
-    /// u [m/s].
+    /// Velocity u of the gas [m/s].
     pub velocity: &'a [[f64; 3]],
-    /// ∇p [Pa/m].
+    /// Pressure gradient ∇p [Pa/m].
     pub pressure_gradient: &'a [[f64; 3]],
-    /// ∇·τ [N/m³]; empty unless wanted.
+    /// Divergence ∇·τ of the viscous stress [N/m³]; empty unless wanted.
     pub viscous_force: &'a [[f64; 3]],
-    /// ∇ × u [1/s]; empty unless wanted.
+    /// Vorticity ∇ × u [1/s]; empty unless wanted.
     pub vorticity: &'a [[f64; 3]],
     /// Iterations, residual and time.
     pub answer: FlowAnswer,
@@ -24,16 +24,16 @@ pub struct FlowReply<'a> {
 /// What the grains do to the gas in a rank's cells.
 #[derive(Clone, Copy, Debug)]
 pub struct GrainsInCells<'a> {
-    /// ε.
+    /// Void fraction.
     pub void_fraction: &'a [f64],
-    /// K [kg/(m³ s)].
+    /// Drag coefficient K [kg/(m³ s)].
     pub drag: &'a [f64],
-    /// S [N/m³].
+    /// Source S of momentum [N/m³].
     pub source: &'a [[f64; 3]],
 }
 
 impl<'a> GrainsInCells<'a> {
-    /// What a message says of a rank's cells.
+    /// Reads what a message says of a rank's cells.
     ///
     /// # Errors
     /// Fewer numbers than cells, or such that cannot be used.
@@ -60,7 +60,7 @@ impl<'a> GrainsInCells<'a> {
     }
 }
 
-/// A section by cell of all ranks, at some cells.
+/// Gives a section by cell of all ranks at some of the cells.
 fn of_cells<'a, T: Element>(
     sections: &Sections<'a>,
     section: Section,
@@ -71,7 +71,7 @@ fn of_cells<'a, T: Element>(
 }
 
 impl FieldSide {
-    /// What the grains do to the gas in this rank's cells.
+    /// Gives what the grains do to the gas in this rank's cells.
     ///
     /// # Errors
     /// Fewer numbers than cells, or such that cannot be used.
@@ -79,7 +79,7 @@ impl FieldSide {
         GrainsInCells::read(&self.sections()?, self.own_cells()).map_err(of_dem)
     }
 
-    /// Answers an interval of the flow.
+    /// Answers the question for the flow.
     ///
     /// # Errors
     /// A DEM process that is gone.
@@ -139,7 +139,7 @@ impl FieldSide {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::field_side::Question;
+    use crate::field_side::question::Question;
     use amberfield_wire::Block64;
     use amberfield_wire::payloads::FlowQuestion;
     use std::mem::MaybeUninit;

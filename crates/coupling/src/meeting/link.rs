@@ -1,7 +1,8 @@
 //! One side's end of the two channels between the processes: iceoryx2, and nothing of it beyond this file.
 //!
-//! A publish-subscribe service and an event service for either direction. Messages are written in place in shared memory and read
-//! in place; events wake the receiver, who looks first and then waits in short slices, so that a peer that dies is noticed.
+//! A publish-subscribe service and an event service for either direction. Messages are written in place in
+//! shared memory and read in place; events wake the receiver, who looks first and then waits in short slices,
+//! so that a peer that dies is noticed.
 
 use super::run_root::{RunRoot, check_room, no_room};
 use crate::CouplingError;
@@ -20,18 +21,18 @@ type Ipc = ipc_threadsafe::Service;
 type Sample = iceoryx2::sample::Sample<Ipc, [Block64], Header>;
 type Outbox = Publisher<Ipc, [Block64], Header>;
 
-/// How long a receiver waits before it looks whether its peer lives.
+/// Time that a receiver waits before it looks whether its peer lives.
 const SLICE: Duration = Duration::from_millis(20);
-/// How often one looks for services that are not there yet.
+/// Time between two looks for services that are not there yet.
 const POLL: Duration = Duration::from_millis(5);
 /// Room for more than the first message needs, so that a few more grains do not need new memory.
 const HEADROOM: f64 = 1.25;
-/// What iceoryx2 keeps beside the messages, and more [bytes].
+/// Room for what iceoryx2 keeps beside the messages, and more [bytes].
 const BOOKKEEPING: usize = 1 << 20;
 /// Name of the DEM process's node.
-const DEM: &str = "dem";
+pub(super) const DEM: &str = "dem";
 
-/// Which side this is.
+/// Side of the coupling.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) enum SideOf {
     Dem,
@@ -39,7 +40,7 @@ pub(crate) enum SideOf {
 }
 
 impl SideOf {
-    /// What the other side is called.
+    /// Name of the other side in messages to the user.
     pub(crate) fn peer(self) -> &'static str {
         match self {
             Self::Dem => "field solver",
@@ -71,14 +72,14 @@ impl Message {
     }
 }
 
-/// One side's end.
+/// End of the two channels on one side.
 #[derive(Debug)]
 pub(crate) struct Link {
     side: SideOf,
     run: u64,
     config: Config,
     channel: Channel<Ipc, [Block64], Header>,
-    /// With the most blocks that it can send.
+    /// Publisher, and the largest number of blocks that it can send.
     publisher: Option<(Outbox, usize)>,
     notifier: Notifier<Ipc>,
     subscriber: Subscriber<Ipc, [Block64], Header>,
@@ -87,7 +88,8 @@ pub(crate) struct Link {
 }
 
 impl Link {
-    /// Creates (DEM side) or opens (field side, until the deadline) the channels of a run with so many field processes.
+    /// Creates (DEM side) or opens (field side, until the deadline) the channels of a run with so many field
+    /// processes.
     pub(crate) fn new(
         root: &RunRoot,
         side: SideOf,
@@ -176,8 +178,8 @@ impl Link {
         populate(sample.payload_mut())?;
         *sample.user_header_mut() = *layout.header();
         write(sample.payload_mut()).map_err(|error| CouplingError::Wire { peer: "own side", error })?;
-        // SAFETY: every section was written by `write`, or set to zero when it was asked for; what no section covers is
-        // memory that `populate` has made, where any bit pattern is a block.
+        // SAFETY: every section was written by `write`, or set to zero when it was asked for; what no section
+        // covers is memory that `populate` has made, where any bit pattern is a block.
         let sample = unsafe { sample.assume_init() };
         let reached = said(sample.send())?;
         if reached != receivers {
@@ -249,16 +251,12 @@ impl Link {
 
     /// Whether the DEM process lives, for the field side.
     pub(crate) fn dem_is_alive(&self) -> Result<(), String> {
-        if is_alive(&self.config, DEM) { Ok(()) } else { Err("no longer among the living".into()) }
+        if is_alive(&self.config, DEM) { Ok(()) } else { Err("it no longer runs".into()) }
     }
 }
 
-/// Whether the DEM process of a run lives, by the run's name.
-pub(crate) fn dem_is_alive_in(name: &str) -> bool {
-    RunRoot::open(name).and_then(|root| config_of(&root)).is_ok_and(|config| is_alive(&config, DEM))
-}
-
-fn is_alive(config: &Config, name: &str) -> bool {
+/// Whether a node of this name lives.
+pub(super) fn is_alive(config: &Config, name: &str) -> bool {
     let mut alive = false;
     let listed = Node::<Ipc>::list(config, |state| {
         if let NodeState::Alive(view) = state
@@ -272,7 +270,8 @@ fn is_alive(config: &Config, name: &str) -> bool {
     listed.is_ok() && alive
 }
 
-fn config_of(root: &RunRoot) -> Result<Config, CouplingError> {
+/// The configuration of iceoryx2 for a run.
+pub(super) fn config_of(root: &RunRoot) -> Result<Config, CouplingError> {
     let mut config = Config::default();
     let path = root.path();
     config.global.set_root_path(&said(iceoryx2::prelude::Path::new(path.as_os_str().as_encoded_bytes()))?);

@@ -4,16 +4,13 @@ use crate::CouplingError;
 use amberfield_wire::{PROTOCOL_VERSION, WireError};
 use rustix::fs::Mode;
 use std::path::{Path, PathBuf};
-use std::time::{Duration, Instant};
 
-/// Where shared memory lives.
+/// Folder of shared memory.
 const SHARED: &str = "/dev/shm";
 /// File of a run that waits for a solver which somebody else starts.
 const INVITATION: &str = "waiting";
 /// File with the version of the protocol that the run's DEM process speaks.
 const PROTOCOL: &str = "protocol";
-/// How often one looks for a run that waits.
-const POLL: Duration = Duration::from_millis(20);
 
 /// The place in shared memory of one run: `/dev/shm/amberfield-<uid>-<run>`, open to its user alone.
 ///
@@ -72,35 +69,7 @@ impl RunRoot {
         }
     }
 
-    /// The one run of this user that waits for a field solver; until the deadline there may be none yet.
-    ///
-    /// # Errors
-    /// None, or several.
-    pub fn open_waiting(deadline: Instant) -> Result<Self, CouplingError> {
-        loop {
-            let mut waiting = own_runs();
-            waiting.retain(|name| {
-                Path::new(SHARED).join(name).join(INVITATION).exists() && super::link::dem_is_alive_in(name)
-            });
-            match waiting.as_slice() {
-                [name] => return Self::open(name),
-                [] if Instant::now() < deadline => std::thread::sleep(POLL),
-                [] => {
-                    return Err(CouplingError::SharedMemory(
-                        "no run of this user waits for a field solver; start one whose scene has solver.start = false, or name it with -run".into(),
-                    ));
-                }
-                several => {
-                    return Err(CouplingError::SharedMemory(format!(
-                        "several runs wait for a field solver ({}); name one with -run",
-                        several.join(", ")
-                    )));
-                }
-            }
-        }
-    }
-
-    /// Closes what bears the run's name to other users: iceoryx2 opens a node's management to all.
+    /// Closes all that bears the run's name to other users: iceoryx2 opens a node's management to everybody.
     ///
     /// # Errors
     /// Files of somebody else under this name.
@@ -139,10 +108,15 @@ impl RunRoot {
         let _ = if waits { std::fs::write(path, "") } else { std::fs::remove_file(path) };
     }
 
-    /// Its name, for the field process.
+    /// Name of the run, for the field process.
     #[must_use]
     pub fn name(&self) -> &str {
         &self.name
+    }
+
+    /// Whether the run waits for a solver which somebody else starts.
+    pub(super) fn invites(name: &str) -> bool {
+        Path::new(SHARED).join(name).join(INVITATION).exists()
     }
 
     /// The run's number, in every message.
@@ -160,7 +134,7 @@ impl RunRoot {
         Path::new(SHARED).join(&self.name)
     }
 
-    /// What every piece of shared memory of this run is named after.
+    /// Beginning of the names of all shared memory of this run.
     pub(crate) fn prefix(&self) -> String {
         format!("{}.", self.name)
     }
@@ -183,7 +157,7 @@ fn name_of(run: u64) -> String {
 }
 
 /// Removes a run's place and all that bears its name; what is gone already does not matter.
-fn remove(name: &str) {
+pub(super) fn remove(name: &str) {
     let prefix = format!("{name}.");
     for entry in std::fs::read_dir(SHARED).into_iter().flatten().flatten() {
         if entry.file_name().to_string_lossy().starts_with(&prefix) {
@@ -193,7 +167,8 @@ fn remove(name: &str) {
     let _ = std::fs::remove_dir_all(Path::new(SHARED).join(name));
 }
 
-/// Refuses to go on where shared memory has no room for so many bytes: to write there would be a signal, not an error.
+/// Refuses to go on where shared memory has no room for so many bytes: to write there would be a signal, not
+/// an error.
 pub(crate) fn check_room(bytes: usize) -> Result<(), CouplingError> {
     match rustix::fs::statvfs(SHARED) {
         Ok(room) if room.f_blocks > 0 && room.f_bavail * room.f_frsize < bytes as u64 => {
@@ -214,19 +189,8 @@ pub(crate) fn no_room(bytes: usize, why: &dyn std::fmt::Display) -> CouplingErro
     ))
 }
 
-/// Names of this user's runs whose DEM process is gone; with `clean` they are removed.
-#[must_use]
-pub fn stale_runs(clean: bool) -> Vec<String> {
-    let mut stale = own_runs();
-    stale.retain(|name| !super::link::dem_is_alive_in(name));
-    if clean {
-        stale.iter().for_each(|name| remove(name));
-    }
-    stale
-}
-
 /// Names of this user's runs, sorted.
-fn own_runs() -> Vec<String> {
+pub(super) fn own_runs() -> Vec<String> {
     let mine = format!("amberfield-{}-", rustix::process::getuid().as_raw());
     let entries = std::fs::read_dir(SHARED).into_iter().flatten().flatten();
     let names = entries.map(|entry| entry.file_name().to_string_lossy().into_owned());

@@ -18,7 +18,7 @@ pub struct MeshArrays {
 }
 
 impl MeshArrays {
-    /// Of a mesh.
+    /// Takes the arrays from a mesh.
     #[must_use]
     pub fn of(mesh: &FarMesh) -> Self {
         let faces: Vec<_> = (0..mesh.cell_count()).flat_map(|cell| mesh.faces_of(cell)).collect();
@@ -41,7 +41,7 @@ impl MeshArrays {
         }
     }
 
-    /// The arrays in place, with what `mesh` has in its own.
+    /// Gives the arrays in place, with those that `mesh` has already.
     #[must_use]
     pub fn part<'a>(&'a self, mesh: &'a FarMesh) -> MeshPart<'a> {
         let whole = mesh.domain();

@@ -17,15 +17,15 @@ pub struct MeshPart<'a> {
     pub centres: &'a [[f64; 3]],
     /// Cell volumes [m³].
     pub volumes: &'a [f64],
-    /// Where each cell's faces begin; one more than there are cells.
+    /// Place of each cell's first face, and at last the number of faces.
     pub first_face: &'a [u64],
     /// Outward unit normals of the cells' faces.
     pub face_normals: &'a [[f64; 3]],
-    /// Normals times face centres [m].
+    /// Scalar products of normals and face centres [m].
     pub face_offsets: &'a [f64],
-    /// Cell c of all ranks beyond a face as c, boundary face b of this rank as −1 − b.
+    /// Neighbours beyond the faces: cell c of all ranks as c, boundary face b of this rank as −1 − b.
     pub face_neighbours: &'a [i64],
-    /// What is added to the neighbours' coordinates [m].
+    /// Vectors to add to the neighbours' coordinates [m].
     pub face_shifts: &'a [[f64; 3]],
     /// Boundary faces of this rank, with the conditions there.
     pub boundary_faces: &'a [payloads::BoundaryFace],
@@ -63,7 +63,7 @@ impl MeshPart<'_> {
         Ok(())
     }
 
-    /// A part that arrived, in place.
+    /// Reads a part that arrived, in place.
     ///
     /// # Errors
     /// A section that is missing or does not fit the others.
@@ -159,7 +159,8 @@ fn boundary_face(face: &payloads::BoundaryFace, first: usize) -> Result<Boundary
     })
 }
 
-/// One rank's own cells and what lies beyond them, for mapping charges: neighbours of other ranks are the mesh's end.
+/// One rank's own cells and what lies beyond them, for mapping charges: neighbours of other ranks are the
+/// mesh's end.
 pub(crate) fn own_cells(part: &MeshPart<'_>) -> Result<FarMesh, CouplingError> {
     let first = part.outline.first_cell;
     let own = first..first + part.centres.len() as u64;

@@ -1,7 +1,8 @@
-//! A far field solved in this process, on equal cells of a box: the twin of the solver process for tests and comparisons.
+//! A far field solved in this process, on equal cells of a box: the twin of the solver process for tests and
+//! comparisons.
 //!
-//! Seven-point finite volumes with walls at cell faces, as OpenFOAM's `Gauss linear` makes of such a mesh, and conjugate
-//! gradients.
+//! Seven-point finite volumes with walls at cell faces, as OpenFOAM's `Gauss linear` makes of such a mesh,
+//! and conjugate gradients.
 
 use amberfield_core::{Domain, Vector3};
 use amberfield_field::FieldError;
