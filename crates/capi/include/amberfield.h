@@ -6,7 +6,7 @@
 #include <stddef.h>
 #include <stdint.h>
 
-// How a call ended.
+// Outcome of a call.
 typedef enum AmberfieldStatus {
   // Done.
   AmberfieldStatus_Ok = 0,
@@ -18,17 +18,17 @@ typedef enum AmberfieldStatus {
 
 // Kind of question of the DEM process.
 typedef enum AmberfieldQuestion {
-  // The electric field: density, boundary, guess, then reply.
+  // The far field: call density, boundary, guess, then reply.
   AmberfieldQuestion_Field = 0,
-  // An interval of the flow: grains, then reply_flow.
+  // The flow at the end of an interval: call grains, then reply_flow.
   AmberfieldQuestion_Flow = 1,
-  // The state of the flow: reply_state.
+  // The state of the flow: call reply_state.
   AmberfieldQuestion_State = 2,
-  // To take in a state of the flow: state, then reply_state with none.
+  // A state of the flow to take in: call state, then reply_state with no number.
   AmberfieldQuestion_Restore = 3,
 } AmberfieldQuestion;
 
-// What a face of the box is.
+// Condition on a face of the box.
 typedef enum AmberfieldBoundary {
   // A conductor at V = 0.
   AmberfieldBoundary_Grounded = 0,
@@ -47,9 +47,10 @@ typedef struct AmberfieldField AmberfieldField;
 
 // The field of a host program's particles.
 //
-// For a code that runs under MPI: gather positions and charges to one rank of each machine (positions are small beside the work: 32 bytes
-// a particle), call it there, scatter the fields. The library uses all cores that rank may use; one handle for the whole run keeps parameters,
-// memory and a solver's warm start. Call it every so many steps and keep E in between, as the fix of an electric force would.
+// A code that runs under MPI gathers positions and charges to one rank of each machine (32 bytes a particle,
+// little beside the work), calls the library there and scatters the fields. The library uses all cores that
+// this rank may use. One handle for the whole run keeps parameters, memory and a solver's warm start. Call
+// it every so many steps and keep E in between.
 typedef struct AmberfieldHost AmberfieldHost;
 
 // Box and periodic axes of the mesh of all ranks, and where the cells of one rank are among them.
@@ -94,7 +95,7 @@ typedef struct AmberfieldBoundaryFace {
   double spread_zz_m2;
 } AmberfieldBoundaryFace;
 
-// One rank's part of the mesh. Vectors are three doubles each; lengths in m.
+// Mesh of one rank of a field process. Vectors are three doubles each; lengths in m.
 typedef struct AmberfieldMesh {
   // Box of all ranks' cells, periodic axes, and where this rank's cells are among all.
   struct AmberfieldMeshOutline outline;
@@ -110,15 +111,15 @@ typedef struct AmberfieldMesh {
   const double *centres;
   // Cell volumes.
   const double *volumes;
-  // Where each cell's faces begin; one more than there are cells.
+  // Place of each cell's first face in the arrays by face, and at last the number of their entries.
   const uint64_t *first_face;
   // Unit normals out of the cell.
   const double *face_normals;
-  // Normals times face centres.
+  // Scalar products of normals and face centres.
   const double *face_offsets;
-  // Cell c of all ranks beyond the face as c, boundary face b of this rank as -1 - b.
+  // Neighbours beyond the faces: cell c of all ranks as c, boundary face b of this rank as -1 - b.
   const int64_t *face_neighbours;
-  // What is added to the neighbour's coordinates (0 unless the face is cyclic).
+  // Vectors to add to the neighbours' coordinates; 0 unless the face is cyclic.
   const double *face_shifts;
   // Boundary faces of this rank, with the conditions there.
   const struct AmberfieldBoundaryFace *boundary_faces;
@@ -172,7 +173,7 @@ typedef struct AmberfieldFlowQuestion {
 
 // Question of the DEM process, with the scalars that belong to it.
 typedef struct AmberfieldRequest {
-  // What is asked.
+  // Kind of question.
   enum AmberfieldQuestion question;
   // Number of the solve.
   uint64_t solve;
@@ -202,7 +203,8 @@ typedef struct AmberfieldFar {
 typedef struct AmberfieldFlowAnswer {
   // Iterations of the linear solver for the pressure.
   uint64_t iterations;
-  // What continuity misses: RMS over the cells of d(void fraction)/dt + div(void fraction * velocity), times the interval.
+  // What continuity misses: RMS over the cells of d(void fraction)/dt + div(void fraction * velocity),
+  // times the interval.
   double residual;
   // Time that the solver took [s].
   double seconds;
@@ -224,21 +226,22 @@ typedef struct AmberfieldFlow {
   struct AmberfieldFlowAnswer answer;
 } AmberfieldFlow;
 
-// A face of the box.
+// Face of the box, with the condition there.
 typedef struct AmberfieldFace {
-  // An AmberfieldBoundary.
+  // Condition, a value of AmberfieldBoundary.
   uint64_t boundary;
-  // Its potential or normal field.
+  // Potential [V] or outward normal field [V/m]; 0 for other conditions.
   double value;
 } AmberfieldFace;
 
-// What a host program wants: method p3m, SI units. Set it to zero, then what differs.
+// Settings of a host program; the method is p3m, units are SI. Set all to zero, then what differs.
 typedef struct AmberfieldHostSettings {
   // Lower corner of the box [m].
   double low[3];
   // Upper corner [m].
   double high[3];
-  // Faces in the order x low, x high, y low, ...; with an OpenFOAM case its patches count instead, and its box.
+  // Faces in the order x low, x high, y low, ...; with an OpenFOAM case its box and its patches count
+  // instead.
   struct AmberfieldFace faces[6];
   // Relative RMS error of E; 0: 1e-2.
   double tolerance;
@@ -254,7 +257,7 @@ typedef struct AmberfieldHostSettings {
   uint64_t wait_for_solver;
   // Processes of the solver; 0: 1.
   uint64_t ranks;
-  // How long an answer of the solver may take [s]; 0: 30.
+  // Time that an answer of the solver may take [s]; 0: 30.
   double timeout;
 } AmberfieldHostSettings;
 
@@ -262,37 +265,40 @@ typedef struct AmberfieldHostSettings {
 extern "C" {
 #endif // __cplusplus
 
-// Opens a run by its name (empty: the one run of this user that waits for a solver), for a rank of so many. Never NULL; amberfield_field_error is empty when it worked.
+// Opens a run by its name, for one rank of so many; an empty name is the one run of this user that waits for
+// a solver. The result is never NULL; amberfield_field_error is empty when it worked.
 //
 // # Safety
 // `run` is a C string.
-struct AmberfieldField *amberfield_field_open(const char *run,
-                                              uint32_t rank,
-                                              uint32_t ranks);
+struct AmberfieldField *amberfield_field_open(const char *run, uint32_t rank, uint32_t ranks);
 
-// Why the last call failed; empty if it did not. Valid until the next call.
+// Returns the reason why the last call on a handle failed; empty if it did not. The text is valid until the
+// next call.
 //
 // # Safety
 // `field` comes from amberfield_field_open and is not closed.
 const char *amberfield_field_error(const struct AmberfieldField *field);
 
-// Sends this rank's part of the mesh.
+// Sends this rank's part of the mesh, once, before anything is waited for.
 //
 // # Safety
-// As amberfield_field_error; the mesh's arrays have the lengths that it says.
+// `field` comes from amberfield_field_open and is not closed; the mesh's arrays have the lengths that it
+// says.
 enum AmberfieldStatus amberfield_field_send_mesh(struct AmberfieldField *field,
                                                  const struct AmberfieldMesh *mesh);
 
 // Waits for the next question; AmberfieldStatus_Over when there will be none.
 //
 // # Safety
-// As amberfield_field_error; `request` may be written.
+// `field` comes from amberfield_field_open and is not closed; `request` may be written.
 enum AmberfieldStatus amberfield_field_wait(struct AmberfieldField *field, struct AmberfieldRequest *request);
 
-// Charge density [C/m^3] at this rank's cell centres; finds the cell of every charge that is spread over its cell.
+// Writes the charge density [C/m^3] at this rank's cell centres. Of charges that are spread over their cells
+// it finds the cells too, which the reply then names.
 //
 // # Safety
-// As amberfield_field_error; `density` has room for `cells` numbers, this rank's cells.
+// `field` comes from amberfield_field_open and is not closed; `density` has room for `cells` numbers, this
+// rank's cells.
 enum AmberfieldStatus amberfield_field_density(struct AmberfieldField *field,
                                                double *density,
                                                uint64_t cells);
@@ -300,15 +306,17 @@ enum AmberfieldStatus amberfield_field_density(struct AmberfieldField *field,
 // Copies the boundary data of this rank's faces: potentials [V] or outward slopes [V/m], by the face's kind.
 //
 // # Safety
-// As amberfield_field_error; `values` has room for `faces` numbers.
+// `field` comes from amberfield_field_open and is not closed; `values` has room for `faces` numbers.
 enum AmberfieldStatus amberfield_field_boundary(struct AmberfieldField *field,
                                                 double *values,
                                                 uint64_t faces);
 
-// Copies the potential [V] to start from to this rank's cells; leaves it where there is none, which is the usual case.
+// Copies the potential [V] to start from to this rank's cells. Where the question has none, which is the
+// usual case, the array stays as it is.
 //
 // # Safety
-// As amberfield_field_error; `potential` has room for `cells` numbers, this rank's cells.
+// `field` comes from amberfield_field_open and is not closed; `potential` has room for `cells` numbers, this
+// rank's cells.
 enum AmberfieldStatus amberfield_field_guess(struct AmberfieldField *field,
                                              double *potential,
                                              uint64_t cells);
@@ -316,69 +324,77 @@ enum AmberfieldStatus amberfield_field_guess(struct AmberfieldField *field,
 // Answers the question for the far field.
 //
 // # Safety
-// As amberfield_field_error; the arrays of `far` have as many entries as it has cells.
+// `field` comes from amberfield_field_open and is not closed; the arrays of `far` have as many entries as it
+// has cells.
 enum AmberfieldStatus amberfield_field_reply(struct AmberfieldField *field, const struct AmberfieldFar *far);
 
 // Tells the DEM process why this one cannot go on.
 //
 // # Safety
-// As amberfield_field_error; `reason` is a C string.
+// `field` comes from amberfield_field_open and is not closed; `reason` is a C string.
 void amberfield_field_fail(struct AmberfieldField *field, const char *reason);
 
-// Closes a handle. NULL is allowed.
+// Closes a handle of the field side. NULL is allowed.
 //
 // # Safety
-// As amberfield_field_error; the handle is gone afterwards.
+// `field` comes from amberfield_field_open and is not closed; the handle is gone afterwards.
 void amberfield_field_close(struct AmberfieldField *field);
 
-// Copies what the grains do to the gas in this rank's cells, which feels source - drag * velocity [N/m^3]: void fraction, drag [kg/(m^3 s)], source (three doubles each).
+// Copies what the grains do to the gas in this rank's cells: void fraction, drag [kg/(m^3 s)] and source
+// [N/m^3] (three doubles each). The gas feels source - drag * velocity.
 //
 // # Safety
-// As amberfield_field_error; the arrays have room for `cells` entries, this rank's cells.
+// `field` comes from amberfield_field_open and is not closed; the arrays have room for `cells` entries, this
+// rank's cells.
 enum AmberfieldStatus amberfield_field_grains(struct AmberfieldField *field,
                                               double *void_fraction,
                                               double *drag,
                                               double *source,
                                               uint64_t cells);
 
-// Answers an interval of the flow.
+// Answers the question for the flow at the end of an interval.
 //
 // # Safety
-// As amberfield_field_error; the flow's arrays have the lengths that it says.
+// `field` comes from amberfield_field_open and is not closed; the flow's arrays have the lengths that it
+// says.
 enum AmberfieldStatus amberfield_field_reply_flow(struct AmberfieldField *field,
                                                   const struct AmberfieldFlow *flow);
 
-// Answers a question for the state of this rank's part of the flow: `count` numbers of its own; none after a state was taken in.
+// Answers the question for the state of this rank's part of the flow with `count` numbers, whose meaning is
+// the solver's own. After a state was taken in the answer has no number.
 //
 // # Safety
-// As amberfield_field_error; `state` has `count` numbers.
+// `field` comes from amberfield_field_open and is not closed; `state` has `count` numbers.
 enum AmberfieldStatus amberfield_field_reply_state(struct AmberfieldField *field,
                                                    const double *state,
                                                    uint64_t count);
 
-// Copies the state that this rank is to take in: as many numbers as it answered once.
+// Copies the state that this rank is to take in: as many numbers as it once answered with.
 //
 // # Safety
-// As amberfield_field_error; `state` has room for `count` numbers.
+// `field` comes from amberfield_field_open and is not closed; `state` has room for `count` numbers.
 enum AmberfieldStatus amberfield_field_state(struct AmberfieldField *field, double *state, uint64_t count);
 
-// Opens a field. Never NULL; amberfield_host_error is empty when it worked.
+// Opens a field. The result is never NULL; amberfield_host_error is empty when it worked.
 //
 // # Safety
 // `settings` may be read; its case is a C string or NULL.
 struct AmberfieldHost *amberfield_host_open(const struct AmberfieldHostSettings *settings);
 
-// Why the last call failed; empty if it did not. Valid until the next call.
+// Returns the reason why the last call on a handle failed; empty if it did not. The text is valid until the
+// next call.
 //
 // # Safety
 // `host` comes from amberfield_host_open and is not closed.
 const char *amberfield_host_error(const struct AmberfieldHost *host);
 
-// E [V/m] at every particle (three doubles each) and, unless NULL, the potential [V] of all but the particle itself, of particles
-// at positions [m] (three doubles each) with charges [C] at a time [s]. The first call chooses parameters and starts the solver, if there is one.
+// Computes E [V/m] at every particle, three doubles each, and the potential [V] of all but the particle
+// itself, unless `potential` is NULL. The particles are at `positions` [m], three doubles each, with
+// `charges` [C], at the time `time` [s]. The first call chooses parameters and starts the solver, if there
+// is one.
 //
 // # Safety
-// As amberfield_host_error; the arrays have room for `count` particles.
+// `host` comes from amberfield_host_open and is not closed; the arrays have room for `count` particles.
 enum AmberfieldStatus amberfield_host_field(struct AmberfieldHost *host,
                                             double time,
                                             uint64_t count,
@@ -390,13 +406,13 @@ enum AmberfieldStatus amberfield_host_field(struct AmberfieldHost *host,
 // Chooses parameters anew at the next call, for particles that are no longer what they were.
 //
 // # Safety
-// As amberfield_host_error.
+// `host` comes from amberfield_host_open and is not closed.
 void amberfield_host_retune(struct AmberfieldHost *host);
 
-// Ends the solver, if there is one, and closes a handle. NULL is allowed.
+// Ends the solver, if there is one, and closes a handle of the host side. NULL is allowed.
 //
 // # Safety
-// As amberfield_host_error; the handle is gone afterwards.
+// `host` comes from amberfield_host_open and is not closed; the handle is gone afterwards.
 void amberfield_host_close(struct AmberfieldHost *host);
 
 #ifdef __cplusplus

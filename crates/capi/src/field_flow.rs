@@ -1,4 +1,5 @@
-//! The field side of a gas's flow: take what the grains do to it, answer, hand over and take in its state.
+//! The field side of a gas's flow: takes what the grains do to it, answers, hands over and takes in its
+//! state.
 
 use crate::field_side::{AmberfieldField, AmberfieldStatus, with};
 use crate::foreign::{slice, slice_mut};
@@ -24,10 +25,12 @@ pub struct AmberfieldFlow {
     pub answer: FlowAnswer,
 }
 
-/// Copies what the grains do to the gas in this rank's cells, which feels source - drag * velocity [N/m^3]: void fraction, drag [kg/(m^3 s)], source (three doubles each).
+/// Copies what the grains do to the gas in this rank's cells: void fraction, drag [kg/(m^3 s)] and source
+/// [N/m^3] (three doubles each). The gas feels source - drag * velocity.
 ///
 /// # Safety
-/// As amberfield_field_error; the arrays have room for `cells` entries, this rank's cells.
+/// `field` comes from amberfield_field_open and is not closed; the arrays have room for `cells` entries, this
+/// rank's cells.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn amberfield_field_grains(
     field: *mut AmberfieldField,
@@ -54,10 +57,11 @@ pub unsafe extern "C" fn amberfield_field_grains(
     }
 }
 
-/// Answers an interval of the flow.
+/// Answers the question for the flow at the end of an interval.
 ///
 /// # Safety
-/// As amberfield_field_error; the flow's arrays have the lengths that it says.
+/// `field` comes from amberfield_field_open and is not closed; the flow's arrays have the lengths that it
+/// says.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn amberfield_field_reply_flow(
     field: *mut AmberfieldField,
@@ -81,10 +85,11 @@ pub unsafe extern "C" fn amberfield_field_reply_flow(
     unsafe { with(field, |side| side.reply_flow(&reply).map(|()| AmberfieldStatus::Ok)) }
 }
 
-/// Answers a question for the state of this rank's part of the flow: `count` numbers of its own; none after a state was taken in.
+/// Answers the question for the state of this rank's part of the flow with `count` numbers, whose meaning is
+/// the solver's own. After a state was taken in the answer has no number.
 ///
 /// # Safety
-/// As amberfield_field_error; `state` has `count` numbers.
+/// `field` comes from amberfield_field_open and is not closed; `state` has `count` numbers.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn amberfield_field_reply_state(
     field: *mut AmberfieldField,
@@ -98,10 +103,10 @@ pub unsafe extern "C" fn amberfield_field_reply_state(
     }
 }
 
-/// Copies the state that this rank is to take in: as many numbers as it answered once.
+/// Copies the state that this rank is to take in: as many numbers as it once answered with.
 ///
 /// # Safety
-/// As amberfield_field_error; `state` has room for `count` numbers.
+/// `field` comes from amberfield_field_open and is not closed; `state` has room for `count` numbers.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn amberfield_field_state(
     field: *mut AmberfieldField,

@@ -5,7 +5,7 @@ use amberfield_coupling::{FieldSide, MeshPart, Question, Reply};
 use amberfield_wire::payloads::{BoundaryFace, FarQuestion, FlowQuestion, MeshOutline, SourceCloud};
 use std::ffi::{CStr, CString, c_char};
 
-/// How a call ended.
+/// Outcome of a call.
 #[repr(C)]
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum AmberfieldStatus {
@@ -24,7 +24,7 @@ pub struct AmberfieldField {
     error: CString,
 }
 
-/// One rank's part of the mesh. Vectors are three doubles each; lengths in m.
+/// Mesh of one rank of a field process. Vectors are three doubles each; lengths in m.
 #[repr(C)]
 #[derive(Debug)]
 pub struct AmberfieldMesh {
@@ -42,15 +42,15 @@ pub struct AmberfieldMesh {
     pub centres: *const f64,
     /// Cell volumes.
     pub volumes: *const f64,
-    /// Where each cell's faces begin; one more than there are cells.
+    /// Place of each cell's first face in the arrays by face, and at last the number of their entries.
     pub first_face: *const u64,
     /// Unit normals out of the cell.
     pub face_normals: *const f64,
-    /// Normals times face centres.
+    /// Scalar products of normals and face centres.
     pub face_offsets: *const f64,
-    /// Cell c of all ranks beyond the face as c, boundary face b of this rank as -1 - b.
+    /// Neighbours beyond the faces: cell c of all ranks as c, boundary face b of this rank as -1 - b.
     pub face_neighbours: *const i64,
-    /// What is added to the neighbour's coordinates (0 unless the face is cyclic).
+    /// Vectors to add to the neighbours' coordinates; 0 unless the face is cyclic.
     pub face_shifts: *const f64,
     /// Boundary faces of this rank, with the conditions there.
     pub boundary_faces: *const BoundaryFace,
@@ -78,13 +78,13 @@ pub struct AmberfieldFar {
 #[repr(C)]
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum AmberfieldQuestion {
-    /// The electric field: density, boundary, guess, then reply.
+    /// The far field: call density, boundary, guess, then reply.
     Field = 0,
-    /// An interval of the flow: grains, then reply_flow.
+    /// The flow at the end of an interval: call grains, then reply_flow.
     Flow = 1,
-    /// The state of the flow: reply_state.
+    /// The state of the flow: call reply_state.
     State = 2,
-    /// To take in a state of the flow: state, then reply_state with none.
+    /// A state of the flow to take in: call state, then reply_state with no number.
     Restore = 3,
 }
 
@@ -92,7 +92,7 @@ pub enum AmberfieldQuestion {
 #[repr(C)]
 #[derive(Clone, Copy, Debug)]
 pub struct AmberfieldRequest {
-    /// What is asked.
+    /// Kind of question.
     pub question: AmberfieldQuestion,
     /// Number of the solve.
     pub solve: u64,
@@ -132,7 +132,8 @@ impl AmberfieldRequest {
     }
 }
 
-/// Opens a run by its name (empty: the one run of this user that waits for a solver), for a rank of so many. Never NULL; amberfield_field_error is empty when it worked.
+/// Opens a run by its name, for one rank of so many; an empty name is the one run of this user that waits for
+/// a solver. The result is never NULL; amberfield_field_error is empty when it worked.
 ///
 /// # Safety
 /// `run` is a C string.
@@ -153,7 +154,8 @@ pub unsafe extern "C" fn amberfield_field_open(
     Box::into_raw(field)
 }
 
-/// Why the last call failed; empty if it did not. Valid until the next call.
+/// Returns the reason why the last call on a handle failed; empty if it did not. The text is valid until the
+/// next call.
 ///
 /// # Safety
 /// `field` comes from amberfield_field_open and is not closed.
@@ -163,10 +165,11 @@ pub unsafe extern "C" fn amberfield_field_error(field: *const AmberfieldField) -
     unsafe { &*field }.error.as_ptr()
 }
 
-/// Sends this rank's part of the mesh.
+/// Sends this rank's part of the mesh, once, before anything is waited for.
 ///
 /// # Safety
-/// As amberfield_field_error; the mesh's arrays have the lengths that it says.
+/// `field` comes from amberfield_field_open and is not closed; the mesh's arrays have the lengths that it
+/// says.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn amberfield_field_send_mesh(
     field: *mut AmberfieldField,
@@ -198,7 +201,7 @@ pub unsafe extern "C" fn amberfield_field_send_mesh(
 /// Waits for the next question; AmberfieldStatus_Over when there will be none.
 ///
 /// # Safety
-/// As amberfield_field_error; `request` may be written.
+/// `field` comes from amberfield_field_open and is not closed; `request` may be written.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn amberfield_field_wait(
     field: *mut AmberfieldField,
@@ -218,10 +221,12 @@ pub unsafe extern "C" fn amberfield_field_wait(
     }
 }
 
-/// Charge density [C/m^3] at this rank's cell centres; finds the cell of every charge that is spread over its cell.
+/// Writes the charge density [C/m^3] at this rank's cell centres. Of charges that are spread over their cells
+/// it finds the cells too, which the reply then names.
 ///
 /// # Safety
-/// As amberfield_field_error; `density` has room for `cells` numbers, this rank's cells.
+/// `field` comes from amberfield_field_open and is not closed; `density` has room for `cells` numbers, this
+/// rank's cells.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn amberfield_field_density(
     field: *mut AmberfieldField,
@@ -238,7 +243,7 @@ pub unsafe extern "C" fn amberfield_field_density(
 /// Copies the boundary data of this rank's faces: potentials [V] or outward slopes [V/m], by the face's kind.
 ///
 /// # Safety
-/// As amberfield_field_error; `values` has room for `faces` numbers.
+/// `field` comes from amberfield_field_open and is not closed; `values` has room for `faces` numbers.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn amberfield_field_boundary(
     field: *mut AmberfieldField,
@@ -255,10 +260,12 @@ pub unsafe extern "C" fn amberfield_field_boundary(
     }
 }
 
-/// Copies the potential [V] to start from to this rank's cells; leaves it where there is none, which is the usual case.
+/// Copies the potential [V] to start from to this rank's cells. Where the question has none, which is the
+/// usual case, the array stays as it is.
 ///
 /// # Safety
-/// As amberfield_field_error; `potential` has room for `cells` numbers, this rank's cells.
+/// `field` comes from amberfield_field_open and is not closed; `potential` has room for `cells` numbers, this
+/// rank's cells.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn amberfield_field_guess(
     field: *mut AmberfieldField,
@@ -280,7 +287,8 @@ pub unsafe extern "C" fn amberfield_field_guess(
 /// Answers the question for the far field.
 ///
 /// # Safety
-/// As amberfield_field_error; the arrays of `far` have as many entries as it has cells.
+/// `field` comes from amberfield_field_open and is not closed; the arrays of `far` have as many entries as it
+/// has cells.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn amberfield_field_reply(
     field: *mut AmberfieldField,
@@ -303,7 +311,7 @@ pub unsafe extern "C" fn amberfield_field_reply(
 /// Tells the DEM process why this one cannot go on.
 ///
 /// # Safety
-/// As amberfield_field_error; `reason` is a C string.
+/// `field` comes from amberfield_field_open and is not closed; `reason` is a C string.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn amberfield_field_fail(field: *mut AmberfieldField, reason: *const c_char) {
     // SAFETY: the caller's promise.
@@ -316,20 +324,20 @@ pub unsafe extern "C" fn amberfield_field_fail(field: *mut AmberfieldField, reas
     }
 }
 
-/// Closes a handle. NULL is allowed.
+/// Closes a handle of the field side. NULL is allowed.
 ///
 /// # Safety
-/// As amberfield_field_error; the handle is gone afterwards.
+/// `field` comes from amberfield_field_open and is not closed; the handle is gone afterwards.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn amberfield_field_close(field: *mut AmberfieldField) {
     // SAFETY: the caller's promise.
     unsafe { close(field) };
 }
 
-/// Runs a call on a handle that is open; errors and panics become its text.
+/// Runs a call on an open handle; errors and panics become its text.
 ///
 /// # Safety
-/// As amberfield_field_error.
+/// `field` comes from amberfield_field_open and is not closed.
 pub(crate) unsafe fn with(
     field: *mut AmberfieldField,
     call: impl FnOnce(&mut FieldSide) -> Result<AmberfieldStatus, amberfield_coupling::CouplingError>,

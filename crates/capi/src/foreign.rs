@@ -35,8 +35,10 @@ pub(crate) unsafe fn close<T>(handle: *mut T) {
     }
 }
 
+/// An array of C as a slice; with `count` 0 the pointer does not matter.
+///
 /// # Safety
-/// `count` elements lie there, or there are none.
+/// `count` elements lie there.
 pub(crate) unsafe fn slice<'a, T>(pointer: *const T, count: usize) -> &'a [T] {
     if count == 0 {
         return &[];
@@ -45,8 +47,10 @@ pub(crate) unsafe fn slice<'a, T>(pointer: *const T, count: usize) -> &'a [T] {
     unsafe { std::slice::from_raw_parts(pointer, count) }
 }
 
+/// An array of C as a slice that may be written; with `count` 0 the pointer does not matter.
+///
 /// # Safety
-/// As `slice`, and nobody else uses them.
+/// `count` elements lie there, and nobody else uses them.
 pub(crate) unsafe fn slice_mut<'a, T>(pointer: *mut T, count: usize) -> &'a mut [T] {
     if count == 0 {
         return &mut [];

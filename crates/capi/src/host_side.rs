@@ -1,4 +1,4 @@
-//! The host side: a DEM code of somebody else's asks for the field at its particles.
+//! The host side: a DEM code of your own asks for the field at its particles.
 
 use crate::field_side::AmberfieldStatus;
 use crate::foreign::{close, guarded, slice, slice_mut};
@@ -9,7 +9,7 @@ use amberfield_field::{ElectricField, FieldValues, Wanted};
 use std::ffi::{CStr, CString, c_char};
 use std::time::Duration;
 
-/// What a face of the box is.
+/// Condition on a face of the box.
 #[repr(C)]
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum AmberfieldBoundary {
@@ -25,17 +25,17 @@ pub enum AmberfieldBoundary {
     Open = 4,
 }
 
-/// A face of the box.
+/// Face of the box, with the condition there.
 #[repr(C)]
 #[derive(Clone, Copy, Debug)]
 pub struct AmberfieldFace {
-    /// An AmberfieldBoundary.
+    /// Condition, a value of AmberfieldBoundary.
     pub boundary: u64,
-    /// Its potential or normal field.
+    /// Potential [V] or outward normal field [V/m]; 0 for other conditions.
     pub value: f64,
 }
 
-/// What a host program wants: method p3m, SI units. Set it to zero, then what differs.
+/// Settings of a host program; the method is p3m, units are SI. Set all to zero, then what differs.
 #[repr(C)]
 #[derive(Debug)]
 pub struct AmberfieldHostSettings {
@@ -43,7 +43,8 @@ pub struct AmberfieldHostSettings {
     pub low: [f64; 3],
     /// Upper corner [m].
     pub high: [f64; 3],
-    /// Faces in the order x low, x high, y low, ...; with an OpenFOAM case its patches count instead, and its box.
+    /// Faces in the order x low, x high, y low, ...; with an OpenFOAM case its box and its patches count
+    /// instead.
     pub faces: [AmberfieldFace; 6],
     /// Relative RMS error of E; 0: 1e-2.
     pub tolerance: f64,
@@ -59,15 +60,16 @@ pub struct AmberfieldHostSettings {
     pub wait_for_solver: u64,
     /// Processes of the solver; 0: 1.
     pub ranks: u64,
-    /// How long an answer of the solver may take [s]; 0: 30.
+    /// Time that an answer of the solver may take [s]; 0: 30.
     pub timeout: f64,
 }
 
 /// The field of a host program's particles.
 ///
-/// For a code that runs under MPI: gather positions and charges to one rank of each machine (positions are small beside the work: 32 bytes
-/// a particle), call it there, scatter the fields. The library uses all cores that rank may use; one handle for the whole run keeps parameters,
-/// memory and a solver's warm start. Call it every so many steps and keep E in between, as the fix of an electric force would.
+/// A code that runs under MPI gathers positions and charges to one rank of each machine (32 bytes a particle,
+/// little beside the work), calls the library there and scatters the fields. The library uses all cores that
+/// this rank may use. One handle for the whole run keeps parameters, memory and a solver's warm start. Call
+/// it every so many steps and keep E in between.
 #[derive(Debug)]
 pub struct AmberfieldHost {
     scene: Option<Scene>,
@@ -101,7 +103,7 @@ impl Scene {
     }
 }
 
-/// Opens a field. Never NULL; amberfield_host_error is empty when it worked.
+/// Opens a field. The result is never NULL; amberfield_host_error is empty when it worked.
 ///
 /// # Safety
 /// `settings` may be read; its case is a C string or NULL.
@@ -129,7 +131,8 @@ pub unsafe extern "C" fn amberfield_host_open(
     Box::into_raw(host)
 }
 
-/// Why the last call failed; empty if it did not. Valid until the next call.
+/// Returns the reason why the last call on a handle failed; empty if it did not. The text is valid until the
+/// next call.
 ///
 /// # Safety
 /// `host` comes from amberfield_host_open and is not closed.
@@ -139,11 +142,13 @@ pub unsafe extern "C" fn amberfield_host_error(host: *const AmberfieldHost) -> *
     unsafe { &*host }.error.as_ptr()
 }
 
-/// E [V/m] at every particle (three doubles each) and, unless NULL, the potential [V] of all but the particle itself, of particles
-/// at positions [m] (three doubles each) with charges [C] at a time [s]. The first call chooses parameters and starts the solver, if there is one.
+/// Computes E [V/m] at every particle, three doubles each, and the potential [V] of all but the particle
+/// itself, unless `potential` is NULL. The particles are at `positions` [m], three doubles each, with
+/// `charges` [C], at the time `time` [s]. The first call chooses parameters and starts the solver, if there
+/// is one.
 ///
 /// # Safety
-/// As amberfield_host_error; the arrays have room for `count` particles.
+/// `host` comes from amberfield_host_open and is not closed; the arrays have room for `count` particles.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn amberfield_host_field(
     host: *mut AmberfieldHost,
@@ -191,7 +196,7 @@ pub unsafe extern "C" fn amberfield_host_field(
 /// Chooses parameters anew at the next call, for particles that are no longer what they were.
 ///
 /// # Safety
-/// As amberfield_host_error.
+/// `host` comes from amberfield_host_open and is not closed.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn amberfield_host_retune(host: *mut AmberfieldHost) {
     // SAFETY: the caller's promise.
@@ -202,10 +207,10 @@ pub unsafe extern "C" fn amberfield_host_retune(host: *mut AmberfieldHost) {
     });
 }
 
-/// Ends the solver, if there is one, and closes a handle. NULL is allowed.
+/// Ends the solver, if there is one, and closes a handle of the host side. NULL is allowed.
 ///
 /// # Safety
-/// As amberfield_host_error; the handle is gone afterwards.
+/// `host` comes from amberfield_host_open and is not closed; the handle is gone afterwards.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn amberfield_host_close(host: *mut AmberfieldHost) {
     // SAFETY: the caller's promise.

@@ -1,5 +1,5 @@
-//! The C library of amberfield: what OpenFOAM's side sees of the DEM process, and the field for a DEM code of somebody
-//! else's. No call panics or throws; errors come as a status, with a text in the handle.
+//! The C library of amberfield. OpenFOAM's side sees the DEM process through it, and a DEM code of your own
+//! gets the field from it. No call panics or throws; errors come as a status, with a text in the handle.
 //!
 //! `include/amberfield.h` is made of this crate by `cargo xtask header`; a test fails when it is stale.
 

@@ -75,7 +75,8 @@ fn names(text: &str) -> Vec<&str> {
     names
 }
 
-/// Types that the header declares, by the word before their names: complete ones with their bodies, others without.
+/// Types that the header declares, by the word before their names: complete ones with their bodies, others
+/// without.
 fn declared<'a>(header: &'a str, kind: &str) -> Vec<(&'a str, Option<&'a str>)> {
     let start = format!("typedef {kind} ");
     let mut found = Vec::new();
@@ -105,7 +106,8 @@ fn members(body: &str) -> Vec<&str> {
         .collect()
 }
 
-/// A program that uses every value of every enum, every field of every structure and every function of the header.
+/// A program that uses every value of every enum, every field of every structure and every function of the
+/// header.
 fn program(header: &str) -> String {
     let mut text = String::from("#include \"amberfield.h\"\n\n");
     for (name, body) in declared(header, "enum") {

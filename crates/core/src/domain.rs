@@ -109,7 +109,8 @@ impl fmt::Display for DomainError {
         match self {
             Self::Extent { axis, min_m, max_m } => write!(
                 f,
-                "domain extent along {axis} must be positive and finite, got {min_m} to {max_m} m; give max_m above min_m"
+                "domain extent along {axis} must be positive and finite, got {min_m} to {max_m} m; give max_m \
+                 above min_m"
             ),
             Self::HalfPeriodic(axis) => {
                 write!(f, "only one face of axis {axis} is periodic; make both faces periodic or neither")

@@ -58,10 +58,10 @@ impl FromStr for Method {
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(rename_all = "snake_case")]
 pub enum Tuning {
-    /// By timing them once; the choice is recorded and reused on resume.
+    /// Candidates are timed once; the choice is recorded and reused on resume.
     #[default]
     Timed,
-    /// By the cost model alone: the same choice on every machine.
+    /// The cost model decides alone: the same choice on every machine.
     Model,
 }
 
@@ -69,10 +69,10 @@ pub enum Tuning {
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(rename_all = "snake_case")]
 pub enum CouplingInterval {
-    /// As often as displacement, charge change and plasma limit ask.
+    /// Displacement, charge change and plasma limit decide.
     #[default]
     Auto,
-    /// Every given number of steps.
+    /// The field is evaluated after this number of steps.
     Steps(u32),
 }
 
@@ -104,8 +104,8 @@ pub struct FieldSettings {
     pub tuning: Tuning,
     /// How often the field is evaluated.
     pub coupling_interval: CouplingInterval,
-    /// Whether a field solver of another process works beside the steps: its part of the field is then forecast from its last
-    /// two answers.
+    /// Whether a field solver of another process works beside the steps: its part of the field is then
+    /// forecast from its last two answers.
     pub overlap: bool,
     /// Bound on the electric force, when asked for.
     pub force_limit: Option<ForceLimit>,

@@ -48,7 +48,7 @@ pub enum GasModel {
     B,
 }
 
-/// A flow that somebody computes.
+/// Flow that a solver in another process computes.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 pub struct GasFlow {
     /// Model.

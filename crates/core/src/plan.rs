@@ -7,7 +7,7 @@ use serde::{Deserialize, Serialize};
 pub struct PlanEntry {
     /// Name of the stage, as in `history.csv`'s `wall_s_<stage>`.
     pub stage: String,
-    /// Why it is there, or why it is left out.
+    /// Reason for which the stage is there, or left out.
     pub reason: String,
 }
 
@@ -46,7 +46,7 @@ impl Plan {
         &self.stages
     }
 
-    /// What is left out.
+    /// Stages that are left out.
     #[must_use]
     pub fn left_out(&self) -> &[PlanEntry] {
         &self.left_out

@@ -50,9 +50,9 @@ pub struct Wall {
     pub shape: WallShape,
     /// Material.
     pub material: MaterialId,
-    /// What it does with charge.
+    /// What the wall does with charge.
     pub charging: WallCharging,
-    /// Whether it is a boundary of the electric field too: a patch of a field solver's mesh. Faces of the domain are known by
-    /// their place.
+    /// Whether it is a boundary of the electric field too: a patch of a field solver's mesh. Faces of the
+    /// domain are known by their place.
     pub bounds_field: bool,
 }

@@ -2,13 +2,14 @@
 
 use crate::Section;
 
-/// What is wrong with a message.
+/// Fault of a message.
 #[derive(Debug, Clone, PartialEq, thiserror::Error)]
 #[non_exhaustive]
 pub enum WireError {
     /// The peer speaks another version.
     #[error(
-        "the peer speaks version {theirs} of the protocol, this program {ours}; build both from the same source"
+        "the peer speaks version {theirs} of the protocol, this program {ours}; build both from the same \
+         source"
     )]
     Version {
         /// Version in the message.
@@ -64,14 +65,15 @@ pub enum WireError {
     },
     /// A section reaches beyond the payload.
     #[error(
-        "section {section:?} of {count} elements from block {first_block} on reaches beyond the payload of {blocks} blocks"
+        "section {section:?} of {count} elements from block {first_block} on reaches beyond the payload of \
+         {blocks} blocks"
     )]
     Bounds {
         /// The section.
         section: Section,
-        /// Elements.
+        /// Number of elements.
         count: u64,
-        /// Where it begins.
+        /// Block in which the section begins.
         first_block: u64,
         /// Blocks of the payload.
         blocks: usize,
@@ -81,9 +83,9 @@ pub enum WireError {
     Number {
         /// The section.
         section: Section,
-        /// Which element.
+        /// Number of the element.
         place: usize,
-        /// Its value.
+        /// Value in the message.
         value: f64,
     },
     /// A field of a structure that cannot be used.
@@ -101,11 +103,11 @@ pub enum WireError {
     Index {
         /// The section.
         section: Section,
-        /// Which element.
+        /// Number of the element.
         place: usize,
-        /// Its value.
+        /// Value in the message.
         value: u64,
-        /// What it counts in.
+        /// Count that it must be below.
         count: usize,
     },
 }

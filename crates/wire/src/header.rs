@@ -6,7 +6,7 @@ use std::mem::{align_of, offset_of, size_of};
 
 /// Raised with every change of a message.
 pub const PROTOCOL_VERSION: u32 = 4;
-/// Sections of a message at most.
+/// Largest number of sections of a message.
 pub(crate) const MOST_SECTIONS: usize = 20;
 
 /// Unit of payloads: a cache line.
@@ -15,19 +15,19 @@ pub(crate) const MOST_SECTIONS: usize = 20;
 #[repr(align(64))]
 #[type_name("amberfield Block64 1")]
 pub struct Block64 {
-    /// Whatever the sections make of them.
+    /// Words, whose meaning the sections give.
     pub words: [u64; 8],
 }
 
-/// What a message is about.
+/// Subject of a message.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 #[repr(u32)]
 pub enum MessageKind {
     /// Field to DEM, once per rank: the rank's part of the mesh.
     Mesh = 1,
-    /// DEM to field: charges and boundary data of one far-field solve.
+    /// DEM to field: the question for the far field, with charges and boundary data.
     Charges = 2,
-    /// Field to DEM: the answer.
+    /// Field to DEM: the far field.
     Fields = 3,
     /// DEM to field: send the state of the flow.
     Checkpoint = 4,
@@ -35,9 +35,10 @@ pub enum MessageKind {
     State = 5,
     /// Either way: this was the last message; a text says why.
     End = 6,
-    /// DEM to field: void fraction and exchange of momentum of one interval of the flow.
+    /// DEM to field: the question for the flow after an interval, with void fraction and exchange of
+    /// momentum.
     Grains = 7,
-    /// Field to DEM: the flow at its end.
+    /// Field to DEM: the flow at the end of the interval.
     Flow = 8,
     /// DEM to field: take in the state of the flow.
     Restore = 9,
@@ -53,21 +54,21 @@ impl MessageKind {
     }
 }
 
-/// What a section holds; vectors are three `f64`.
+/// Content of a section; vectors are three `f64`.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 #[repr(u32)]
 pub enum Section {
     /// Text, UTF-8.
     Text = 1,
-    /// Places of the charges [m].
+    /// Positions of the charges [m].
     Positions = 2,
     /// Charges [C].
     Charges = 3,
-    /// Places of the image charges [m].
+    /// Positions of the image charges [m].
     ImagePositions = 4,
     /// Image charges [C].
     ImageCharges = 5,
-    /// By boundary face: potential [V] or outward slope [V/m].
+    /// Potentials [V] or outward slopes [V/m], by boundary face.
     Boundary = 6,
     /// Scalars of the question for the far field: one [`crate::payloads::FarQuestion`].
     FarQuestion = 7,
@@ -75,55 +76,58 @@ pub enum Section {
     Potential = 8,
     /// E at the cells' centres [V/m].
     Field = 9,
-    /// Cell of each charge (`u64`), `u64::MAX` where it is another rank's; empty unless the source is by cell.
+    /// Cell of each charge (`u64`), `u64::MAX` where it is another rank's; empty unless the source is by
+    /// cell.
     Cells = 10,
-    /// Scalars of the answer to it: one [`crate::payloads::FarAnswer`].
+    /// Scalars of the answer with the far field: one [`crate::payloads::FarAnswer`].
     FarAnswer = 11,
     /// Cell centres [m].
     Centres = 12,
     /// Cell volumes [m³].
     Volumes = 13,
-    /// Where each cell's faces begin (`u64`), one more than there are cells.
+    /// Place of each cell's first face (`u64`), one more than there are cells.
     FirstFace = 14,
     /// Outward unit normal of each cell's faces.
     FaceNormals = 15,
-    /// Normal times face centre [m].
+    /// Scalar products of normals and face centres [m].
     FaceOffsets = 16,
-    /// Beyond each face (`i64`): a cell c of all ranks as c, a boundary face b of this rank as −1 − b.
+    /// Neighbour beyond each face (`i64`): cell c of all ranks as c, boundary face b of this rank as −1 − b.
     FaceNeighbours = 17,
-    /// What is added to a neighbour's coordinates [m].
+    /// Vectors to add to the neighbours' coordinates [m].
     FaceShifts = 18,
     /// Faces on the boundary: a [`crate::payloads::BoundaryFace`] each.
     BoundaryFaces = 19,
     /// Outline of the mesh: one [`crate::payloads::MeshOutline`].
     MeshOutline = 20,
-    /// Potential at the cells' centres of all ranks to start the linear solver from [V]; absent: from where it is.
+    /// Potential at the cells' centres of all ranks to start the linear solver from [V]; absent: it starts
+    /// where it is.
     Guess = 21,
     /// Scalars of the question for the flow: one [`crate::payloads::FlowQuestion`].
     FlowQuestion = 22,
-    /// ε by cell of all ranks.
+    /// Void fraction by cell of all ranks.
     VoidFraction = 23,
-    /// K by cell of all ranks [kg/(m³ s)]: the gas feels S − K u.
+    /// Drag coefficient K by cell of all ranks [kg/(m³ s)]: the gas feels S − K u.
     DragCoefficient = 24,
-    /// S by cell of all ranks [N/m³].
+    /// Source S of momentum by cell of all ranks [N/m³].
     MomentumSource = 25,
-    /// u at the cells' centres [m/s].
+    /// Velocity u at the cells' centres [m/s].
     Velocity = 26,
-    /// ∇p at the cells' centres [Pa/m], without the gas's own weight.
+    /// Pressure gradient ∇p at the cells' centres [Pa/m], without the gas's own weight.
     PressureGradient = 27,
-    /// ∇·τ at the cells' centres [N/m³]; empty unless wanted.
+    /// Divergence ∇·τ of the viscous stress at the cells' centres [N/m³]; empty unless wanted.
     ViscousForce = 28,
-    /// ∇ × u at the cells' centres [1/s]; empty unless wanted.
+    /// Vorticity ∇ × u at the cells' centres [1/s]; empty unless wanted.
     Vorticity = 29,
-    /// Scalars of the answer to it: one [`crate::payloads::FlowAnswer`].
+    /// Scalars of the answer with the flow: one [`crate::payloads::FlowAnswer`].
     FlowAnswer = 30,
-    /// State of the flow: numbers of the solver's own; all ranks', one after the other, when they are sent back.
+    /// State of the flow, numbers whose meaning is the solver's own. Sent back they are those of all ranks,
+    /// one after the other.
     FlowState = 31,
-    /// Number of them that each rank has (`u64`).
+    /// Number of each rank's numbers in the state of the flow (`u64`).
     FlowStateSizes = 32,
 }
 
-/// Where a section lies.
+/// Entry of a header that says where a section lies.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, ZeroCopySend)]
 #[repr(C)]
 #[type_name("amberfield SectionEntry 1")]
@@ -138,7 +142,7 @@ pub struct SectionEntry {
     pub first_block: u64,
 }
 
-/// What stands before every payload.
+/// Header that stands before every payload.
 #[derive(Clone, Copy, Debug, Default, PartialEq, ZeroCopySend)]
 #[repr(C)]
 #[type_name("amberfield Header 1")]
@@ -151,18 +155,18 @@ pub struct Header {
     pub run: u64,
     /// Number of the solve that a message asks for or answers.
     pub solve: u64,
-    /// Rank of the sender among the field processes, and how many there are.
+    /// Rank of the sender among the field processes.
     pub rank: u32,
-    /// See `rank`.
+    /// Number of field processes.
     pub ranks: u32,
-    /// Sections used.
+    /// Number of sections used.
     pub section_count: u64,
-    /// Where they lie.
+    /// Entries of the sections, of which the first `section_count` are used.
     pub sections: [SectionEntry; MOST_SECTIONS],
 }
 
 impl Header {
-    /// A header without sections.
+    /// Makes a header without sections.
     #[must_use]
     pub fn new(kind: MessageKind, run: u64, solve: u64) -> Self {
         Self {
@@ -177,7 +181,7 @@ impl Header {
         }
     }
 
-    /// The kind of message, once version and run are those expected.
+    /// Returns the kind of message, once version and run are those expected.
     ///
     /// # Errors
     /// Another version, another run, an unknown kind.

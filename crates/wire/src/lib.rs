@@ -1,8 +1,9 @@
 //! What travels between the DEM process and the field process, with its layout asserted on both sides.
 //!
-//! A message is a [`Header`] and a payload of [`Block64`]s. The header says what kind of message it is and where its
-//! [`Section`]s lie: flat arrays of numbers, of vectors or of the structures in [`payloads`], each beginning on a block.
-//! A new quantity is a new section, or a new field of such a structure. Whoever changes anything here raises [`PROTOCOL_VERSION`].
+//! A message is a [`Header`] and a payload of [`Block64`]s. The header says what kind of message it is and
+//! where its [`Section`]s lie: flat arrays of numbers, of vectors or of the structures in [`payloads`], each
+//! beginning on a block. A new quantity is a new section, or a new field of such a structure. Whoever changes
+//! anything here raises [`PROTOCOL_VERSION`].
 
 mod error;
 mod header;

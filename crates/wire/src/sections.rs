@@ -4,7 +4,7 @@ use crate::WireError;
 use crate::header::{Block64, Header, MOST_SECTIONS, Section, SectionEntry};
 use std::mem::{MaybeUninit, size_of};
 
-/// What sections are made of: any bit pattern is a value.
+/// Element of a section: any bit pattern is a value.
 ///
 /// # Safety
 /// Implementors have no padding and no invalid bit patterns, and an alignment of at most 64.
@@ -28,7 +28,7 @@ pub struct Layout {
 }
 
 impl Layout {
-    /// No section yet.
+    /// Starts a layout without sections.
     #[must_use]
     pub fn new(header: Header) -> Self {
         Self { header: Header { section_count: 0, ..header }, blocks: 0 }
@@ -59,13 +59,13 @@ impl Layout {
         &self.header
     }
 
-    /// Blocks of the payload; never none.
+    /// Number of blocks of the payload; never 0.
     #[must_use]
     pub fn blocks(&self) -> usize {
         self.blocks.max(1)
     }
 
-    /// The memory of a section in a payload, set to zero.
+    /// Gives the memory of a section in a payload, set to zero.
     ///
     /// # Errors
     /// A section that was not added, or elements of another size.
@@ -80,7 +80,8 @@ impl Layout {
         for block in &mut *part {
             block.write(Block64 { words: [0; 8] });
         }
-        // SAFETY: the blocks are initialised just now, hold `count` elements by `find`, and are aligned to 64 bytes.
+        // SAFETY: the blocks are initialised just now, hold `count` elements by `find`, and are aligned to 64
+        // bytes.
         Ok(unsafe { std::slice::from_raw_parts_mut(part.as_mut_ptr().cast::<T>(), count) })
     }
 }
@@ -93,28 +94,28 @@ pub struct Sections<'a> {
 }
 
 impl<'a> Sections<'a> {
-    /// Of a header and its payload.
+    /// Reads a header and the payload that belongs to it.
     #[must_use]
     pub fn new(header: &'a Header, payload: &'a [Block64]) -> Self {
         Self { header, payload }
     }
 
-    /// A section in place.
+    /// Gives a section in place.
     ///
     /// # Errors
     /// A section that is not there, has elements of another size or reaches beyond the payload.
     pub fn get<T: Element>(&self, section: Section) -> Result<&'a [T], WireError> {
         let (count, first_block) = find::<T>(self.header, self.payload.len(), section)?;
         let part = &self.payload[first_block..];
-        // SAFETY: the blocks from the first on hold `count` elements by `find`, any bit pattern is a value, and blocks are
-        // aligned to 64 bytes.
+        // SAFETY: the blocks from the first on hold `count` elements by `find`, any bit pattern is a value,
+        // and blocks are aligned to 64 bytes.
         Ok(unsafe { std::slice::from_raw_parts(part.as_ptr().cast::<T>(), count) })
     }
 
-    /// A section of so many elements, in place.
+    /// Gives a section of so many elements, in place.
     ///
     /// # Errors
-    /// As [`Self::get`], and another number of elements.
+    /// The errors of [`Self::get`], and another number of elements.
     pub fn exactly<T: Element>(&self, section: Section, count: usize) -> Result<&'a [T], WireError> {
         let found = self.get::<T>(section)?;
         if found.len() != count {
@@ -123,10 +124,10 @@ impl<'a> Sections<'a> {
         Ok(found)
     }
 
-    /// A section of one element, in place.
+    /// Gives the only element of a section, in place.
     ///
     /// # Errors
-    /// As [`Self::get`], and another number of elements.
+    /// The errors of [`Self::get`], and another number of elements.
     pub fn one<T: Element>(&self, section: Section) -> Result<&'a T, WireError> {
         match self.exactly::<T>(section, 1)? {
             [element] => Ok(element),
@@ -134,7 +135,7 @@ impl<'a> Sections<'a> {
         }
     }
 
-    /// The text of a message; empty where it has none.
+    /// Gives the text of a message; empty where it has none.
     #[must_use]
     pub fn text(&self) -> String {
         self.get::<u8>(Section::Text)
@@ -142,7 +143,7 @@ impl<'a> Sections<'a> {
     }
 }
 
-/// Count and first block of a section that lies within so many blocks.
+/// Finds the count and the first block of a section that lies within so many blocks.
 fn find<T: Element>(header: &Header, blocks: usize, section: Section) -> Result<(usize, usize), WireError> {
     let known = &header.sections[..(header.section_count as usize).min(MOST_SECTIONS)];
     let entry =

@@ -1,4 +1,5 @@
-//! The question for the far part of the field: [`FarQuestion`], which `field`, `wire` and the C library share.
+//! The question for the far part of the field: [`FarQuestion`], which `field`, `wire` and the C library
+//! share.
 
 use super::{FarQuestion, SourceCloud, require};
 use crate::{Element, Section, WireError};

@@ -1,6 +1,7 @@
 //! Structures that a message carries beside its arrays: one a file, with its layout.
 //!
-//! They have no padding and hold only `f64` and `u64`, so that any bytes are a value. A yes or no is the number 1 or 0.
+//! They have no padding and hold only `f64` and `u64`, so that any bytes are a value. A yes or no is the
+//! number 1 or 0.
 
 mod boundary_face;
 mod far_answer;
