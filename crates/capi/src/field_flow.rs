@@ -1,8 +1,9 @@
 //! The field side of a gas's flow: takes what the grains do to it, answers, hands over and takes in its
 //! state.
 
-use crate::field_side::{AmberfieldField, AmberfieldStatus, with};
+use crate::field_side::{AmberfieldField, with};
 use crate::foreign::{slice, slice_mut};
+use crate::status::AmberfieldStatus;
 use amberfield_coupling::{CouplingError, FlowReply};
 use amberfield_wire::payloads::FlowAnswer;
 use amberfield_wire::{Section, WireError};

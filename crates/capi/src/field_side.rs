@@ -1,21 +1,10 @@
 //! The field side: open the run, send the mesh, wait, take density and boundary data, answer, close.
 
 use crate::foreign::{close, guarded, slice, slice_mut};
+use crate::status::AmberfieldStatus;
 use amberfield_coupling::{FieldSide, MeshPart, Question, Reply};
 use amberfield_wire::payloads::{BoundaryFace, FarQuestion, FlowQuestion, MeshOutline, SourceCloud};
 use std::ffi::{CStr, CString, c_char};
-
-/// Outcome of a call.
-#[repr(C)]
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum AmberfieldStatus {
-    /// Done.
-    Ok = 0,
-    /// The run is over: close and leave.
-    Over = 1,
-    /// It failed: amberfield_field_error says why.
-    Failed = 2,
-}
 
 /// One rank of a field process.
 #[derive(Debug)]

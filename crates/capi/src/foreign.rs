@@ -1,6 +1,6 @@
 //! Across the border to C: arrays in, texts out, no panic.
 
-use crate::field_side::AmberfieldStatus;
+use crate::status::AmberfieldStatus;
 use std::ffi::CString;
 use std::panic::{AssertUnwindSafe, catch_unwind};
 

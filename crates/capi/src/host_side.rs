@@ -1,7 +1,7 @@
 //! The host side: a DEM code of your own asks for the field at its particles.
 
-use crate::field_side::AmberfieldStatus;
 use crate::foreign::{close, guarded, slice, slice_mut};
+use crate::status::AmberfieldStatus;
 use amberfield_core::{Boundary, Domain, FieldSettings, Tuning, Vector3};
 use amberfield_coupling::{Announced, SolverSettings};
 use amberfield_field::far::FarField;

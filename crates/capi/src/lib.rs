@@ -7,13 +7,14 @@ mod field_flow;
 mod field_side;
 mod foreign;
 mod host_side;
+mod status;
 
 pub use field_flow::{
     AmberfieldFlow, amberfield_field_grains, amberfield_field_reply_flow, amberfield_field_reply_state,
     amberfield_field_state,
 };
 pub use field_side::{
-    AmberfieldFar, AmberfieldField, AmberfieldMesh, AmberfieldQuestion, AmberfieldRequest, AmberfieldStatus,
+    AmberfieldFar, AmberfieldField, AmberfieldMesh, AmberfieldQuestion, AmberfieldRequest,
     amberfield_field_boundary, amberfield_field_close, amberfield_field_density, amberfield_field_error,
     amberfield_field_fail, amberfield_field_guess, amberfield_field_open, amberfield_field_reply,
     amberfield_field_send_mesh, amberfield_field_wait,
@@ -22,3 +23,4 @@ pub use host_side::{
     AmberfieldBoundary, AmberfieldFace, AmberfieldHost, AmberfieldHostSettings, amberfield_host_close,
     amberfield_host_error, amberfield_host_field, amberfield_host_open, amberfield_host_retune,
 };
+pub use status::AmberfieldStatus;

@@ -12,7 +12,8 @@ use std::path::{Path, PathBuf};
 /// The variable that makes this test write the header instead: `cargo xtask header` sets it.
 const WRITE: &str = "AMBERFIELD_WRITE_HEADER";
 /// Sources of the header, the shared structures of other crates among them.
-const SOURCES: [&str; 8] = [
+const SOURCES: [&str; 9] = [
+    "src/status.rs",
     "src/field_side.rs",
     "src/field_flow.rs",
     "src/host_side.rs",

@@ -1,6 +1,6 @@
 //! Why a message is not understood.
 
-use crate::Section;
+use crate::section::Section;
 
 /// Fault of a message.
 #[derive(Debug, Clone, PartialEq, thiserror::Error)]

@@ -7,9 +7,11 @@
 
 mod error;
 mod header;
+mod layout;
 pub mod payloads;
-mod sections;
+mod section;
 
 pub use error::WireError;
-pub use header::{Block64, Header, MessageKind, PROTOCOL_VERSION, Section, SectionEntry, check_version};
-pub use sections::{Element, Layout, Sections};
+pub use header::{Block64, Header, MessageKind, PROTOCOL_VERSION, SectionEntry, check_version};
+pub use layout::{Element, Layout, Sections};
+pub use section::Section;

@@ -1,7 +1,8 @@
 //! Writing and reading a payload's sections; nothing that is read is trusted.
 
-use crate::WireError;
-use crate::header::{Block64, Header, MOST_SECTIONS, Section, SectionEntry};
+use crate::error::WireError;
+use crate::header::{Block64, Header, MOST_SECTIONS, SectionEntry};
+use crate::section::Section;
 use std::mem::{MaybeUninit, size_of};
 
 /// Element of a section: any bit pattern is a value.
