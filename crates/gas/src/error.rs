@@ -1,13 +1,13 @@
 //! Errors of the gas crate.
 
-/// Why there is no flow.
+/// Reason why there is no flow.
 #[derive(Debug, Clone, PartialEq, thiserror::Error)]
 #[non_exhaustive]
 pub enum GasError {
-    /// What the scene asks for is impossible.
+    /// Settings of the scene that are impossible.
     #[error("{0}")]
     Settings(String),
-    /// Whoever computes the flow is lost, or answers what makes no sense.
+    /// Solver of the flow that is lost, or whose answer makes no sense.
     #[error("{0}")]
     Solver(String),
 }

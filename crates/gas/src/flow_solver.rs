@@ -1,4 +1,4 @@
-//! Who computes the flow.
+//! The solver that computes the flow of the gas.
 
 use crate::GasError;
 use amberfield_core::{Gas, GasFlow, Vector3};
@@ -7,49 +7,51 @@ use serde::{Deserialize, Serialize};
 use std::fmt;
 use std::sync::{Arc, Mutex, PoisonError};
 
-/// What a solver is asked: the flow at the end of an interval, with grains that stay as they are at its start.
+/// Question to a solver: the flow at the end of an interval, with grains that stay as they are at its start.
 ///
-/// ε ρ (∂u/∂t + u·∇u) = −a ∇p + ∇·(ε τ) − K u + S with ∂ε/∂t + ∇·(ε u) = 0; p without the gas's own weight; a = ε in model A, 1 in model B.
+/// ε ρ (∂u/∂t + u·∇u) = −a ∇p + ∇·(ε τ) − K u + S with ∂ε/∂t + ∇·(ε u) = 0
+///
+/// The pressure p is without the gas's own weight; a = ε in model A and 1 in model B.
 #[derive(Clone, Copy, Debug)]
 pub struct FlowRequest<'a> {
-    /// Length of the interval [s]; 0: the flow as it is.
+    /// Length of the interval [s]; 0 asks for the flow as it is.
     pub interval_s: f64,
-    /// Its start [s].
+    /// Start of the interval [s].
     pub time_s: f64,
-    /// Density and viscosity.
+    /// Gas, with its density and viscosity.
     pub gas: &'a Gas,
-    /// Model, and what is wanted.
+    /// Settings of the flow: the model, and which parts of the answer are wanted.
     pub flow: &'a GasFlow,
-    /// ε by cell.
+    /// Void fraction ε by cell.
     pub void_fraction: &'a [f64],
-    /// K by cell [kg/(m³ s)].
+    /// Drag coefficient K by cell [kg/(m³ s)].
     pub drag: &'a [f64],
-    /// S by cell [N/m³].
+    /// Source of momentum S by cell [N/m³].
     pub source: &'a [Vector3<f64>],
 }
 
 /// The flow at cell centres.
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
 pub struct FlowValues {
-    /// u [m/s].
+    /// Velocity u [m/s].
     pub velocity: Vec<Vector3<f64>>,
-    /// ∇p [Pa/m], without the gas's own weight.
+    /// Pressure gradient ∇p [Pa/m], without the gas's own weight.
     pub pressure_gradient: Vec<Vector3<f64>>,
-    /// ∇·τ [N/m³].
+    /// Viscous force ∇·τ [N/m³].
     pub viscous_force: Vec<Vector3<f64>>,
-    /// ∇ × u [1/s].
+    /// Vorticity ∇ × u [1/s].
     pub vorticity: Vec<Vector3<f64>>,
     /// Iterations of the linear solver for p.
     pub iterations: u64,
-    /// What continuity misses: RMS over the cells of ∂ε/∂t + ∇·(ε u), times the interval.
+    /// Error of continuity: RMS over the cells of ∂ε/∂t + ∇·(ε u), times the interval.
     pub residual: f64,
-    /// Time that it took, without the way there and back [s].
+    /// Time that the solver took, without the way there and back [s].
     pub seconds: f64,
 }
 
-/// Somebody who computes the flow.
+/// Solver of the flow.
 pub trait FlowSolver: fmt::Debug + Send + Sync {
-    /// The cells.
+    /// Mesh of the cells on which the flow is computed.
     fn mesh(&self) -> &FarMesh;
 
     /// Asks for the flow after an interval, without waiting.
@@ -64,7 +66,7 @@ pub trait FlowSolver: fmt::Debug + Send + Sync {
     /// A solver that is lost or does not converge.
     fn take(&mut self, values: &mut FlowValues) -> Result<(), GasError>;
 
-    /// Everything that the solver needs to go on bit for bit: numbers of its own, by process.
+    /// State that the solver needs to go on bit for bit: numbers of its own, by process.
     ///
     /// # Errors
     /// A solver that is lost.
@@ -77,18 +79,18 @@ pub trait FlowSolver: fmt::Debug + Send + Sync {
     fn restore(&mut self, state: &[Vec<f64>]) -> Result<(), GasError>;
 }
 
-/// How a solver is reached.
+/// Way to reach a solver of the flow.
 #[derive(Clone)]
 pub struct ConnectFlow(Arc<dyn Fn() -> Result<Box<dyn FlowSolver>, GasError> + Send + Sync>);
 
 impl ConnectFlow {
-    /// By calling `connect`.
+    /// Reaches the solver by calling `connect`.
     #[must_use]
     pub fn new(connect: impl Fn() -> Result<Box<dyn FlowSolver>, GasError> + Send + Sync + 'static) -> Self {
         Self(Arc::new(connect))
     }
 
-    /// The one that is there, once: whoever asks again has lost it.
+    /// Hands out this solver once; a second call finds that it is lost.
     #[must_use]
     pub fn once(solver: impl FlowSolver + 'static) -> Self {
         let waiting = Mutex::new(Some(Box::new(solver) as Box<dyn FlowSolver>));
@@ -98,10 +100,10 @@ impl ConnectFlow {
         })
     }
 
-    /// Reaches it.
+    /// Reaches the solver.
     ///
     /// # Errors
-    /// Nobody there.
+    /// No solver is there.
     pub fn connect(&self) -> Result<Box<dyn FlowSolver>, GasError> {
         (self.0)()
     }

@@ -1,6 +1,7 @@
-//! Grains and a gas whose flow somebody else computes, on cells ([`FlowSolver`]).
+//! Grains and a gas whose flow another program computes on cells, a [`FlowSolver`].
 //!
-//! [`Mapping`] says which share of a grain each cell near it has, [`Exchange`] what grains and gas give each other through them.
+//! [`Mapping`] says which share of a grain each cell near it has. [`Exchange`] says what grains and gas
+//! give each other through these shares.
 #![forbid(unsafe_code)]
 
 mod error;

@@ -1,24 +1,29 @@
-//! Which share of a grain each cell near it has.
+//! Shares of a grain in the cells near it.
 //!
-//! w_c = V_c φ(|x_c − x|/R) / Σ V_c φ with φ(s) = (1 − s²)³ for s < 1: shares add up to one, whatever the cells' shape and however near a wall is, and change
-//! without a jump when a grain crosses a face, be cells larger than grains or smaller. The same shares take the grain to the cells and the flow to the grain,
-//! so that what one gives the other gets. A grain no centre is near belongs to its cell alone.
+//! w_c = V_c φ(|x_c − x|/R) / Σ V_c φ with φ(s) = (1 − s²)³ for s < 1
+//!
+//! Shares add up to one, whatever the cells' shape and however near a wall is. They change without a jump
+//! when a grain crosses a face, whether cells are larger than grains or smaller. The same shares take the
+//! grain to the cells and the flow to the grain, so that the one gets what the other gives. A grain that is
+//! near no centre belongs to its cell alone.
 
 use crate::GasError;
 use amberfield_core::Vector3;
 use amberfield_field::far::{FarMesh, Neighbour};
 use rayon::prelude::*;
 
-/// Radius R at least, over the widest cell: every point of a cube has a centre within 0.87 of its edge, and several within this.
+/// Least radius R over the widest cell. Every point of a cube has a centre within 0.87 of its edge, and
+/// several within this radius.
 const OVER_CELL: f64 = 1.25;
-/// Radius R at least, over the largest diameter: grains in cells smaller than they are spread over some 27 times their volume.
+/// Least radius R over the largest diameter. Grains in cells smaller than themselves are spread over some
+/// 27 times their volume.
 const OVER_DIAMETER: f64 = 1.5;
 /// Grains that one thread takes at a time.
 pub(crate) const CHUNK: usize = 1024;
-/// Corner of a cell from its centre, at most, over the farthest of its faces.
+/// Largest distance of a corner from its cell's centre, over that of the farthest face.
 const CORNER: f64 = 2.0;
 
-/// A cell that may have a share: its index, and which shift its centre is seen with.
+/// A cell that may have a share: its index, and the number of the shift with which its centre is seen.
 #[derive(Clone, Copy, Debug, PartialEq)]
 struct Candidate {
     cell: u32,
@@ -31,7 +36,7 @@ pub struct Mapping {
     radius: f64,
     centres: Vec<Vector3<f64>>,
     volumes: Vec<f64>,
-    /// Candidates cell by cell: those of any point in it.
+    /// Number of the first candidate of each cell: a cell's candidates are those of any point in it.
     first: Vec<usize>,
     candidates: Vec<Candidate>,
     shifts: Vec<Vector3<f64>>,
@@ -40,29 +45,30 @@ pub struct Mapping {
 /// A grain's share in a cell.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Share {
-    /// The cell.
+    /// Index of the cell.
     pub cell: u32,
-    /// The share; a grain's shares add up to one.
+    /// Weight of the share; those of a grain add up to one.
     pub weight: f64,
 }
 
 /// Shares of many grains, grain by grain.
 #[derive(Clone, Debug, Default)]
 pub(crate) struct Shares {
-    /// Where each grain's begin; one more than there are grains.
+    /// Number of the first share of each grain; one entry more than there are grains.
     first: Vec<usize>,
     all: Vec<Share>,
 }
 
 impl Shares {
-    /// Those of a grain.
+    /// Shares of one grain.
     pub(crate) fn of(&self, grain: usize) -> &[Share] {
         &self.all[self.first[grain]..self.first[grain + 1]]
     }
 }
 
 impl Mapping {
-    /// Of radius `radius` [m], or one that suits the cells and grains up to a diameter [m].
+    /// Mapping with the radius `radius` [m], or with one that suits the cells and grains up to a diameter
+    /// [m].
     ///
     /// # Errors
     /// A radius that is no positive number.
@@ -107,7 +113,7 @@ impl Mapping {
         Ok(mapping)
     }
 
-    /// R [m].
+    /// Radius R over which a grain is spread [m].
     #[must_use]
     pub fn radius(&self) -> f64 {
         self.radius
@@ -160,7 +166,9 @@ impl Mapping {
     }
 }
 
-/// Cells within a distance of a cell's centre, itself first, as they are reached through faces, and the shifts that they are seen with.
+/// Cells within a distance of a cell's centre, and the shifts with which they are seen.
+///
+/// The cell itself comes first, then the others as they are reached through faces.
 fn around(mesh: &FarMesh, cell: usize, distance: f64) -> Vec<(u32, Vector3<f64>)> {
     let centre = mesh.centres()[cell];
     let mut found = vec![(cell as u32, Vector3::zeros())];
@@ -207,7 +215,8 @@ mod tests {
     proptest! {
         #[test]
         fn shares_add_up_to_one_and_do_not_jump_across_faces(
-            x in 0.0..4.0_f64, y in 0.0..5.0_f64, z in 0.0..6.0_f64, radius in 1.0..2.5_f64, axis in 0..3_usize,
+            x in 0.0..4.0_f64, y in 0.0..5.0_f64, z in 0.0..6.0_f64,
+            radius in 1.0..2.5_f64, axis in 0..3_usize,
         ) {
             let mesh = mesh(Boundary::Periodic);
             let mapping = Mapping::new(&mesh, Some(radius), 0.1).unwrap();

@@ -1,4 +1,4 @@
-//! What grains get, the gas gives: booked to round-off, whatever the flow does.
+//! Balance of momentum: the gas gives what grains get, to round-off, whatever the flow does.
 
 use amberfield_core::{Boundary, Domain, DragLaw, Gas, GasFlow, GasModel, Vector3};
 use amberfield_field::far::{FarMesh, FarMeshParts};
@@ -6,7 +6,7 @@ use amberfield_gas::{Exchange, FlowRequest, FlowSolver, FlowValues, GasError, Gr
 use proptest::prelude::*;
 use std::sync::{Arc, Mutex};
 
-/// A flow that is whatever it likes, and counts what it gave.
+/// A flow with random values, which counts the momentum that it gave.
 #[derive(Debug)]
 struct Whimsical {
     mesh: FarMesh,
@@ -78,24 +78,38 @@ fn gas(drag: DragLaw, model: GasModel, magnus_lift: bool) -> (Gas, GasFlow) {
 proptest! {
     #[test]
     fn momentum_and_volume_are_kept_to_round_off(
-        law in 0..5_usize, model_b in any::<bool>(), spin in any::<bool>(), cells in 2..5_usize, leave in any::<bool>(), overlap in any::<bool>(),
+        law in 0..5_usize, model_b in any::<bool>(), spin in any::<bool>(), cells in 2..5_usize,
+        leave in any::<bool>(), overlap in any::<bool>(),
         places in prop::collection::vec((0.0..1.0_f64, 0.0..1.0_f64, 0.0..1.0_f64), 3..40),
     ) {
         let faces = [[Boundary::Periodic; 2], [Boundary::Grounded; 2], [Boundary::Grounded; 2]];
         let domain = Domain::new(Vector3::zeros(), Vector3::repeat(0.02), faces).unwrap();
         let mesh = FarMesh::new(FarMeshParts::of_box(&domain, [cells; 3]).unwrap()).unwrap();
         let (given, void) = (Arc::new(Mutex::new(Vector3::zeros())), Arc::new(Mutex::new(0.0)));
-        let solver = Whimsical { mesh, given: Arc::clone(&given), void: Arc::clone(&void), calls: 0, answer: FlowValues::default(), gives: Vector3::zeros() };
+        let solver = Whimsical {
+            mesh,
+            given: Arc::clone(&given),
+            void: Arc::clone(&void),
+            calls: 0,
+            answer: FlowValues::default(),
+            gives: Vector3::zeros(),
+        };
         let (gas, flow) = gas(DragLaw::ALL[law], if model_b { GasModel::B } else { GasModel::A }, spin);
         let flow = GasFlow { overlap, ..flow };
         let mut exchange = Exchange::new(gas, flow, Vector3::zeros(), Box::new(solver), 1e-3).unwrap();
-        let mut centre: Vec<_> = places.iter().map(|(x, y, z)| [0.02 * x, 0.02 * y, 0.02 * z, 5e-4]).collect();
+        let mut centre: Vec<_> =
+            places.iter().map(|(x, y, z)| [0.02 * x, 0.02 * y, 0.02 * z, 5e-4]).collect();
         let mut velocity: Vec<_> = places.iter().map(|(x, y, z)| Vector3::new(*y, *z, *x)).collect();
         let mut angular: Vec<_> = places.iter().map(|(x, y, z)| Vector3::new(*z, *x, *y) * 100.0).collect();
         let mut got = Vector3::zeros();
         for k in 0..6 {
             let inverse_mass = vec![1e6; centre.len()];
-            let view = GrainsView { centre: &centre, velocity: &velocity, angular: &angular, inverse_mass: &inverse_mass };
+            let view = GrainsView {
+                centre: &centre,
+                velocity: &velocity,
+                angular: &angular,
+                inverse_mass: &inverse_mass,
+            };
             exchange.exchange(&domain, &view, 1e-3, 1e-3 * f64::from(k)).unwrap();
             let solid = centre.len() as f64 * std::f64::consts::PI / 6.0 * 1e-9;
             let missing = (*void.lock().unwrap() - (0.02_f64.powi(3) - solid)).abs();
@@ -188,7 +202,10 @@ impl FlowSolver for Lump {
     }
 }
 
-/// Largest slip of the second half of two hundred exchanges over the first, grains being `loading` times as heavy as the gas, exchanges an interval of so many response times apart.
+/// Largest slip of the second half of two hundred exchanges over that of the first.
+///
+/// The grains are `loading` times as heavy as the gas, and the exchanges are `interval_over_response`
+/// response times apart.
 fn slip_that_stays(loading: f64, interval_over_response: f64, overlap: bool) -> f64 {
     let domain =
         Domain::new(Vector3::zeros(), Vector3::repeat(0.02), [[Boundary::Periodic; 2]; 3]).expect("good");

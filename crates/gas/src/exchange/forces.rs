@@ -1,4 +1,4 @@
-//! What the flow does to each grain, and all grains of a cell to the flow.
+//! Forces of the flow on each grain, and of all grains of a cell on the flow.
 
 use super::{Exchange, GrainsView, Held, sphere};
 use crate::mapping::{CHUNK, Share};
@@ -8,7 +8,7 @@ use amberfield_laws::{drag, magnus_lift, saffman_lift};
 use rayon::prelude::*;
 
 impl Exchange {
-    /// Drag and lift of every grain in the flow known so far, and by cell.
+    /// Sets drag and lift of every grain in the flow known so far, and their sums by cell.
     pub(super) fn resist(&mut self, grains: &GrainsView<'_>, interval_s: f64) {
         let held: Vec<Held> =
             (0..grains.centre.len()).into_par_iter().map(|i| self.resistance(grains, i)).collect();
@@ -32,7 +32,7 @@ impl Exchange {
         }
     }
 
-    /// β and L (in `push`) of a grain.
+    /// Drag coefficient β of a grain, and its lift L in `push`.
     fn resistance(&self, grains: &GrainsView<'_>, i: usize) -> Held {
         let Gas { density_kg_m3: density, viscosity_pa_s: viscosity, .. } = self.gas;
         let shares = self.shares.of(i);
@@ -61,7 +61,7 @@ impl Exchange {
         }
     }
 
-    /// What the flow does to the grains until the next exchange.
+    /// Sets the force of the flow on every grain until the next exchange.
     pub(super) fn hold(&mut self, grains: &GrainsView<'_>) {
         let (shares, values, flow) = (&self.shares, &self.values, self.flow);
         let weight = self.gravity * self.gas.density_kg_m3;
@@ -80,7 +80,7 @@ impl Exchange {
     }
 }
 
-/// What cells have, at a grain.
+/// Mean of the cells' values at a grain, weighted by its shares.
 fn gathered(shares: &[Share], values: &[Vector3<f64>]) -> Vector3<f64> {
     shares.iter().map(|share| values[share.cell as usize] * share.weight).sum()
 }

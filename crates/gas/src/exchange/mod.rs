@@ -1,15 +1,28 @@
-//! What grains and gas give each other over an interval.
+//! Momentum that grains and gas give each other over an interval.
 //!
-//! At its start, shares of the grains in the cells (w, [`Mapping`]) make ε = 1 − Σ w V/V_c, and drag coefficients β at the slips of that moment K = Σ w β/V_c and S = Σ w (β v − L)/V_c + R;
-//! the solver answers with the flow at the interval's end, implicit in K u. Until the next interval every grain feels
+//! At the interval's start the shares w of the grains in the cells ([`Mapping`]) and the drag coefficients
+//! β at the slips of that moment make
+//!
+//! ```text
+//! ε = 1 − Σ w V/V_c,   K = Σ w β/V_c,   S = Σ w (β v − L)/V_c + R
+//! ```
+//!
+//! The solver answers with the flow at the interval's end, implicit in K u. Until the next interval every
+//! grain feels
 //!
 //! ```text
 //! F = β (u − v) + L  +  V (−∇p + ∇·τ) − ρ V g          (model A)
 //! F = β (u − v)/ε + L − ρ V g                           (model B)
 //! ```
 //!
-//! with its own v as it changes; u, ∇p, ∇·τ by the same shares; L lift. The gas gave Δt V_c (K u − S) by cell; what grains got of the first two terms differs by what v and u changed meanwhile. The difference is
-//! booked and goes into the next R: momentum given and taken balance to round-off over a run. Source of the equations: Zhou, Kuang, Chu & Yu, J. Fluid Mech. 661, 482 (2010), sets II (A) and III (B); the booking is ours.
+//! with its own v as it changes. The same shares gather u, ∇p and ∇·τ; L is lift.
+//!
+//! The gas gave Δt V_c (K u − S) by cell. What grains got of the first two terms differs from this, since v
+//! and u changed meanwhile. The difference is booked and goes into the next R, so that momentum given and
+//! taken balance to round-off over a run.
+//!
+//! Source of the equations: Zhou, Kuang, Chu & Yu, J. Fluid Mech. 661, 482 (2010), sets II (A) and III (B).
+//! The booking is ours.
 
 mod forces;
 mod state;
@@ -25,7 +38,8 @@ use serde::{Deserialize, Serialize};
 use std::f64::consts::PI;
 use std::time::Instant;
 
-/// ε of a cell at least: Ergun's drag grows without bound as ε goes to 0, and a few grains' shares may fill a small cell.
+/// Least void fraction ε of a cell. Ergun's drag grows without bound as ε goes to 0, and the shares of a
+/// few grains may fill a small cell.
 const LEAST_VOID: f64 = 0.2;
 
 /// Grains as they are now, in the order of the forces asked for.
@@ -33,37 +47,37 @@ const LEAST_VOID: f64 = 0.2;
 pub struct GrainsView<'a> {
     /// Position and radius [m].
     pub centre: &'a [[f64; 4]],
-    /// [m/s].
+    /// Velocity [m/s].
     pub velocity: &'a [Vector3<f64>],
-    /// [rad/s]; empty: nothing spins.
+    /// Angular velocity [rad/s]; empty where nothing spins.
     pub angular: &'a [Vector3<f64>],
-    /// [1/kg].
+    /// Inverse mass [1/kg].
     pub inverse_mass: &'a [f64],
 }
 
-/// What acts on a grain until the next exchange.
+/// Force of the gas on a grain until the next exchange, in parts.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
 struct Held {
-    /// β, in model B over ε [kg/s].
+    /// Drag coefficient: β in model A, β/ε in model B [kg/s].
     drag: f64,
-    /// β u + L [N].
+    /// Part that does not depend on the grain's velocity: β u + L [N].
     push: Vector3<f64>,
-    /// What the gas does not give in exchange: pressure, viscous stress, buoyancy [N].
+    /// Part that the gas does not give in exchange: pressure, viscous stress, buoyancy [N].
     still: Vector3<f64>,
-    /// What was given since the exchange [N·s].
+    /// Impulse that the grain got since the exchange [N·s].
     impulse: Vector3<f64>,
     /// Number of the grain at the exchange.
     slot: u32,
 }
 
-/// Where the time of the exchanges went [s].
+/// Time of the exchanges by purpose [s].
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct ExchangeSeconds {
     /// Finding cells and shares, taking grains to cells and the flow to grains.
     pub mapping: f64,
-    /// The solver.
+    /// Waiting while the solver works.
     pub solver: f64,
-    /// The way there and back.
+    /// The messages' way there and back.
     pub wire: f64,
 }
 
@@ -80,9 +94,9 @@ pub struct Exchange {
     cells: Vec<u32>,
     /// Shares at the exchange.
     shares: Shares,
-    /// By cell: what grains got of the gas less what it gave [N·s].
+    /// Momentum by cell that grains got of the gas, less what it gave [N·s].
     owed: Vec<Vector3<f64>>,
-    /// What grains got of it up to the last exchange [N·s].
+    /// Momentum that grains got of the gas up to the last exchange [N·s].
     booked: Vector3<f64>,
     void_fraction: Vec<f64>,
     drag: Vec<f64>,
@@ -92,13 +106,13 @@ pub struct Exchange {
     warned: bool,
     /// Interval that the solver works on [s].
     asked_s: Option<f64>,
-    /// Its answer, if it had to be taken before its time.
+    /// Answer of the solver, if it had to be taken before its time.
     early: Option<FlowValues>,
     seconds: ExchangeSeconds,
 }
 
 impl Exchange {
-    /// Of grains up to a diameter [m], under gravity [m/s²].
+    /// Exchange with grains up to a diameter [m], under gravity [m/s²].
     ///
     /// # Errors
     /// A smoothing length that is impossible.
@@ -135,7 +149,8 @@ impl Exchange {
         })
     }
 
-    /// Exchanges: takes the grains as they are, lets the gas flow on by an interval [s] from a time [s], and holds what that does to them.
+    /// Exchanges momentum: takes the grains as they are, lets the gas flow on by an interval [s] from a
+    /// time [s], and holds the forces that follow.
     ///
     /// # Errors
     /// A solver that is lost.
@@ -178,7 +193,9 @@ impl Exchange {
         grains.with_min_len(CHUNK).for_each(one);
     }
 
-    /// Takes in a new order of the grains: the i-th is what was the `order[i]`-th. What those that are gone got stays booked.
+    /// Takes in a new order of the grains: the i-th is the one that was the `order[i]`-th.
+    ///
+    /// What grains got that are gone stays booked.
     pub fn reorder(&mut self, order: &[u32]) {
         if self.held.is_empty() {
             return;
@@ -199,7 +216,7 @@ impl Exchange {
         self.response_s
     }
 
-    /// ε by cell at the last exchange.
+    /// Void fraction ε by cell at the last exchange.
     #[must_use]
     pub fn void_fraction(&self) -> &[f64] {
         &self.void_fraction
@@ -217,20 +234,22 @@ impl Exchange {
         &self.values
     }
 
-    /// Momentum that grains got and the gas has not given yet [N·s]: what keeps the balance between two exchanges.
+    /// Momentum that grains got and the gas has not given yet [N·s].
+    ///
+    /// It closes the balance between two exchanges.
     #[must_use]
     pub fn owed(&self) -> Vector3<f64> {
         self.owed.iter().sum::<Vector3<f64>>()
             + self.held.iter().map(|held| held.impulse).sum::<Vector3<f64>>()
     }
 
-    /// Momentum that grains got in exchange, from the start [N·s]: what the gas gave and what it owes.
+    /// Momentum that grains got in exchange from the start [N·s]: what the gas gave and what it owes.
     #[must_use]
     pub fn booked(&self) -> Vector3<f64> {
         self.booked + self.held.iter().map(|held| held.impulse).sum::<Vector3<f64>>()
     }
 
-    /// Where the time of the exchanges went.
+    /// Time of the exchanges by purpose.
     #[must_use]
     pub fn seconds(&self) -> ExchangeSeconds {
         self.seconds
@@ -275,7 +294,7 @@ impl Exchange {
         self.mapping.fill(&self.places, &self.cells, &mut self.shares);
     }
 
-    /// ε by cell.
+    /// Fills in the void fraction ε of every cell.
     fn fill_void(&mut self, grains: &GrainsView<'_>) {
         self.void_fraction.fill(1.0);
         let volumes = self.solver.mesh().volumes();
@@ -293,7 +312,8 @@ impl Exchange {
         }
         if clipped > 0 && !self.warned {
             tracing::warn!(
-                "grains fill more than {} of {clipped} cells, which count as that full; make gas.smoothing_length_m larger",
+                "grains fill more than {} of {clipped} cells, which count as that full; \
+                 make gas.smoothing_length_m larger",
                 1.0 - LEAST_VOID
             );
             self.warned = true;

@@ -1,11 +1,11 @@
-//! What an exchange goes on from.
+//! State from which an exchange goes on.
 
 use super::{Exchange, Held};
 use crate::{FlowValues, GasError};
 use amberfield_core::Vector3;
 use serde::{Deserialize, Serialize};
 
-/// State of an exchange: what a run needs to go on bit for bit.
+/// State of an exchange that a run needs to go on bit for bit.
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
 pub struct ExchangeState {
     held: Vec<Held>,
@@ -16,17 +16,17 @@ pub struct ExchangeState {
     booked: Vector3<f64>,
     values: FlowValues,
     response_s: f64,
-    /// What the solver works on, and what it found.
+    /// Interval on which the solver works [s], and the answer that it gave.
     asked_s: Option<f64>,
     early: Option<FlowValues>,
     drag: Vec<f64>,
     source: Vec<Vector3<f64>>,
-    /// The solver's own.
+    /// State of the solver, by process.
     solver: Vec<Vec<f64>>,
 }
 
 impl ExchangeState {
-    /// Whether it is one of `count` grains.
+    /// Whether this is a state of `count` grains.
     #[must_use]
     pub fn fits(&self, count: usize) -> bool {
         self.held.len() == count && self.held.iter().all(|held| (held.slot as usize) < self.places.len())
@@ -71,7 +71,8 @@ impl Exchange {
         let in_mesh = by_cell == [cells; 2] && state.cells.iter().all(|&cell| (cell as usize) < cells);
         if cells != theirs || state.cells.len() != state.places.len() || !in_mesh {
             return Err(GasError::Settings(format!(
-                "the checkpoint's gas is one of {theirs} cells, the mesh has {cells}; resume with the case that wrote it"
+                "the checkpoint's gas is one of {theirs} cells, the mesh has {cells}; \
+                 resume with the case that wrote it"
             )));
         }
         self.solver.restore(&state.solver)?;
