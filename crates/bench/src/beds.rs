@@ -30,8 +30,8 @@ pub(crate) fn glass() -> Material {
     }
 }
 
-/// Grains that move in a periodic box of the given volume fraction: jittered lattice places, relaxed until few overlap,
-/// then given random velocities.
+/// Grains that move in a periodic box of the given volume fraction: jittered lattice places, relaxed until
+/// few overlap, then given random velocities.
 pub(crate) fn relaxed(count: usize, fraction: f64) -> Setup {
     let rounds = if fraction < 0.5 { 4 } else { 20 };
     let mut scene = jittered(count, fraction, 0.3);
@@ -138,15 +138,15 @@ fn charged(scene: Setup) -> Cloud {
 }
 
 impl Cloud {
-    /// The same charges in a box with other faces, a radius from the centres: nearer ones would have little but their
-    /// images for a field.
+    /// Copy of the charges in a box with other faces, a radius from the centres: nearer ones would have
+    /// little but their images for a field.
     pub(crate) fn within(&self, boundary: Boundary) -> Self {
         let (min, max) = (self.domain.min().add_scalar(-RADIUS), self.domain.max().add_scalar(RADIUS));
         let domain = Domain::new(min, max, [[boundary; 2]; 3]).expect("positive extents");
         Self { domain, ..self.clone() }
     }
 
-    /// As the peers' scripts read it, with the exact field for 4πε = 1 from E in SI units.
+    /// Numbers as the peers' scripts read them, with the exact field for 4πε = 1 from E in SI units.
     pub(crate) fn numbers<'a>(&'a self, exact: &'a [Vector3<f64>]) -> impl Iterator<Item = f64> + 'a {
         let k = amberfield_core::constants::coulomb_constant(1.0);
         let head = [self.position.len() as f64, self.domain.extent().x, 2.0 * RADIUS];

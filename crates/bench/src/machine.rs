@@ -1,4 +1,4 @@
-//! What was measured on.
+//! Machine on which was measured.
 
 use crate::peers::Peers;
 use serde::{Deserialize, Serialize};

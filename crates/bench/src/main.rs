@@ -1,7 +1,7 @@
 //! `cargo xtask bench`: measures speed and memory, ours and the peers', and writes the report of them.
 //!
-//! A section measures one thing and writes its rows to `docs/reports/data/DATE-SECTION.csv`; the page is made from
-//! the newest file of every section.
+//! A section measures one thing and writes its rows to `docs/reports/data/DATE-SECTION.csv`; the page is
+//! made from the newest file of every section.
 #![expect(clippy::print_stdout, reason = "a program for developers that reports to the terminal")]
 
 mod beds;
@@ -22,7 +22,7 @@ use store::Store;
 /// Measures speed and memory and writes docs/reports/speed.md.
 #[derive(Debug, Parser)]
 struct Arguments {
-    /// What to measure (default: everything)
+    /// Sections to measure [default: all]
     #[arg(value_enum)]
     sections: Vec<Section>,
     /// Small sizes: shows that everything runs, says nothing about speed
@@ -55,7 +55,7 @@ enum Section {
     Gas,
 }
 
-/// What a section needs to know.
+/// Settings that a section needs to know.
 struct Context {
     quick: bool,
     resume: bool,

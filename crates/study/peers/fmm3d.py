@@ -1,8 +1,9 @@
-"""FMM3D in open space, and what accuracy it reaches; CSV on stdout.
+"""FMM3D in open space, and the accuracy that it reaches; CSV on stdout.
 
 usage: fmm3d.py CLOUD PRECISIONS     (a list with commas)
 
-CLOUD: as for lammps_field.py. Every line: asked precision, measured relative RMS error of E, seconds (median of 3).
+CLOUD: as for lammps_field.py.
+Every line: asked precision, measured relative RMS error of E, seconds (median of 3).
 """
 
 import sys

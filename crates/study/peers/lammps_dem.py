@@ -3,7 +3,8 @@
 usage: lammps_dem.py BED STEPS SKINS     (skins in diameters, a list with commas)
 
 BED: little-endian doubles: count, box length, diameter, density, step, normal and tangential stiffness [Pa],
-damping [1/(m s)], friction, then x y z vx vy vz per grain (SI units). Runs on as many ranks as mpirun started.
+damping [1/(m s)], friction, then x y z vx vy vz per grain (SI units). Runs on as many ranks as mpirun
+started.
 Every line: skin over diameter, seconds a step (median of 3), rebuilds of the list per step.
 """
 
@@ -32,7 +33,8 @@ def main():
             region box block 0 {length} 0 {length} 0 {length}
             create_box 1 box
         """)
-        lmp.create_atoms(count, list(range(1, count + 1)), [1] * count, bed[:, :3].ravel().tolist(), bed[:, 3:].ravel().tolist())
+        positions, velocities = bed[:, :3].ravel().tolist(), bed[:, 3:].ravel().tolist()
+        lmp.create_atoms(count, list(range(1, count + 1)), [1] * count, positions, velocities)
         lmp.commands_string(f"""
             set group all diameter {diameter}
             set group all density {density}

@@ -1,4 +1,6 @@
-"""LAMMPS pppm or msm on a cloud: a sweep over cut-off, order, asked accuracy and way of differentiation; CSV on stdout.
+"""LAMMPS pppm or msm on a cloud; CSV on stdout.
+
+Sweeps cut-off, order, asked accuracy and way of differentiation.
 
 usage: lammps_field.py CLOUD TOLERANCE CUTOFFS ORDERS SHARES [pppm|msm]     (lists with commas)
 
@@ -6,8 +8,8 @@ CLOUD: little-endian doubles: count, box length, diameter, then x y z q Ex Ey Ez
 A cut-off is in diameters; a share times the tolerance times the RMS force is asked of `kspace_modify force`
 (LAMMPS' relative accuracy has a yardstick of its own).
 Every line, of the fastest settings that meet the tolerance: cut-off [m], order, share, 1 where the field is
-differentiated analytically (0 in Fourier space), measured relative RMS error, seconds of an evaluation with the
-neighbour list kept, seconds with the list built anew. The list has no skin: that is in the peer's favour.
+differentiated analytically (0 in Fourier space), measured relative RMS error, seconds of an evaluation with
+the neighbour list kept, seconds with the list built anew. The list has no skin: that is in the peer's favour.
 """
 
 import itertools
@@ -68,7 +70,8 @@ def main():
     cloud = data[3:].reshape(count, 7)
     # Lengths in diameters, charges in units of the first one.
     charge = abs(cloud[0, 3])
-    cloud = numpy.column_stack([cloud[:, :3] / diameter, cloud[:, 3] / charge, cloud[:, 4:] * diameter**2 / charge])
+    field = cloud[:, 4:] * diameter**2 / charge
+    cloud = numpy.column_stack([cloud[:, :3] / diameter, cloud[:, 3] / charge, field])
     exact = cloud[:, 3:4] * cloud[:, 4:]
     scale = numpy.sqrt((exact**2).sum(axis=1).mean())
     lmp = start(cloud, length / diameter)

@@ -10,13 +10,14 @@ pub(crate) const SOFT_INK: Colour = [104, 110, 122];
 /// Paper.
 pub(crate) const PAPER: Colour = [255, 255, 255];
 
-/// The map's ends and middle in Oklab (lightness, green–red, blue–yellow): blue, near-white, red of equal lightness.
+/// The map's ends and middle in Oklab (lightness, green–red, blue–yellow): blue, near-white, red of equal
+/// lightness.
 const NEGATIVE: [f64; 3] = [0.56, -0.040, -0.155];
 const NEUTRAL: [f64; 3] = [0.925, 0.0, 0.0];
 const POSITIVE: [f64; 3] = [0.56, 0.175, 0.085];
 
-/// Diverging map: −1 blue, 0 near-white, +1 red; lightness falls evenly to both sides, so that equal steps of charge
-/// look equal. Values beyond ±1 have the end's colour.
+/// Diverging map: −1 blue, 0 near-white, +1 red; lightness falls evenly to both sides, so that equal steps
+/// of charge look equal. Values beyond ±1 have the end's colour.
 pub(crate) fn diverging(value: f64) -> Colour {
     let value = if value.is_finite() { value.clamp(-1.0, 1.0) } else { 0.0 };
     let end = if value < 0.0 { NEGATIVE } else { POSITIVE };

@@ -2,7 +2,7 @@
 
 use std::path::PathBuf;
 
-/// Why a picture cannot be made.
+/// Reason why a picture cannot be made.
 #[derive(Debug, thiserror::Error)]
 #[non_exhaustive]
 pub enum StudyError {
@@ -11,7 +11,7 @@ pub enum StudyError {
     Write {
         /// The file.
         path: PathBuf,
-        /// What the system says.
+        /// Error of the system.
         source: std::io::Error,
     },
     /// A study cannot be read.
@@ -19,7 +19,7 @@ pub enum StudyError {
     Read {
         /// The file.
         path: PathBuf,
-        /// What the system says.
+        /// Error of the system.
         source: std::io::Error,
     },
     /// A file that is no study.
@@ -27,7 +27,7 @@ pub enum StudyError {
     Description {
         /// The file.
         path: PathBuf,
-        /// Why.
+        /// Reason in words.
         reason: String,
     },
     /// A plot cannot be drawn.
@@ -35,7 +35,7 @@ pub enum StudyError {
     Plot {
         /// The file.
         path: PathBuf,
-        /// Why.
+        /// Reason in words.
         reason: String,
     },
 }

@@ -1,7 +1,7 @@
 //! Error against run time, and what was computed as pictures of the bed and curves.
 //!
-//! [`sweep`] runs studies. Pictures carry their font with them and need nothing from the machine. The feature `plots` (on by default) holds
-//! all of it.
+//! [`sweep`] runs studies. Pictures carry their font with them and need nothing from the machine. The
+//! feature `plots` (on by default) holds all of it.
 #![forbid(unsafe_code)]
 
 #[cfg(feature = "plots")]

@@ -1,16 +1,19 @@
-//! Other programs that compute the same, in a Python environment of their own; the scripts that drive them stand in `peers/`.
+//! Programs of others that compute the same, in a Python environment of their own. The scripts that drive
+//! them stand in `peers/`.
 
 use std::io::Write as _;
 use std::path::{Path, PathBuf};
 use std::process::{Command, Stdio};
 
-/// A script: a program and what it is asked for. Its first argument names a file of numbers, see [`write_numbers`].
+/// A script: a program and what it is asked for. Its first argument names a file of numbers, see
+/// [`write_numbers`].
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Script {
     /// Steps of LAMMPS' granular package.
     LammpsDem,
-    /// E by LAMMPS' `pppm` or `msm`. Every line has cut-off [m], order, share of the tolerance asked for, 1 for analytic differentiation, error, seconds
-    /// with the neighbour list kept, seconds with it built anew.
+    /// E by LAMMPS' `pppm` or `msm`. Every line has cut-off [m], order, share of the tolerance asked for, 1
+    /// for analytic differentiation, error, seconds with the neighbour list kept, seconds with it built
+    /// anew.
     LammpsField,
     /// E by FMM3D. Every line has precision, error, seconds.
     Fmm3d,

@@ -11,31 +11,31 @@ use std::path::Path;
 /// A curve.
 #[derive(Clone, Debug)]
 pub struct Series {
-    /// Its line in the legend.
+    /// Name of the curve in the legend.
     pub name: String,
     /// (x, y); what a logarithmic axis cannot show is left out.
     pub points: Vec<(f64, f64)>,
 }
 
-/// How an axis is divided.
+/// Division of an axis.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Scale {
     /// Evenly.
     Linear,
-    /// By powers of ten; values above zero alone are shown.
+    /// Powers of ten; only values above zero are shown.
     Logarithmic,
 }
 
 /// Curves in one frame.
 #[derive(Clone, Debug)]
 pub struct Plot<'a> {
-    /// Above the frame.
+    /// Title above the frame.
     pub title: &'a str,
     /// Label of the x axis, with its unit in brackets.
     pub x: &'a str,
     /// Label of the y axis, with its unit in brackets.
     pub y: &'a str,
-    /// Of x and y.
+    /// Divisions of x and y.
     pub scales: [Scale; 2],
     /// The curves.
     pub series: &'a [Series],
@@ -44,7 +44,7 @@ pub struct Plot<'a> {
 }
 
 const SIZE: (u32, u32) = (720, 460);
-/// Beside the width of an axis.
+/// Round-off in a position, over the width of an axis.
 const ROUND_OFF: f64 = 1e-9;
 const FONT: &str = "Noto Sans";
 /// Told apart by people with any colour vision (Okabe and Ito, Color Universal Design, 2008).
@@ -151,7 +151,7 @@ where
         .map_err(failed::<B>)
 }
 
-/// Where the names of the curves hide the fewest points.
+/// Corner in which the names of the curves hide the fewest points.
 fn emptiest_corner(plot: &Plot<'_>) -> SeriesLabelPosition {
     /// Share of the frame that they take.
     const SHARE: f64 = 0.4;

@@ -10,7 +10,7 @@ use std::path::Path;
 /// Fine pixels per pixel and direction.
 const FINENESS: usize = 3;
 
-/// Which point of a text its coordinates give.
+/// Point of a text that its coordinates give.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) enum Anchor {
     Start,

@@ -1,4 +1,4 @@
-//! What charge transfer adds to a step of a dense bed whose field is given.
+//! Cost of charge transfer in a step of a dense bed whose field is given.
 
 use crate::Context;
 use crate::beds;
@@ -18,7 +18,7 @@ const CUTOFF_M: f64 = 5e-7;
 const ROUNDS: usize = 5;
 /// Steps between two evaluations of the field, whose time does not count.
 const INTERVAL: u32 = 30;
-/// What it may cost, over the step without it.
+/// Largest cost of charge transfer, over the step without it.
 const GOAL: f64 = 0.15;
 
 #[derive(Debug, Serialize, Deserialize)]

@@ -1,4 +1,4 @@
-//! What it costs to have the far field solved by another process.
+//! Cost of having the far field solved by another process.
 
 use super::change_file;
 use crate::Context;
@@ -92,7 +92,8 @@ fn settings_of(case: &Path, start: bool) -> SolverSettings {
     }
 }
 
-/// Seconds of an exchange with a field side that answers at once, without charges and with all of them, and the bytes there and back.
+/// Seconds of an exchange with a field side that answers at once, without charges and with all of them, and
+/// the bytes there and back.
 fn exchange(domain: &Domain, cells_along: usize, cloud: &Cloud) -> Result<(f64, f64, [usize; 2])> {
     let announced = Announced::new(settings_of(Path::new("none"), false))?;
     let (run, box_of) = (announced.run().to_owned(), domain.clone());
@@ -172,7 +173,8 @@ fn round_trip() -> Result<f64> {
     Ok(seconds)
 }
 
-/// Seconds to write so many bytes into a socket, read them at its other end, and have as many as the second number back.
+/// Seconds to write so many bytes into a socket, read them at its other end, and have as many as the second
+/// number back.
 fn socket([out, back]: [usize; 2]) -> Result<f64> {
     let (mut here, mut there) = UnixStream::pair()?;
     let echo = std::thread::spawn(move || {

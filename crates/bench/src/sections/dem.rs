@@ -93,7 +93,8 @@ fn peer(
     let grains = scene.particles.len();
     let material = beds::glass();
     let shear = 0.5 * material.young_pa / (1.0 + material.poisson);
-    // Stiffnesses of LAMMPS' manual, `pair_style gran/hertz/history`; the damping gives about our restitution.
+    // Stiffnesses of LAMMPS' manual, `pair_style gran/hertz/history`; the damping gives about our
+    // restitution.
     let normal = 4.0 * shear / (3.0 * (1.0 - material.poisson));
     let tangential = 4.0 * shear / (2.0 - material.poisson);
     let damping = 2e7;

@@ -29,7 +29,7 @@ pub(crate) struct Row {
     /// Measured, relative RMS of E.
     pub(crate) error: f64,
     pub(crate) ns_per_grain: f64,
-    /// With the neighbour list built anew, where a program can do without.
+    /// Time with the neighbour list built anew, where a program can do without [ns/grain].
     pub(crate) ns_with_list: Option<f64>,
     pub(crate) settings: String,
 }
@@ -155,7 +155,8 @@ pub(crate) fn ours(cloud: &Cloud, exact: &[Vector3<f64>], tolerance: f64) -> Res
     })
 }
 
-/// Grains from which on the peer runs with the settings that were best for a tenth of them: pppm takes minutes to set up.
+/// Grains from which on the peer runs with the settings that were best for a tenth of them: pppm takes
+/// minutes to set up.
 const VERY_MANY: usize = 1_000_000;
 
 /// The peer's fastest settings whose error is at most the tolerance.
@@ -281,7 +282,7 @@ pub(crate) fn report(store: &Store) -> Result<Option<String>> {
     )))
 }
 
-/// What closed boxes cost over periodic ones, as a line of the page.
+/// Line of the page about the cost of closed boxes over periodic ones.
 fn faces_line(rows: &[Row]) -> String {
     let periodic = rows.iter().filter(|row| row.program == OURS && row.faces == "periodic");
     let worst = rows

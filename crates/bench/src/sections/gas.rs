@@ -1,4 +1,5 @@
-//! Goldschmidt's bed beside DPMFoam, the solver of OpenFOAM's own that moves grains and gas: time, and what comes out.
+//! Goldschmidt's bed beside DPMFoam, the solver of OpenFOAM's own that moves grains and gas: time, and what
+//! comes out.
 
 use super::change_file;
 use crate::Context;
@@ -16,7 +17,7 @@ use std::process::{Command, Stdio};
 use std::time::{Duration, Instant};
 
 const NAME: &str = "gas";
-/// Where Debian's package of examples has the case.
+/// Folder of the case in Debian's package of examples.
 const EXAMPLE: &str = "/usr/share/doc/openfoam-examples/examples/lagrangian/DPMFoam/Goldschmidt";
 /// Simulated time between two looks [s], and how many there are.
 const LOOKS: (f64, usize) = (0.01, 5);
@@ -24,22 +25,26 @@ const QUICK: (f64, usize) = (2e-4, 1);
 /// Share of a run that the way there and back may take.
 const GOAL: f64 = 0.02;
 
-/// What a program had at a moment.
+/// State of a program's run at a moment.
 #[derive(Debug, Serialize, Deserialize)]
 struct Row {
     program: String,
     /// Simulated time [s].
     time_s: f64,
-    /// Wall clock since the start of the run, without setting up; of DPMFoam its own clock, of the processor [s].
+    /// Wall clock since the start of the run, without setting up; of DPMFoam its own clock, of the
+    /// processor [s].
     seconds: f64,
     /// Mean height of the grains [mm].
     height_mm: f64,
     /// Pressure at the bottom less that at the top [Pa].
     pressure_pa: f64,
-    /// Of the wall clock: contacts, neighbours, walls and motion; the flow; mapping; the way there and back [s].
+    /// Part of the wall clock for contacts, neighbours, walls and motion [s].
     grains_s: Option<f64>,
+    /// Part of the wall clock for the flow [s].
     flow_s: Option<f64>,
+    /// Part of the wall clock for taking grains to cells and the flow to grains [s].
     mapping_s: Option<f64>,
+    /// Part of the wall clock for the messages' way there and back [s].
     wire_s: Option<f64>,
 }
 
@@ -117,7 +122,7 @@ fn solver_of(case: PathBuf, place: &Path) -> Result<ConnectFlow> {
     Ok(ConnectFlow::once(Announced::new(settings)?.connect()?.flow()))
 }
 
-/// What a run has now, after so much time [s].
+/// Row of a run as it is now, after this wall clock [s].
 fn row_of(run: &Simulation, seconds: f64) -> Result<Row> {
     /// Area of the bottom [m²].
     const AREA: f64 = 0.015 * 0.15;

@@ -15,8 +15,8 @@ const NAME: &str = "kernel";
 const TOLERANCES: [f64; 4] = [1e-2, 1e-3, 1e-4, 1e-6];
 const FRACTION: f64 = 0.4;
 const EVALUATIONS: usize = 15;
-/// Arithmetic of a pair of the direct sum: three differences, their squares (5), a reciprocal root counted as one,
-/// charge times it, two factors, the potential's sum, three fused sums of two.
+/// Arithmetic of a pair of the direct sum: three differences, their squares (5), a reciprocal root counted
+/// as one, charge times it, two factors, the potential's sum, three fused sums of two.
 const DIRECT_FLOPS: f64 = 19.0;
 
 #[derive(Debug, Serialize, Deserialize)]
@@ -57,7 +57,8 @@ pub(crate) fn measure(context: &Context) -> Result<()> {
     context.store.save(NAME, &rows)
 }
 
-/// Median times of the stages, and the pairs over the time of one of them (or of all, where it is not told apart).
+/// Median times of the stages, and the pairs over the time of one of them (or of all, where it is not told
+/// apart).
 fn row(what: &str, cloud: &Cloud, settings: &FieldSettings, stage: &str) -> Result<Row> {
     let count = cloud.position.len() as f64;
     let mut field = ElectricField::new(&cloud.domain, settings, &cloud.position, &cloud.charge)?;

@@ -1,4 +1,4 @@
-//! What is measured: one section, one file, with its rows and its part of the page.
+//! Sections, each with a file of its own: what it measures, its rows and its part of the page.
 
 pub(crate) mod charging;
 pub(crate) mod coupling;

@@ -14,7 +14,7 @@ use serde::{Deserialize, Serialize};
 
 const NAME: &str = "open";
 const TOLERANCES: [f64; 4] = [1e-2, 1e-3, 1e-4, 1e-6];
-/// What is asked of FMM3D; its error is measured.
+/// Precisions that are asked of FMM3D; its error is measured.
 const PRECISIONS: &str = "0.2,5e-2,1e-2,2e-3,5e-4,5e-5,5e-6,5e-7";
 const FRACTION: f64 = 0.1;
 const PEER: &str = "FMM3D";

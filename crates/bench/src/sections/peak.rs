@@ -37,7 +37,7 @@ fn best(lanes: usize, work: impl Fn()) -> f64 {
     median(&mut (0..7).map(rate).collect::<Vec<_>>())
 }
 
-/// What the compiler makes of plain code.
+/// Plain code, as the compiler makes it.
 fn portable<T, const LANES: usize>()
 where
     T: Copy + From<f32> + std::ops::Mul<Output = T> + std::ops::Add<Output = T>,

@@ -1,5 +1,5 @@
-//! What a charged bed costs over the same bed without charge, and what it costs in accuracy not to evaluate the field at
-//! every step: trajectories, statistics of the bed, energy.
+//! Cost of a charged bed over the same bed without charge, and the accuracy that is lost where the field is
+//! not evaluated at every step: trajectories, statistics of the bed, energy.
 
 mod bed;
 mod gas;

@@ -1,4 +1,5 @@
-//! Time and memory per grain from 10³ to 10⁷ grains, on one thread and two, and whether the results have the same bits.
+//! Time and memory per grain from 10³ to 10⁷ grains, on one thread and two, and whether the results have
+//! the same bits.
 
 use crate::Context;
 use crate::beds::{self, Cloud};
@@ -25,7 +26,7 @@ struct Row {
     field_ns_per_grain: f64,
     field_bytes_per_grain: f64,
     dem_ns_per_grain: f64,
-    /// Of the whole process while it steps, the scene that it started from included.
+    /// Memory of the whole process while it steps, with the scene that it started from [bytes/grain].
     dem_bytes_per_grain: Option<f64>,
     /// Whether E and the positions have the bits of one thread.
     same_bits: bool,

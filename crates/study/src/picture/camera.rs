@@ -64,7 +64,8 @@ impl Camera {
         self.axes[2].dot(normal) > 0.0
     }
 
-    /// Cosine between a normal and the direction of the light, which comes from above the viewer's left shoulder.
+    /// Cosine between a normal and the direction of the light, which comes from above the viewer's left
+    /// shoulder.
     pub(super) fn light_on(&self, normal: &Vector3<f64>) -> f64 {
         let in_view = self.axes.map(|axis| axis.dot(normal));
         in_view.iter().zip(super::depth_image::LIGHT).map(|(a, b)| a * b).sum()

@@ -112,7 +112,8 @@ impl DepthImage {
         self.triangle([corners[0], corners[2], corners[3]], colour, weight);
     }
 
-    /// Darkens pixels that lie deep between nearer ones within `reach` pixels: light from all around is blocked.
+    /// Darkens pixels that lie deep between nearer ones within `reach` pixels: light from all around is
+    /// blocked.
     pub(super) fn occlude(&mut self, reach: f64, strength: f64) {
         const SAMPLES: usize = 14;
         let reach = (reach * self.raster.fineness()).max(2.0);

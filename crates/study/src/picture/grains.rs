@@ -7,7 +7,7 @@ use amberfield_core::Particles;
 
 /// Share of grains whose |q| lies within the range of the colours.
 const WITHIN_RANGE: f64 = 0.98;
-/// How dark the deepest gaps become.
+/// Darkness of the deepest gaps.
 const GAP_DARKNESS: f64 = 0.85;
 
 /// Symmetric range of the colours.

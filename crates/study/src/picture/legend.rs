@@ -23,11 +23,11 @@ const NET_ROUNDING: f64 = 1e-9;
 const TITLE_SIZE: f64 = 30.0;
 const TEXT_SIZE: f64 = 19.0;
 
-/// Where things are [px].
+/// Places of the parts of a picture [px].
 pub(super) struct Layout {
     pub(super) width: usize,
     pub(super) height: usize,
-    /// Where the box's centre appears.
+    /// Place of the box's centre.
     pub(super) centre: [f64; 2],
     pub(super) pixels_per_metre: f64,
     /// Size of the part for the box.
@@ -103,7 +103,7 @@ fn heading(raster: &mut Raster, layout: &Layout, scene: &PictureScene<'_>) {
     write(raster, [LEFT, 84.0], &parts.join("  ·  "), TEXT_SIZE, Anchor::Start, SOFT_INK);
 }
 
-/// At most three significant digits, without zeros at the end.
+/// Number in at most three significant digits, without zeros at the end.
 fn trimmed(value: f64) -> String {
     let decimals = if value.abs() >= 100.0 {
         0

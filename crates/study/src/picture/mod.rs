@@ -14,7 +14,7 @@ use depth_image::DepthImage;
 use grains::ChargeRange;
 use std::path::Path;
 
-/// What a picture shows.
+/// Contents of a picture.
 #[derive(Clone, Copy, Debug)]
 pub struct PictureScene<'a> {
     /// Heading.

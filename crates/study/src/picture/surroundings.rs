@@ -9,7 +9,7 @@ use amberfield_core::{Axis, Domain, Side, Vector3, WallShape};
 const EDGE: Colour = [120, 126, 138];
 const PLATE: Colour = [186, 192, 202];
 const WALL: Colour = [150, 156, 168];
-/// How much a plate or wall in front hides.
+/// Share of the light that a plate or wall in front hides.
 const VEIL: f64 = 0.16;
 /// Width of the box's edges [px].
 const EDGE_WIDTH: f64 = 1.6;

@@ -32,18 +32,18 @@ pub(super) fn comparisons(rows: &[Row]) -> Vec<Comparison<'_>> {
     points(false).filter(|(error, ..)| *error > 0.0).map(one).collect()
 }
 
-/// What became of a goal.
+/// Verdict on a goal.
 #[derive(Clone, Debug, PartialEq)]
 pub(super) struct Verdict {
     /// The worst ratio, and the point that has it.
     pub(super) worst: (f64, String),
-    /// How many points miss the goal.
+    /// Number of points that miss the goal.
     pub(super) missed: usize,
-    /// How many were looked at.
+    /// Number of points that were looked at.
     pub(super) of: usize,
 }
 
-/// What became of a goal; `None` where nothing was measured.
+/// Verdict on a goal; `None` where nothing was measured.
 pub(super) fn verdict(goal: &Goal, rows: &[Row]) -> Option<Verdict> {
     let ratios = match (goal.times_less, goal.times_as_fast, goal.at_most) {
         (Some(_), ..) => beside(goal, rows, |point| Some(point.error / point.in_time?)),

@@ -1,4 +1,4 @@
-//! What a study sweeps: STUDY.toml.
+//! Description of a study: STUDY.toml.
 
 use crate::StudyError;
 use serde::Deserialize;
@@ -12,7 +12,7 @@ pub struct Study {
     pub name: String,
     /// Headline of the page.
     pub title: String,
-    /// How often every point is timed, all points of a problem taking turns.
+    /// Number of times that every point is timed; all points of a problem take turns.
     #[serde(default = "three")]
     pub passes: usize,
     /// Evaluations of one turn go on for so long [s].
@@ -21,10 +21,10 @@ pub struct Study {
     /// Grains up to which the truth is the direct sum.
     #[serde(default = "ten_thousand")]
     pub direct_up_to: usize,
-    /// What is computed.
+    /// Problems that are computed.
     #[serde(default)]
     pub problems: Vec<Problem>,
-    /// What computes it.
+    /// Methods that compute them.
     #[serde(default)]
     pub methods: Vec<Method>,
     /// Whole runs.
@@ -33,7 +33,7 @@ pub struct Study {
     /// Scenes pushed to an end.
     #[serde(default)]
     pub extremes: Vec<Extreme>,
-    /// What should come out.
+    /// Goals: results that should come out.
     #[serde(default)]
     pub goals: Vec<Goal>,
 }
@@ -51,12 +51,12 @@ pub struct Problem {
     pub set: Vec<String>,
     /// One key with several values: a problem for each.
     pub sweep: Option<Sweep>,
-    /// Where the truth comes from.
+    /// Source of the truth.
     #[serde(default)]
     pub truth: Truth,
 }
 
-/// Where the exact field of a problem comes from.
+/// Source of a problem's exact field.
 #[derive(Clone, Debug, Default, Deserialize, PartialEq)]
 #[serde(rename_all = "snake_case", deny_unknown_fields)]
 pub enum Truth {
@@ -116,9 +116,9 @@ pub struct Motion {
 #[derive(Clone, Debug, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct Extreme {
-    /// What is pushed.
+    /// Name of what is pushed to its end.
     pub name: String,
-    /// What should happen, in words.
+    /// Expectation in words.
     pub expect: String,
     /// Scene file, beside the study.
     pub scene: PathBuf,
@@ -127,10 +127,10 @@ pub struct Extreme {
     pub set: Vec<String>,
     /// One key with several values: a run for each.
     pub sweep: Option<Sweep>,
-    /// How the command should end.
+    /// End of the command that is expected.
     #[serde(default)]
     pub ends: Ends,
-    /// What its last message should contain.
+    /// Words that the command's last message should contain.
     pub says: Option<String>,
     /// Most that the energy rises above that at the start, over the largest that is turned over.
     pub most_gain: Option<f64>,
@@ -138,9 +138,11 @@ pub struct Extreme {
     pub most_loss: Option<f64>,
     /// Most kinetic energy per grain at the end [J].
     pub most_kinetic_j: Option<f64>,
-    /// Most relative RMS error of E at the grains against the direct sum; the field of the scene is evaluated then, and nothing moves.
+    /// Most relative RMS error of E at the grains against the direct sum; the field of the scene is
+    /// evaluated then, and nothing moves.
     pub most_error: Option<f64>,
-    /// Most change of the charge of grains and walls over the sizes of all charges; round-off unless grains may leave.
+    /// Most change of the charge of grains and walls over the sizes of all charges; round-off unless grains
+    /// may leave.
     #[serde(default = "round_off")]
     pub most_charge: f64,
     /// Whether forces should be limited.
@@ -158,16 +160,16 @@ impl Extreme {
     }
 }
 
-/// How a command can end.
+/// End of a command.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Deserialize)]
 #[serde(rename_all = "snake_case")]
 pub enum Ends {
-    /// With all that was asked for.
+    /// The command did all that was asked for.
     #[default]
     Well,
-    /// Before anything runs, as bad input.
+    /// The scene was refused as bad input before anything ran.
     Refused,
-    /// With an answer outside its tolerance, or a motion that is no longer sound.
+    /// The answer was outside its tolerance, or the motion was no longer sound.
     Unsound,
 }
 
@@ -199,7 +201,7 @@ impl Ends {
     }
 }
 
-/// What should come out of a study. Exactly one of `times_less`, `times_as_fast` and `at_most` says what.
+/// Goal of a study. Exactly one of `times_less`, `times_as_fast` and `at_most` says what should come out.
 #[derive(Clone, Debug, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct Goal {
@@ -211,15 +213,15 @@ pub struct Goal {
     pub value: Option<String>,
     /// Problems; all if it is absent.
     pub problems: Option<Vec<String>>,
-    /// In the method's time, the best with a promise errs so many times less.
+    /// Factor by which the best error with a promise is smaller in the method's time.
     pub times_less: Option<f64>,
-    /// For the method's error, the fastest with a promise is so many times as fast.
+    /// Factor by which the fastest with a promise is faster at the method's error.
     pub times_as_fast: Option<f64>,
     /// The method's time on the first problem is at most `at_most` times that on the second.
     pub price: Option<[String; 2]>,
     /// See `price`.
     pub at_most: Option<f64>,
-    /// What was tried and what would be next; said where the goal is missed.
+    /// Attempts so far, and what would be next; the page says so where the goal is missed.
     pub tried: Option<String>,
 }
 
@@ -236,9 +238,9 @@ impl Goal {
 pub struct Sweep {
     /// Key of the scene, as in `--set`.
     pub key: String,
-    /// Its values.
+    /// Values of the key.
     pub values: Vec<toml::Value>,
-    /// What numbers among them are multiplied with: a diameter, a cell.
+    /// Factor of the numbers among the values: a diameter, a cell.
     pub times: Option<f64>,
 }
 
@@ -266,7 +268,8 @@ impl Study {
     /// Reads a study.
     ///
     /// # Errors
-    /// A file that cannot be read or is no study: unknown or missing keys, empty sweeps, unknown problems' names.
+    /// A file that cannot be read or is no study: unknown or missing keys, empty sweeps, unknown problems'
+    /// names.
     pub fn read(path: &Path) -> Result<Self, StudyError> {
         let text = std::fs::read_to_string(path)
             .map_err(|source| StudyError::Read { path: path.to_owned(), source })?;

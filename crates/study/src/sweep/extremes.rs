@@ -9,7 +9,7 @@ use std::path::Path;
 /// Looks at the energy that are kept of a run.
 const LOOKS: usize = 200;
 
-/// What became of a scene, as it stands in the CSV.
+/// Outcome of a scene, as it stands in the CSV.
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
 pub struct ExtremeRow {
     /// Day of the run.
@@ -20,13 +20,13 @@ pub struct ExtremeRow {
     pub processor: String,
     /// Threads.
     pub threads: usize,
-    /// What is pushed.
+    /// Name of what is pushed to its end.
     pub extreme: String,
     /// Value of the swept key.
     pub value: String,
-    /// How the command ended: `well`, `refused`, `unsound`, or another code.
+    /// End of the command: `well`, `refused`, `unsound`, or another code.
     pub ended: String,
-    /// What it said at the end, if it did not end well.
+    /// Last message of the command, if it did not end well.
     pub said: String,
     /// Wall-clock time [s].
     pub seconds: f64,
@@ -42,7 +42,7 @@ pub struct ExtremeRow {
     pub limited: Option<u64>,
     /// Relative RMS error of E against the direct sum.
     pub error: Option<f64>,
-    /// What is not as expected; empty if all is.
+    /// Expectations that were not met; empty if all were.
     pub broken: String,
     /// Command that repeats it.
     pub command: String,
@@ -51,7 +51,7 @@ pub struct ExtremeRow {
 /// A look at the energy of a run.
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
 pub struct EnergyRow {
-    /// What is pushed.
+    /// Name of what is pushed to its end.
     pub extreme: String,
     /// Value of the swept key.
     pub value: String,

@@ -59,7 +59,7 @@ fn of<'s>(study: &'s Study, row: &ExtremeRow) -> Option<&'s Extreme> {
     study.extremes.iter().find(|extreme| extreme.name == row.extreme)
 }
 
-/// What there is to draw: extremes that ended well with an energy that changes.
+/// Energies that there are to draw: those of extremes that ended well with an energy that changes.
 fn drawn<'e>(rows: &[ExtremeRow], energies: &'e [EnergyRow]) -> Vec<&'e [EnergyRow]> {
     let well = |name: &str| rows.iter().any(|row| row.extreme == name && row.ended == "well");
     let groups = energies.chunk_by(|a, b| a.extreme == b.extreme);

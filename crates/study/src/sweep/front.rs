@@ -1,7 +1,7 @@
 //! The points that no other beats.
 
-/// Indices of the points (error, seconds) for which no other is as exact and as fast and better in one, by error. Points that are not numbers
-/// are on no front.
+/// Indices of the points (error, seconds) for which no other is as exact and as fast and better in one, by
+/// error. Points that are not numbers are on no front.
 pub(super) fn front(points: &[(f64, f64)]) -> Vec<usize> {
     let mut order: Vec<usize> =
         (0..points.len()).filter(|&i| points[i].0.is_finite() && points[i].1.is_finite()).collect();

@@ -1,4 +1,4 @@
-//! What a study needs of whoever computes fields.
+//! Interface to the program that computes fields for a study.
 
 use super::description::Extreme;
 use amberfield_core::Vector3;
@@ -9,9 +9,9 @@ use std::path::Path;
 pub struct Exact {
     /// E at the grains [V/m].
     pub e: Vec<Vector3<f64>>,
-    /// What errors are relative to [V/m].
+    /// Field to which errors are relative [V/m].
     pub scale: f64,
-    /// How it was found, in words.
+    /// Way in which the truth was found, in words.
     pub by: String,
 }
 
@@ -34,7 +34,7 @@ pub struct Evaluation {
     pub pairs_per_grain: f64,
 }
 
-/// What another program needs.
+/// Input that another program needs.
 #[derive(Clone, Debug, Default)]
 pub struct Peer {
     /// Relative RMS error of E, against the same truth.
@@ -75,12 +75,12 @@ impl Moved {
     }
 }
 
-/// What became of a command.
+/// Outcome of a command.
 #[derive(Clone, Debug, Default)]
 pub struct Endured {
-    /// Its exit code; none if it did not end in time or was killed.
+    /// Exit code of the command; none if it did not end in time or was killed.
     pub code: Option<i32>,
-    /// Its last message, if it did not end well.
+    /// Last message of the command, if it did not end well.
     pub said: String,
     /// Wall-clock time [s].
     pub seconds: f64,
@@ -116,7 +116,7 @@ impl Look {
     }
 }
 
-/// Where a study was made.
+/// Place where a study was made.
 #[derive(Clone, Debug, Default)]
 pub struct Machine {
     /// Processor.
@@ -129,7 +129,8 @@ pub struct Machine {
     pub date: String,
 }
 
-/// Computes fields for a study. Errors are sentences for the report: a point that fails is listed, and the study goes on.
+/// Computes fields for a study. Errors are sentences for the report: a point that fails is listed, and the
+/// study goes on.
 pub trait Laboratory {
     /// A scene, read.
     type Problem;
@@ -154,7 +155,8 @@ pub trait Laboratory {
     /// Why there is none.
     fn exact(&mut self, problem: &Self::Problem, direct_up_to: usize) -> Result<Exact, String>;
 
-    /// Positions [m], charges [C] and Coulomb's constant of the medium [V·m/C], for truths that the study knows itself.
+    /// Positions [m], charges [C] and Coulomb's constant of the medium [V·m/C], for truths that the study
+    /// knows itself.
     fn charges(&self, problem: &Self::Problem) -> (Vec<Vector3<f64>>, Vec<f64>, f64);
 
     /// Chooses a method's parameters.
@@ -175,7 +177,8 @@ pub trait Laboratory {
         tolerance: f64,
     ) -> Result<Peer, String>;
 
-    /// Runs a scene to its end, its grains displaced by so many radii before it starts, and looks at it so many times, evenly in time, and at the start.
+    /// Runs a scene to its end, its grains displaced by so many radii before it starts, and looks at it so
+    /// many times, evenly in time, and at the start.
     ///
     /// # Errors
     /// Why it cannot be run.

@@ -1,7 +1,8 @@
-//! Error against run time: methods and parameters swept over problems, each answer checked against the truth before it is timed.
+//! Error against run time: methods and parameters swept over problems, each answer checked against the
+//! truth before it is timed.
 //!
-//! A problem is a scene with overrides, a method is more overrides: any point of a study is a scene that everyone can run. What computes
-//! fields is given from outside, see [`Laboratory`].
+//! A problem is a scene with overrides, a method is more overrides: any point of a study is a scene that
+//! everyone can run. What computes fields is given from outside, see [`Laboratory`].
 
 mod comparison;
 mod description;

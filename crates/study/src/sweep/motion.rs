@@ -24,7 +24,7 @@ pub struct MotionRow {
     pub processor: String,
     /// Threads.
     pub threads: usize,
-    /// What moves.
+    /// Name of the scene that moves.
     pub problem: String,
     /// Settings.
     pub method: String,
@@ -50,7 +50,7 @@ pub struct MotionRow {
     pub contacts: Option<f64>,
     /// Command that repeats the run.
     pub command: String,
-    /// Why it failed.
+    /// Reason why the run failed.
     pub failure: String,
 }
 

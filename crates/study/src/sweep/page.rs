@@ -18,7 +18,7 @@ const WITHIN: f64 = 2.0;
 /// Share of the points at which it should be.
 const SHARE: f64 = 0.9;
 
-/// What a study has found.
+/// Results of a study.
 #[derive(Clone, Debug, Default)]
 pub struct Results {
     /// Points.
@@ -27,12 +27,12 @@ pub struct Results {
     pub motions: Vec<MotionRow>,
     /// Scenes pushed to an end.
     pub extremes: Vec<ExtremeRow>,
-    /// Their energies over time.
+    /// Energies of the extremes over time.
     pub energies: Vec<EnergyRow>,
 }
 
-/// Writes the page of a study and its pictures (SVG and PNG) into a folder; rows in the order of the study, those of other problems are left out.
-/// Where the page is.
+/// Writes the page of a study and its pictures (SVG and PNG) into a folder; rows in the order of the study,
+/// those of other problems are left out. Where the page is.
 ///
 /// # Errors
 /// A file that cannot be written.
@@ -80,7 +80,8 @@ pub fn write_report(
     Ok(path)
 }
 
-/// When, what and where: every combination once, for rows may be added on another machine.
+/// Date, commit and machine of the rows; every combination stands once, for rows may be added on another
+/// machine.
 fn measured(results: &Results) -> String {
     let points = results.points.iter().map(|row| (&row.date, &row.version, &row.processor, row.threads));
     let motions = results.motions.iter().map(|row| (&row.date, &row.version, &row.processor, row.threads));
@@ -116,7 +117,7 @@ fn setting(study: &Study, results: &Results, repeat: &str) -> String {
     text
 }
 
-/// What the rows say, in words.
+/// Conclusions from the rows, in words.
 fn conclusions(study: &Study, rows: &[Row]) -> String {
     let mut text = "## What it says\n\n".to_owned();
     for goal in &study.goals {
@@ -243,7 +244,7 @@ fn failures(rows: &[Row], motions: &[MotionRow]) -> String {
     text
 }
 
-/// What may favour whom.
+/// Section of the page on what may favour one method over another.
 const BIAS: &str = "\n## Bias\n\n\
     * Parameters: p3m has those that it chose, and timed, on this machine for these charges and the tolerance asked for. Methods without a promise have what the study gives them, swept. Other programs have the fastest setting of a sweep whose measured error is \
     within the tolerance.\n\
@@ -314,7 +315,7 @@ fn draw_model(folder: &Path, name: &str, rows: &[Row]) -> Result<(), StudyError>
     write_both(folder, name, &plot)
 }
 
-/// As SVG and PNG.
+/// Writes a plot as SVG and as PNG.
 pub(super) fn write_both(folder: &Path, name: &str, plot: &Plot<'_>) -> Result<(), StudyError> {
     write_plot(&folder.join(format!("{name}.svg")), plot)?;
     write_plot(&folder.join(format!("{name}.png")), plot)

@@ -8,7 +8,8 @@ use amberfield_oracle::{ErrorNorms, grounded_cavity, rms};
 use std::path::Path;
 use std::time::Instant;
 
-/// Measures every point, in the study's order; `done` hears of each problem's rows as soon as they are there. `folder` is the study's.
+/// Measures every point, in the study's order; `done` hears of each problem's rows as soon as they are
+/// there. `folder` is the study's.
 pub fn run<L: Laboratory>(study: &Study, folder: &Path, laboratory: &mut L, mut done: impl FnMut(&[Row])) {
     let machine = laboratory.machine();
     for problem in &study.problems {

@@ -17,7 +17,7 @@ pub struct Row {
     pub problem: String,
     /// Grains.
     pub grains: usize,
-    /// Where the truth comes from.
+    /// Source of the truth.
     pub truth: String,
     /// Method.
     pub method: String,
@@ -53,7 +53,7 @@ pub struct Row {
     pub pairs_per_grain: Option<f64>,
     /// Command that repeats the point.
     pub command: String,
-    /// Why the point failed; empty if it did not.
+    /// Reason why the point failed; empty if it did not.
     pub failure: String,
 }
 

@@ -36,7 +36,7 @@ impl Bed {
         Ok(Self { plain, settings, end_s: time.end_s })
     }
 
-    /// Without the charges.
+    /// Copy of the bed without the charges.
     pub(super) fn uncharged(&self) -> Setup {
         self.plain.clone()
     }
@@ -47,7 +47,9 @@ impl Bed {
         Setup { field: Some(FieldStageSetup::new(settings, member)), ..self.plain.clone() }
     }
 
-    /// The same bed from where a run has come to, contacts forgotten, at a fixed step, its field chosen by the cost model.
+    /// Bed that starts from where a run has come to, at a fixed step.
+    ///
+    /// Contacts are forgotten; the field is chosen by the cost model.
     pub(super) fn from(&self, run: &Simulation) -> Self {
         let mut plain = Setup { particles: run.particles(), ..self.plain.clone() };
         for x in &mut plain.particles.position {

@@ -15,7 +15,7 @@ const TOLERANCE: f64 = 1e-2;
 const START: usize = 2900;
 const WINDOW: usize = 256;
 const INTERVALS: [u32; 6] = [2, 4, 8, 16, 32, 64];
-/// Over a radius [m].
+/// Perturbation of a position [m], 1e-12 of a radius.
 const PERTURBATION: f64 = 1e-12 * 1e-4;
 
 pub(super) fn measure(path: &Path, quick: bool, rows: &mut Rows) -> Result<()> {
