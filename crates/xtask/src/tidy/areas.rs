@@ -19,9 +19,10 @@ pub(super) fn without_the_open(tree: &Tree, found: Vec<Problem>, open: &[&str], 
     found.into_iter().filter(|problem| !is_open(problem)).chain(in_order).collect()
 }
 
-/// Crate's folder, or the folder below the root; the file itself where it stands in the root.
+/// Crate's folder, folder of documents, or any other folder below the root; the file itself where it stands
+/// above.
 fn area(path: &str) -> &str {
-    let parts = if path.starts_with("crates/") { 2 } else { 1 };
+    let parts = if path.starts_with("crates/") || path.starts_with("docs/") { 2 } else { 1 };
     path.match_indices('/').nth(parts - 1).map_or(path, |(end, _)| &path[..end])
 }
 
@@ -35,10 +36,10 @@ mod tests {
 
     #[test]
     fn open_areas_are_left_out_and_named_when_they_are_in_order() {
-        let found = vec![problem("crates/dem/src/a.rs"), problem("docs/a.md"), problem("README.md")];
-        let tree = Tree::made_up(&[("cases/check.rs", ""), ("crates/dem/src/a.rs", "")]);
-        let kept = without_the_open(&tree, found, &["crates/dem", "cases", "tests"], "a.rs");
+        let found = vec![problem("crates/dem/src/a.rs"), problem("docs/a.md"), problem("docs/b/c.md")];
+        let tree = Tree::made_up(&[("cases/check.rs", ""), ("crates/dem/src/a.rs", ""), ("docs/b/c.md", "")]);
+        let kept = without_the_open(&tree, found, &["crates/dem", "cases", "docs/b", "tests"], "a.rs");
         let paths: Vec<&str> = kept.iter().map(|problem| problem.path.as_str()).collect();
-        assert_eq!(paths, ["docs/a.md", "README.md", "cases"]);
+        assert_eq!(paths, ["docs/a.md", "cases"]);
     }
 }

@@ -20,7 +20,7 @@ const STILL_OPEN: [&str; 13] = [
     "crates/oracle",
     "crates/scene",
     "crates/study",
-    "docs",
+    "docs/reports",
     "tests",
 ];
 
