@@ -72,7 +72,7 @@ pub(crate) mod far {
 /// A gas that flows.
 pub(crate) mod gas {
     use crate::error::DemError;
-    use crate::grains::Grains;
+    use crate::motion::grains::Grains;
     use amberfield_core::{Domain, Gas, GasFlow, Particles, Vector3};
     use serde::{Deserialize, Serialize};
 

@@ -1,7 +1,7 @@
 //! Which grains touch which, while charges change so fast that contacts must see each other's.
 
-use crate::grains::Grains;
-use crate::neighbours::{Listed, Neighbours};
+use crate::contacts::neighbours::{Listed, Neighbours};
+use crate::motion::grains::Grains;
 use amberfield_core::Vector3;
 
 /// Two places closer than this, over their distance from the grain, are the same grain's.

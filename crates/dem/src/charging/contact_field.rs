@@ -10,10 +10,10 @@
 
 use super::around::Toucher;
 use super::{Charging, Traders, inside};
+use crate::contacts::neighbours::{Listed, Neighbours};
+use crate::contacts::walls::{Touch, Walls};
 use crate::field_stage::Extras;
-use crate::grains::Grains;
-use crate::neighbours::{Listed, Neighbours};
-use crate::walls::{Touch, Walls};
+use crate::motion::grains::Grains;
 use amberfield_core::{Axis, Domain, Side, Vector3, WallCharging};
 
 /// How far before a wall its field is asked for, over the radius: a wall of facets may lie outside the field's curved domain.

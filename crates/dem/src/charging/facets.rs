@@ -5,7 +5,7 @@
 //! walls book what flowed off there.
 
 use super::inside;
-use crate::walls::Surface;
+use crate::contacts::walls::Surface;
 use amberfield_core::{Domain, Vector3, WallCharging};
 use serde::{Deserialize, Serialize};
 use std::collections::BTreeMap;

@@ -13,20 +13,19 @@
 mod around;
 mod contact_field;
 mod facets;
-mod growth;
 mod materials;
 mod pairs;
 mod walls;
 
 pub use facets::Facet;
 pub(crate) use facets::Facets;
-pub(crate) use growth::{Follow, Grown, Growth, Memory};
 
+use crate::contacts::memory::{Follow, Memory};
+use crate::contacts::neighbours::Neighbours;
+use crate::contacts::walls::Touch;
 use crate::field_stage::FieldStage;
-use crate::grains::Grains;
-use crate::neighbours::Neighbours;
-use crate::state::{ChargingState, PairGrowth};
-use crate::walls::Touch;
+use crate::motion::grains::Grains;
+use crate::simulation::state::{ChargingState, PairGrowth};
 use amberfield_core::constants::{VACUUM_PERMITTIVITY, coulomb_constant};
 use amberfield_core::{ChargeTransfer, Domain, Material, Particles, Vector3};
 use amberfield_laws::charge_transfer::Drive;

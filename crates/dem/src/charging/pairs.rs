@@ -1,9 +1,10 @@
 //! Grain with grain.
 
 use super::around::Toucher;
-use super::{Charging, Follow, Grown, LAG_SEEN, Traders};
-use crate::chunks::CHUNK;
-use crate::neighbours::{ChunkList, Listed, Neighbours};
+use super::{Charging, LAG_SEEN, Traders};
+use crate::contacts::memory::{Follow, Grown};
+use crate::contacts::neighbours::{ChunkList, Listed, Neighbours};
+use crate::motion::chunks::CHUNK;
 use amberfield_core::Vector3;
 use amberfield_laws::charge_transfer::{Drive, Grain, between_grains};
 use rayon::prelude::*;

@@ -2,8 +2,8 @@
 
 use super::around::{NOBODY, Toucher};
 use super::{Charging, LAG_SEEN, Traders};
-use crate::neighbours::Neighbours;
-use crate::walls::{Touch, Walls};
+use crate::contacts::neighbours::Neighbours;
+use crate::contacts::walls::{Touch, Walls};
 use amberfield_core::{Vector3, WallCharging};
 use amberfield_laws::charge_transfer::{Grain, with_grounded_wall, with_insulating_facet};
 

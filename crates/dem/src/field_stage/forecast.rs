@@ -7,7 +7,7 @@
 
 use super::Members;
 use super::interval::Check;
-use crate::grains::pick;
+use crate::motion::grains::pick;
 use amberfield_core::Vector3;
 use serde::{Deserialize, Serialize};
 

@@ -1,6 +1,6 @@
 //! Who makes and feels the field.
 
-use crate::grains::Grains;
+use crate::motion::grains::Grains;
 use amberfield_core::{Domain, Particles, Vector3};
 
 /// Members of the field: sorted indices, positions inside the domain, charges; the last two go on with what is beside the grains.

@@ -21,13 +21,13 @@ pub(crate) use interval::IntervalControl;
 pub use interval::Intervals;
 pub(crate) use members::Extras;
 
-use crate::chunks::{CHUNK, chunk_count, for_each_chunk, is_parallel};
 use crate::error::DemError;
 use crate::field_crate::far::FarSolver;
 use crate::field_crate::{FieldValues, Wanted};
-use crate::grains::Grains;
+use crate::motion::chunks::{CHUNK, chunk_count, for_each_chunk, is_parallel};
+use crate::motion::grains::Grains;
 use crate::setup::FieldStageSetup;
-use crate::state::FieldState;
+use crate::simulation::state::FieldState;
 use amberfield_core::constants::coulomb_constant;
 use amberfield_core::{CouplingInterval, Domain, FieldSettings, ForceLimit, Particles, Vector3};
 use amberfield_laws::{force_limit, time_step_limits};

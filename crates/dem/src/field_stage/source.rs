@@ -6,7 +6,7 @@ use crate::error::DemError;
 use crate::field_crate::far::{FarSolver, FarState};
 use crate::field_crate::{Choice, ElectricField, FieldError, FieldValues};
 use crate::setup::FieldStageSetup;
-use crate::state::FieldState;
+use crate::simulation::state::FieldState;
 use amberfield_core::{Domain, FieldSettings, Tuning, Vector3};
 
 /// Difference between the fields of a solver and of the grid, over E_rms and the tolerance, above which a run says that they

@@ -1,7 +1,7 @@
 //! A gas whose flow is computed by somebody else.
 
 use crate::error::DemError;
-use crate::grains::Grains;
+use crate::motion::grains::Grains;
 use amberfield_core::{Domain, Gas, GasFlow, Particles, Vector3};
 use amberfield_gas::{ConnectFlow, Exchange, ExchangeState, GrainsView};
 

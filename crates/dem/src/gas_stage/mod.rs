@@ -13,9 +13,9 @@ pub(crate) use flowing::FlowingGas;
 pub(crate) use uniform::UniformGas;
 
 use crate::error::DemError;
-use crate::grains::Grains;
+use crate::motion::grains::Grains;
 use crate::setup::GasSetup;
-use crate::state::State;
+use crate::simulation::state::State;
 use amberfield_core::{Particles, Vector3};
 
 /// The gas of a scene.

@@ -1,7 +1,7 @@
 //! A gas that the grains do not disturb: each one is alone in it.
 
-use crate::chunks::{CHUNK, is_parallel};
-use crate::grains::Grains;
+use crate::motion::chunks::{CHUNK, is_parallel};
+use crate::motion::grains::Grains;
 use amberfield_core::{Gas, Particles, Vector3};
 use amberfield_laws::particle_reynolds::Slip;
 use amberfield_laws::{drag, magnus_lift};

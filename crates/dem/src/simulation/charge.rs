@@ -2,7 +2,7 @@
 
 use super::Simulation;
 use crate::charging::{Charging, Facet, Ledger, Traders};
-use crate::timing::Stage;
+use crate::simulation::timing::Stage;
 
 /// Who trades.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -85,9 +85,9 @@ impl Simulation {
 #[cfg(all(test, feature = "field"))]
 mod tests {
     use super::*;
-    use crate::charging::{Follow, Grown};
-    use crate::chunks::CHUNK;
-    use crate::neighbours::Listed;
+    use crate::contacts::memory::{Follow, Grown};
+    use crate::contacts::neighbours::Listed;
+    use crate::motion::chunks::CHUNK;
     use crate::setup::{FieldStageSetup, Setup};
     use amberfield_core::constants::{VACUUM_PERMITTIVITY, coulomb_constant};
     use amberfield_core::{

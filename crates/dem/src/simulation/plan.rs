@@ -1,7 +1,7 @@
 //! Which stages a scene has, and why.
 
+use crate::contacts::material_pairs::Features;
 use crate::gas_stage::GasStage;
-use crate::material_pairs::Features;
 use amberfield_core::{ChargeTransfer, Plan};
 
 /// The plan; the field's own plan is appended.

@@ -1,21 +1,21 @@
 //! Starting a run, afresh or from a checkpoint.
 
 use super::Simulation;
-use crate::cells::{Cells, levels_of, shifts};
 use crate::charging::Charging;
+use crate::contacts::cells::{Cells, levels_of, shifts};
+use crate::contacts::material_pairs::{Features, PairTable};
+use crate::contacts::neighbours::Neighbours;
+use crate::contacts::walls::Walls;
 use crate::error::DemError;
 use crate::field_stage::{Extras, FieldStage};
 use crate::gas_stage::GasStage;
-use crate::grains::Grains;
-use crate::guards::Limits;
-use crate::integrate::{Bounds, kick};
-use crate::material_pairs::{Features, PairTable};
-use crate::neighbours::Neighbours;
+use crate::motion::grains::Grains;
+use crate::motion::verlet::{Bounds, kick};
 use crate::setup::{FieldStageSetup, Setup};
-use crate::start_checks;
-use crate::state::State;
-use crate::timing::Stopwatch;
-use crate::walls::Walls;
+use crate::simulation::checks;
+use crate::simulation::guards::Limits;
+use crate::simulation::state::State;
+use crate::simulation::timing::Stopwatch;
 use amberfield_core::{Axis, Domain, Particles, Step, Vector3};
 
 impl Simulation {
@@ -24,13 +24,13 @@ impl Simulation {
     /// # Errors
     /// Values that are impossible, overlaps, a step beyond a stability guard, a field that cannot be computed.
     pub fn new(setup: Setup) -> Result<Self, DemError> {
-        start_checks::check(&setup)?;
-        let skin = start_checks::skin(&setup);
-        start_checks::check_periods(&setup, skin)?;
+        checks::check(&setup)?;
+        let skin = checks::skin(&setup);
+        checks::check_periods(&setup, skin)?;
         let mut run = Self::assemble(setup, skin, None)?;
         run.rebuild();
         let allow = run.time.allow_overlap;
-        start_checks::check_overlaps(&run.grains, &run.neighbours, &run.particles, allow)?;
+        checks::check_overlaps(&run.grains, &run.neighbours, &run.particles, allow)?;
         if let (Some(walls), false) = (&run.walls, allow)
             && let Some(error) = walls.too_deep(&run.grains, &run.particles)
         {
@@ -47,7 +47,7 @@ impl Simulation {
     /// # Errors
     /// As [`Self::new`], and a state that does not fit the scene.
     pub fn resume(mut setup: Setup, state: State) -> Result<Self, DemError> {
-        start_checks::check(&setup)?;
+        checks::check(&setup)?;
         check_state(&setup, &state)?;
         if let Some(charging) = &state.charging {
             setup.particles.charge.clone_from(&charging.charge);

@@ -1,8 +1,8 @@
-//! Contacts of grains side by side: the law of `crate::contact_law` on vectors of numbers, so that no contact waits for the roots
+//! Contacts of grains side by side: the law of `crate::contacts::law` on vectors of numbers, so that no contact waits for the roots
 //! of another.
 
-use crate::contact_law::{Contact, History, respond};
-use crate::material_pairs::PairConstants;
+use crate::contacts::law::{Contact, History, respond};
+use crate::contacts::material_pairs::PairConstants;
 use amberfield_core::Vector3;
 use amberfield_laws::contact_area;
 use nalgebra::SimdValue;

@@ -1,9 +1,9 @@
 //! Limits on the time step: computed at the start, watched while running.
 
+use crate::contacts::material_pairs::PairTable;
 use crate::error::DemError;
 use crate::gas_stage::UniformGas;
-use crate::grains::Grains;
-use crate::material_pairs::PairTable;
+use crate::motion::grains::Grains;
 use amberfield_core::{Domain, Material, Particles};
 use amberfield_laws::{hertz_mindlin, time_step_limits};
 

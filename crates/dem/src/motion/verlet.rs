@@ -5,9 +5,9 @@
 //! v += ½Δt (a_new − a_old), which is velocity Verlet to the last term. Angular velocity likewise; a sphere
 //! needs no orientation.
 
-use crate::chunks::{CHUNK, chunk_count, for_each_chunk, is_parallel};
-use crate::grains::Grains;
-use crate::neighbours::Neighbours;
+use crate::contacts::neighbours::Neighbours;
+use crate::motion::chunks::{CHUNK, chunk_count, for_each_chunk, is_parallel};
+use crate::motion::grains::Grains;
 use amberfield_core::Vector3;
 use rayon::prelude::*;
 

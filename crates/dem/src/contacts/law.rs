@@ -9,7 +9,7 @@
 //!
 //! Numbers are one contact's, or those of several side by side: there is no branch in the law.
 
-use crate::material_pairs::PairConstants;
+use crate::contacts::material_pairs::PairConstants;
 use amberfield_core::Vector3;
 use amberfield_laws::rolling_friction;
 use nalgebra::SimdRealField;

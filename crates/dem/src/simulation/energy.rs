@@ -1,11 +1,11 @@
 //! Energies of the grains.
 
-use crate::cells::INDEX_MASK;
-use crate::chunks::CHUNK;
-use crate::grains::Grains;
-use crate::material_pairs::{Features, PairConstants, PairTable};
-use crate::neighbours::Neighbours;
-use crate::walls::Walls;
+use crate::contacts::cells::INDEX_MASK;
+use crate::contacts::material_pairs::{Features, PairConstants, PairTable};
+use crate::contacts::neighbours::Neighbours;
+use crate::contacts::walls::Walls;
+use crate::motion::chunks::CHUNK;
+use crate::motion::grains::Grains;
 use amberfield_core::Vector3;
 use amberfield_laws::rolling_friction;
 
@@ -68,7 +68,7 @@ pub(crate) fn contact(
                 let (i, code) = (k * CHUNK + local, list.partner[entry]);
                 let j = (code & INDEX_MASK) as usize;
                 let (a, b) = (&grains.centre[i], &grains.centre[j]);
-                let shift = neighbours.shifts[(code >> crate::cells::INDEX_BITS) as usize];
+                let shift = neighbours.shifts[(code >> crate::contacts::cells::INDEX_BITS) as usize];
                 let distance = (0..3).map(|x| (b[x] + shift[x] - a[x]).powi(2)).sum::<f64>().sqrt();
                 let pair = table.get(grains.material[i], grains.material[j]);
                 let springs = Springs {

@@ -1,10 +1,10 @@
 //! Contacts with walls as charge transfer sees them.
 
 use super::{Shape, Walls};
-use crate::charging::{Follow, Memory};
-use crate::chunks::CHUNK;
-use crate::grains::Grains;
-use crate::mesh_wall::MOST_CONTACTS;
+use crate::contacts::memory::{Follow, Memory};
+use crate::contacts::walls::mesh::MOST_CONTACTS;
+use crate::motion::chunks::CHUNK;
+use crate::motion::grains::Grains;
 use amberfield_core::{Vector3, WallCharging};
 use amberfield_laws::contact_area;
 

@@ -1,12 +1,12 @@
 //! Forces of touching grains on each other, chunk by chunk.
 
-use crate::cells::{INDEX_BITS, INDEX_MASK};
-use crate::charging::Follow;
-use crate::chunks::{CHUNK, chunk_count, for_each_chunk, is_parallel};
-use crate::contact_batch::{BATCH, Batch};
-use crate::grains::Grains;
-use crate::material_pairs::PairTable;
-use crate::neighbours::{ChunkList, Hit, Neighbours, Push};
+use crate::contacts::batch::{BATCH, Batch};
+use crate::contacts::cells::{INDEX_BITS, INDEX_MASK};
+use crate::contacts::material_pairs::PairTable;
+use crate::contacts::memory::Follow;
+use crate::contacts::neighbours::{ChunkList, Hit, Neighbours, Push};
+use crate::motion::chunks::{CHUNK, chunk_count, for_each_chunk, is_parallel};
+use crate::motion::grains::Grains;
 use amberfield_core::Vector3;
 
 /// What every chunk reads.

@@ -1,11 +1,11 @@
 //! Verlet lists by chunk, and the contact histories that live in them.
 
-use crate::cells::{Cells, INDEX_BITS, INDEX_MASK};
-use crate::charging::{Grown, Growth};
-use crate::chunks::{CHUNK, chunk_count, for_each_chunk, is_parallel};
-use crate::grains::Grains;
-use crate::material_pairs::Features;
-use crate::state::PairHistory;
+use crate::contacts::cells::{Cells, INDEX_BITS, INDEX_MASK};
+use crate::contacts::material_pairs::Features;
+use crate::contacts::memory::{Grown, Growth};
+use crate::motion::chunks::{CHUNK, chunk_count, for_each_chunk, is_parallel};
+use crate::motion::grains::Grains;
+use crate::simulation::state::PairHistory;
 use amberfield_core::{Domain, Vector3};
 
 /// A touching entry found by the distance test of the step.

@@ -1,10 +1,10 @@
 //! Checks of a set-up before anything is built from it.
 
-use crate::cells::{INDEX_BITS, INDEX_MASK};
-use crate::chunks::CHUNK;
+use crate::contacts::cells::{INDEX_BITS, INDEX_MASK};
+use crate::contacts::neighbours::Neighbours;
 use crate::error::DemError;
-use crate::grains::Grains;
-use crate::neighbours::Neighbours;
+use crate::motion::chunks::CHUNK;
+use crate::motion::grains::Grains;
 use crate::setup::Setup;
 use amberfield_core::{Axis, Material, Particles, Skin, Step};
 use std::collections::HashSet;

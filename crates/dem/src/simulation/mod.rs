@@ -1,25 +1,30 @@
 //! One run: the stages of a scene and the order in which they act.
 
 mod charge;
+pub(crate) mod checks;
+pub(crate) mod energy;
+pub(crate) mod guards;
+mod observe;
 mod plan;
-mod report;
 mod start;
+pub(crate) mod state;
+pub(crate) mod timing;
 
-pub use report::Deepest;
+pub use observe::Deepest;
 
 use crate::charging::Charging;
+use crate::contacts::material_pairs::{Features, PairTable};
+use crate::contacts::neighbours::Neighbours;
+use crate::contacts::pairs::pair_forces;
+use crate::contacts::walls::Walls;
 use crate::error::DemError;
 use crate::field_stage::{Extras, FieldStage};
 use crate::gas_stage::GasStage;
-use crate::grains::Grains;
-use crate::guards::{ElectricLimits, Limits, electric_stiffness, electric_stiffness_bound};
-use crate::integrate::{Bounds, ChunkMotion, drift, kick};
-use crate::material_pairs::{Features, PairTable};
-use crate::neighbours::Neighbours;
-use crate::pair_forces::pair_forces;
-use crate::state::State;
-use crate::timing::{Stage, Stopwatch};
-use crate::walls::Walls;
+use crate::motion::grains::Grains;
+use crate::motion::verlet::{Bounds, ChunkMotion, drift, kick};
+use crate::simulation::guards::{ElectricLimits, Limits, electric_stiffness, electric_stiffness_bound};
+use crate::simulation::state::State;
+use crate::simulation::timing::{Stage, Stopwatch};
 use amberfield_core::{Domain, OnExit, Particles, Plan, TimeSettings, Vector3};
 use charge::Trade;
 
@@ -274,7 +279,7 @@ impl Simulation {
         let count = self.grains.len();
         self.new_force.resize(count, Vector3::zeros());
         self.new_torque.resize(if self.grains.torque.is_empty() { 0 } else { count }, Vector3::zeros());
-        self.motion.resize(crate::chunks::chunk_count(count), ChunkMotion::default());
+        self.motion.resize(crate::motion::chunks::chunk_count(count), ChunkMotion::default());
     }
 
     /// Electric limits of the present pairs; `None` without a field.

@@ -1,12 +1,12 @@
 //! Which grains are near which walls, and the histories that they keep.
 
 use super::{ChunkWalls, Entry, Shape, Solid, WallContact};
-use crate::cells::NO_SHIFT;
-use crate::charging::Memory;
-use crate::chunks::CHUNK;
-use crate::grains::Grains;
-use crate::mesh_wall::MOST_CONTACTS;
-use crate::state::WallHistory;
+use crate::contacts::cells::NO_SHIFT;
+use crate::contacts::memory::Memory;
+use crate::contacts::walls::mesh::MOST_CONTACTS;
+use crate::motion::chunks::CHUNK;
+use crate::motion::grains::Grains;
+use crate::simulation::state::WallHistory;
 use amberfield_core::{Axis, Domain, Vector3};
 
 impl ChunkWalls {

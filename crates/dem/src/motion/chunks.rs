@@ -35,7 +35,7 @@ macro_rules! for_each_chunk {
                 .for_each(|(k, parts)| body(k, parts));
         } else {
             for k in 0..$chunks {
-                body(k, ($($crate::chunks::part(&mut $array[..], $size, k),)+));
+                body(k, ($($crate::motion::chunks::part(&mut $array[..], $size, k),)+));
             }
         }
     }};

@@ -1,6 +1,7 @@
 //! The complete state of a run, for checkpoints.
 
-use crate::charging::{Facets, Ledger, Memory};
+use crate::charging::{Facets, Ledger};
+use crate::contacts::memory::Memory;
 use crate::field_crate::Choice;
 use crate::field_crate::far::FarState;
 use crate::gas_crate::ExchangeState;

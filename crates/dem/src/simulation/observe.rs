@@ -1,12 +1,12 @@
 //! What a run tells about itself.
 
 use super::Simulation;
-use crate::energy::{self, ElectricEnergy, Energies};
 use crate::error::DemError;
 use crate::field_crate::ElectricField;
 use crate::field_stage::{FieldStage, Intervals, Limited};
-use crate::guards::Guard;
-use crate::timing::STAGE_NAMES;
+use crate::simulation::energy::{self, ElectricEnergy, Energies};
+use crate::simulation::guards::Guard;
+use crate::simulation::timing::STAGE_NAMES;
 use amberfield_core::{Particles, Plan, Vector3};
 
 /// A contact with a large overlap.

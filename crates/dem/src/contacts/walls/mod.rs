@@ -1,18 +1,19 @@
 //! Contacts with plane and mesh walls.
 
-mod charging;
+pub(crate) mod mesh;
 mod near;
+mod touches;
 
-pub(crate) use charging::{Surface, Touch};
+pub(crate) use touches::{Surface, Touch};
 
-use crate::charging::Memory;
-use crate::chunks::{CHUNK, chunk_count, for_each_chunk, is_parallel};
-use crate::contact_law::{Contact, History, respond};
+use crate::contacts::law::{Contact, History, respond};
+use crate::contacts::material_pairs::{Features, PairTable};
+use crate::contacts::memory::Memory;
+use crate::contacts::walls::mesh::{Candidate, Found, MOST_CONTACTS, MeshWall};
 use crate::error::DemError;
-use crate::grains::Grains;
-use crate::material_pairs::{Features, PairTable};
-use crate::mesh_wall::{Candidate, Found, MOST_CONTACTS, MeshWall};
-use crate::state::WallHistory;
+use crate::motion::chunks::{CHUNK, chunk_count, for_each_chunk, is_parallel};
+use crate::motion::grains::Grains;
+use crate::simulation::state::WallHistory;
 use amberfield_core::{Domain, Particles, Vector3, Wall, WallCharging, WallShape};
 use std::ops::Range;
 
@@ -304,7 +305,7 @@ impl ChunkWalls {
             let kept = &mut contacts[entry.contacts as usize..];
             let from = renew(kept, entry.count as usize, &found[..count]);
             if !memory.is_empty() {
-                charging::renew(&mut memory[entry.contacts as usize..], &from[..count]);
+                touches::renew(&mut memory[entry.contacts as usize..], &from[..count]);
             }
             entry.count = count as u32;
             let pair = table.get(grains.material[i], solid.material);
