@@ -1,8 +1,8 @@
 //! Errors of the DEM crate.
 
-use crate::field_crate::FieldError;
-use crate::gas_crate::GasError;
 use amberfield_core::Vector3;
+use amberfield_field::FieldError;
+use amberfield_gas::GasError;
 
 /// Why a scene cannot start or a run cannot go on.
 #[derive(Debug, Clone, PartialEq, thiserror::Error)]

@@ -12,18 +12,6 @@ mod gas_stage;
 mod motion;
 mod setup;
 mod simulation;
-#[cfg(not(feature = "field"))]
-mod without_field;
-
-#[cfg(feature = "field")]
-use amberfield_field as field_crate;
-#[cfg(not(feature = "field"))]
-use without_field as field_crate;
-
-#[cfg(feature = "field")]
-use amberfield_gas as gas_crate;
-#[cfg(not(feature = "field"))]
-use without_field::gas as gas_crate;
 
 pub use charging::{Facet, Ledger};
 pub use error::DemError;

@@ -1,9 +1,9 @@
 //! What a simulation is made of.
 
-use crate::field_crate::Choice;
-use crate::field_crate::far::Connect;
-use crate::gas_crate::ConnectFlow;
 use amberfield_core::{ChargeTransfer, Domain, FieldSettings, Gas, Material, Particles, TimeSettings, Wall};
+use amberfield_field::Choice;
+use amberfield_field::far::Connect;
+use amberfield_gas::ConnectFlow;
 
 /// The electric field of a scene.
 #[derive(Clone, Debug)]

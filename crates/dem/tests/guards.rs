@@ -1,5 +1,4 @@
 //! How far the guards of the time step are from the true edge of stability, found by bisection.
-#![cfg(feature = "field")]
 
 mod common;
 

@@ -79,7 +79,6 @@ fn steady_step_allocates_nothing() {
     });
 }
 
-#[cfg(feature = "field")]
 mod charged {
     use super::*;
     use amberfield_core::{ChargeTransfer, FieldSettings, Tuning};

@@ -25,10 +25,6 @@ pub(crate) fn run(root: &Path, with_tests: bool) -> Result<()> {
     step("clippy", &|| {
         execute(&mut cargo(root, &["clippy", "--workspace", "--all-targets", "--", "-D", "warnings"]))
     });
-    step("clippy without the field", &|| {
-        let dem = ["clippy", "-p", "amberfield-dem", "--no-default-features", "--all-targets"];
-        execute(cargo(root, &dem).args(["--", "-D", "warnings"]))
-    });
     step("clippy without coupling and plots", &|| {
         let cli = ["clippy", "-p", "amberfield-cli", "--no-default-features", "--bins"];
         execute(cargo(root, &cli).args(["--", "-D", "warnings"]))

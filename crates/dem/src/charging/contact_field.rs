@@ -10,6 +10,7 @@
 
 use super::around::Toucher;
 use super::{Charging, Traders, inside};
+use crate::contacts::Contacts;
 use crate::contacts::neighbours::{Listed, Neighbours};
 use crate::contacts::walls::{Touch, Walls};
 use crate::field_stage::Extras;
@@ -48,15 +49,17 @@ impl Charging {
     }
 
     /// Adds the charges of walls and the places of contacts, those of pairs up to `margin` [m] apart included.
-    pub(crate) fn ask(
+    pub(super) fn ask(
         &mut self,
         traders: Traders<'_>,
-        neighbours: &Neighbours,
-        walls: Option<&Walls>,
-        (charge, margin): (&[f64], f64),
+        contacts: &Contacts,
+        charge: &[f64],
+        margin: f64,
         extras: &mut Extras,
     ) {
         let Traders { domain, grains, .. } = traders;
+        let Contacts { neighbours, walls, .. } = contacts;
+        let walls = walls.as_ref();
         self.add_facets(extras);
         let mut probes = std::mem::take(&mut self.probes);
         probes.clear();
@@ -107,7 +110,7 @@ impl Charging {
     }
 
     /// Takes E [V/m] at what was asked for.
-    pub(crate) fn take(
+    pub(super) fn take(
         &mut self,
         e: &[Vector3<f64>],
         neighbours: &mut Neighbours,

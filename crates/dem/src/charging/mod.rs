@@ -15,19 +15,22 @@ mod contact_field;
 mod facets;
 mod materials;
 mod pairs;
+mod rounds;
+mod state;
 mod walls;
 
 pub use facets::Facet;
 pub(crate) use facets::Facets;
+pub(crate) use rounds::Round;
+pub(crate) use state::ChargingState;
 
-use crate::contacts::memory::{Follow, Memory};
+use crate::contacts::memory::{Follow, Memory, PairGrowth};
 use crate::contacts::neighbours::Neighbours;
 use crate::contacts::walls::Touch;
 use crate::field_stage::FieldStage;
 use crate::motion::grains::Grains;
-use crate::simulation::state::{ChargingState, PairGrowth};
 use amberfield_core::constants::{VACUUM_PERMITTIVITY, coulomb_constant};
-use amberfield_core::{ChargeTransfer, Domain, Material, Particles, Vector3};
+use amberfield_core::{ChargeTransfer, Domain, FieldSettings, Material, Particles, Vector3};
 use amberfield_laws::charge_transfer::Drive;
 use amberfield_laws::dielectric_breakdown;
 use around::Around;
@@ -100,18 +103,18 @@ pub(crate) struct Charging {
 impl Charging {
     pub(crate) fn new(
         settings: ChargeTransfer,
-        (relative_permittivity, tolerance): (f64, f64),
+        field: &FieldSettings,
         materials: &[Material],
         particles: &Particles,
         walls: usize,
     ) -> Self {
-        let permittivity = VACUUM_PERMITTIVITY * relative_permittivity;
+        let permittivity = VACUUM_PERMITTIVITY * field.relative_permittivity;
         let largest = particles.radius.iter().copied().fold(0.0, f64::max);
         Self {
             settings,
             permittivity,
-            coulomb: coulomb_constant(relative_permittivity),
-            tolerance,
+            coulomb: coulomb_constant(field.relative_permittivity),
+            tolerance: field.tolerance,
             table: ChargingTable::new(materials, &settings, permittivity),
             facets: Facets::new(largest),
             ledger: Ledger { walls: vec![0.0; walls], ..Ledger::default() },

@@ -2,22 +2,12 @@
 
 use super::around::Toucher;
 use super::{Charging, LAG_SEEN, Traders};
-use crate::contacts::memory::{Follow, Grown};
+use crate::contacts::memory::Grown;
 use crate::contacts::neighbours::{ChunkList, Listed, Neighbours};
 use crate::motion::chunks::CHUNK;
 use amberfield_core::Vector3;
 use amberfield_laws::charge_transfer::{Drive, Grain, between_grains};
 use rayon::prelude::*;
-
-impl Follow {
-    /// Follows a touching pair of a list, before the list takes note of it; `area` in m².
-    #[inline(always)]
-    pub(crate) fn pair(self, list: &mut ChunkList, entry: u32, area: f64) {
-        let at = entry as usize;
-        let begins = list.growth[at].follow(area, list.touching[at], self);
-        list.begun += u64::from(begins);
-    }
-}
 
 impl ChunkList {
     /// Lists the entries whose growth is due.
@@ -65,7 +55,7 @@ impl Trading {
 
 impl Charging {
     /// Moves what is due between pairs of grains. `charge` is by the set-up's order [C].
-    pub(crate) fn trade_pairs(
+    pub(super) fn trade_pairs(
         &mut self,
         traders: Traders<'_>,
         neighbours: &mut Neighbours,

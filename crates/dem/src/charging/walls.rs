@@ -9,7 +9,7 @@ use amberfield_laws::charge_transfer::{Grain, with_grounded_wall, with_insulatin
 
 impl Charging {
     /// Moves what is due between grains and walls. `charge` is by the set-up's order [C].
-    pub(crate) fn trade_walls(
+    pub(super) fn trade_walls(
         &mut self,
         traders: Traders<'_>,
         neighbours: &Neighbours,

@@ -1,5 +1,6 @@
-//! What a contact remembers of its charging.
+//! Memory of contacts: springs, area and what of its growth is still to move charge.
 
+use amberfield_core::Vector3;
 use serde::{Deserialize, Serialize};
 
 /// How contact areas are followed in a step.
@@ -60,6 +61,60 @@ pub(crate) struct Grown {
     pub(crate) entry: u32,
     /// Grain in the chunk.
     pub(crate) local: u32,
+}
+
+/// History of a touching pair.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
+pub(crate) struct PairHistory {
+    /// Grain whose list holds the pair, in the sorted order.
+    pub(crate) i: u32,
+    /// Entry in that list.
+    pub(crate) entry: u32,
+    /// Partner, in the set-up's order.
+    pub(crate) partner: u32,
+    /// Tangential force [N] and contact radius [m].
+    pub(crate) spring: [f64; 4],
+    /// Rolling torque [N·m].
+    pub(crate) rolling: [f64; 3],
+}
+
+/// History of a contact with a wall.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
+pub(crate) struct WallHistory {
+    /// Grain, in the set-up's order.
+    pub(crate) grain: u32,
+    /// Wall.
+    pub(crate) wall: u32,
+    /// Direction from the grain to the wall.
+    pub(crate) normal: [f64; 3],
+    /// Overlap [m].
+    pub(crate) overlap: f64,
+    /// Of a mesh, where it is touched.
+    pub(crate) triangle: u32,
+    /// Tangential force [N] and contact radius [m].
+    pub(crate) spring: [f64; 4],
+    /// Rolling torque [N·m].
+    pub(crate) rolling: [f64; 3],
+    pub(crate) charging: Memory,
+}
+
+/// What contacts put in a checkpoint.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+pub(crate) struct ContactsState {
+    /// Centres for which the lists were built [m].
+    pub(crate) reference: Vec<Vector3<f64>>,
+    /// Histories of the touching pairs.
+    pub(crate) pairs: Vec<PairHistory>,
+    /// Histories of the touching contacts with walls.
+    pub(crate) walls: Vec<WallHistory>,
+}
+
+/// Charging of a listed pair.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
+pub(crate) struct PairGrowth {
+    /// Chunk whose list holds the pair, and entry in it.
+    pub(crate) slot: [u32; 2],
+    pub(crate) memory: Memory,
 }
 
 #[cfg(test)]

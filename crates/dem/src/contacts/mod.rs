@@ -1,4 +1,7 @@
-//! Contacts of grains with each other and with walls: who is near whom, the law, the histories.
+//! Contacts of grains with each other and with walls: who is near whom, the law, what contacts remember.
+//!
+//! Nothing here knows of fields, gases or charges: `examples/bare_bed.rs` compiles this folder and
+//! `motion/` alone, and `cargo xtask leaving-out` compares a whole run with it.
 
 pub(crate) mod batch;
 pub(crate) mod cells;
@@ -8,3 +11,88 @@ pub(crate) mod memory;
 pub(crate) mod neighbours;
 pub(crate) mod pairs;
 pub(crate) mod walls;
+
+use crate::motion::grains::Grains;
+use amberfield_core::{Domain, Vector3};
+use material_pairs::{Features, PairTable};
+use memory::{ContactsState, Follow, WallHistory};
+use neighbours::Neighbours;
+use pairs::pair_forces;
+use walls::Walls;
+
+/// All contacts of a scene.
+#[derive(Debug)]
+pub(crate) struct Contacts {
+    /// Constants of every pair of materials.
+    pub(crate) table: PairTable,
+    /// Terms of the contact law that the scene needs.
+    pub(crate) features: Features,
+    /// Pairs of grains that are near each other.
+    pub(crate) neighbours: Neighbours,
+    /// Walls and the grains near them; `None` without walls.
+    pub(crate) walls: Option<Walls>,
+}
+
+impl Contacts {
+    /// Sums the forces [N] and torques [N·m] of grains on each other into `force` and `torque`, which are
+    /// overwritten; what acts on other chunks waits in the outboxes. `step` [s] advances the springs.
+    pub(crate) fn push_grains(
+        &mut self,
+        grains: &Grains,
+        step: f64,
+        follow: Option<Follow>,
+        force: &mut [Vector3<f64>],
+        torque: &mut [Vector3<f64>],
+    ) {
+        pair_forces(grains, &mut self.neighbours, &self.table, step, follow, force, torque);
+    }
+
+    /// Number of touching contacts, of grains and with walls, at the last evaluation.
+    pub(crate) fn count(&self) -> usize {
+        self.neighbours.contacts() + self.walls.as_ref().map_or(0, Walls::contacts)
+    }
+
+    /// Histories of the contacts with walls; they find their grains again in any order.
+    pub(crate) fn wall_histories(&self, grains: &Grains) -> Vec<WallHistory> {
+        self.walls.as_ref().map(|walls| walls.histories(grains)).unwrap_or_default()
+    }
+
+    /// Lists anew who is near whom, within a `skin` [m]. `order[new] = old` tells where each grain was when
+    /// the present lists were built, so that histories move along; those of walls were taken before.
+    pub(crate) fn list(
+        &mut self,
+        domain: &Domain,
+        grains: &Grains,
+        order: &[u32],
+        skin: f64,
+        wall_histories: &[WallHistory],
+    ) {
+        self.neighbours.build(domain, grains, order);
+        if let Some(walls) = &mut self.walls {
+            walls.build(domain, grains, skin, wall_histories);
+        }
+    }
+
+    /// State for a checkpoint.
+    pub(crate) fn state(&self, grains: &Grains) -> ContactsState {
+        ContactsState {
+            reference: self.neighbours.reference.clone(),
+            pairs: self.neighbours.histories(grains),
+            walls: self.wall_histories(grains),
+        }
+    }
+
+    /// Lists grains that stand where a state's lists were built, and puts its histories back; `Err` says
+    /// which of them finds no contact.
+    pub(crate) fn restore(
+        &mut self,
+        domain: &Domain,
+        grains: &Grains,
+        skin: f64,
+        state: &ContactsState,
+    ) -> Result<(), String> {
+        let order: Vec<u32> = (0..grains.len() as u32).collect();
+        self.list(domain, grains, &order, skin, &state.walls);
+        self.neighbours.restore(grains, &state.pairs)
+    }
+}

@@ -2,10 +2,9 @@
 
 use crate::contacts::cells::{Cells, INDEX_BITS, INDEX_MASK};
 use crate::contacts::material_pairs::Features;
-use crate::contacts::memory::{Grown, Growth};
-use crate::motion::chunks::{CHUNK, chunk_count, for_each_chunk, is_parallel};
+use crate::contacts::memory::{Follow, Grown, Growth, PairHistory};
+use crate::motion::chunks::{CHUNK, NO_PUSH, Push, chunk_count, for_each_chunk, is_parallel};
 use crate::motion::grains::Grains;
-use crate::simulation::state::PairHistory;
 use amberfield_core::{Domain, Vector3};
 
 /// A touching entry found by the distance test of the step.
@@ -16,17 +15,6 @@ pub(crate) struct Hit {
     /// Outbox slot; only meaningful when the partner is in another chunk.
     pub(crate) slot: u32,
 }
-
-/// Force and torque on a grain of another chunk.
-#[derive(Clone, Copy, Debug)]
-pub(crate) struct Push {
-    pub(crate) force: Vector3<f64>,
-    pub(crate) torque: Vector3<f64>,
-}
-
-/// No push.
-pub(crate) const NO_PUSH: Push =
-    Push { force: Vector3::new(0.0, 0.0, 0.0), torque: Vector3::new(0.0, 0.0, 0.0) };
 
 /// Lists of the grains of one chunk: each pair is in one list only.
 #[derive(Debug, Default)]
@@ -76,6 +64,14 @@ impl Listed {
     pub(crate) fn offset(&self, grains: &Grains, shifts: &[[f64; 3]; 32]) -> Vector3<f64> {
         let shift = Vector3::from(shifts[(self.code >> INDEX_BITS) as usize]);
         grains.position(self.j) - grains.position(self.i) + shift
+    }
+
+    /// Distance of the centres, or of that of i from j's image [m].
+    pub(crate) fn distance(&self, grains: &Grains, shifts: &[[f64; 3]; 32]) -> f64 {
+        let shift = shifts[(self.code >> INDEX_BITS) as usize];
+        let (a, b) = (&grains.centre[self.i], &grains.centre[self.j]);
+        // The shift is added before the other centre is subtracted, as where the lists inherit: the same bits.
+        (0..3).map(|x| (b[x] + shift[x] - a[x]).powi(2)).sum::<f64>().sqrt()
     }
 }
 
@@ -246,6 +242,14 @@ impl ChunkList {
         let code = self.partner[entry as usize];
         let (i, j) = (k * CHUNK + local as usize, (code & INDEX_MASK) as usize);
         Listed { chunk: k, entry: entry as usize, i, j, code }
+    }
+
+    /// Follows the contact area [m²] of a touching entry, before the list takes note that it touches.
+    #[inline(always)]
+    pub(crate) fn follow_area(&mut self, entry: u32, area: f64, follow: Follow) {
+        let entry = entry as usize;
+        let begins = self.growth[entry].follow(area, self.touching[entry], follow);
+        self.begun += u64::from(begins);
     }
 
     fn fill(&mut self, k: usize, cells: &Cells, grains: &Grains, features: Features) {

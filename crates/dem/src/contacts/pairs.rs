@@ -4,8 +4,8 @@ use crate::contacts::batch::{BATCH, Batch};
 use crate::contacts::cells::{INDEX_BITS, INDEX_MASK};
 use crate::contacts::material_pairs::PairTable;
 use crate::contacts::memory::Follow;
-use crate::contacts::neighbours::{ChunkList, Hit, Neighbours, Push};
-use crate::motion::chunks::{CHUNK, chunk_count, for_each_chunk, is_parallel};
+use crate::contacts::neighbours::{ChunkList, Hit, Neighbours};
+use crate::motion::chunks::{CHUNK, Push, chunk_count, for_each_chunk, is_parallel};
 use crate::motion::grains::Grains;
 use amberfield_core::Vector3;
 
@@ -182,7 +182,7 @@ fn chunk<const FRICTION: bool, const ROLLING: bool, const DAMPING: bool, const P
         batch.respond::<FRICTION, ROLLING, DAMPING>(scene.step);
         if let Some(follow) = scene.follow {
             for lane in 0..size {
-                follow.pair(list, list.hits[start + lane].entry, batch.area::<FRICTION>(lane));
+                list.follow_area(list.hits[start + lane].entry, batch.area::<FRICTION>(lane), follow);
             }
         }
         for lane in 0..size {

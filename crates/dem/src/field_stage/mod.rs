@@ -10,27 +10,28 @@
 //!
 //! A number of steps is kept as it is. All depends on the grains only.
 
-mod charging;
+mod answers;
 mod forecast;
 mod interval;
 mod members;
 mod source;
+mod state;
 
-pub(crate) use forecast::{EnergyForecast, Forecast};
-pub(crate) use interval::IntervalControl;
 pub use interval::Intervals;
 pub(crate) use members::Extras;
+pub(crate) use state::FieldState;
 
 use crate::error::DemError;
-use crate::field_crate::far::FarSolver;
-use crate::field_crate::{FieldValues, Wanted};
 use crate::motion::chunks::{CHUNK, chunk_count, for_each_chunk, is_parallel};
 use crate::motion::grains::Grains;
 use crate::setup::FieldStageSetup;
-use crate::simulation::state::FieldState;
 use amberfield_core::constants::coulomb_constant;
 use amberfield_core::{CouplingInterval, Domain, FieldSettings, ForceLimit, Particles, Vector3};
+use amberfield_field::far::FarSolver;
+use amberfield_field::{FieldValues, Wanted};
 use amberfield_laws::{force_limit, time_step_limits};
+use forecast::{EnergyForecast, Forecast};
+use interval::IntervalControl;
 use members::Members;
 use serde::{Deserialize, Serialize};
 use source::Source;
@@ -100,7 +101,7 @@ impl FieldStage {
         let position: Vec<_> = members().map(|i| domain.wrap(particles.position[i])).collect();
         let mut charge: Vec<_> = members().map(|i| particles.charge[i]).collect();
         if charge.iter().all(|charge| *charge == 0.0) {
-            charging::stand_in(&mut charge);
+            source::stand_in(&mut charge);
         }
         let source = Source::new(domain, setup, (&position, &charge), state)?;
         let mut stage = Self {
@@ -338,7 +339,7 @@ fn largest_force(
     Some(move |i: usize| force_limit::largest(factor, 1.0 / grains.inverse_mass[i], skin, step))
 }
 
-#[cfg(all(test, feature = "field"))]
+#[cfg(test)]
 mod tests {
     use super::*;
     use amberfield_core::{Boundary, Grain, GroupId, MaterialId, Method};

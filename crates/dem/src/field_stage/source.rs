@@ -2,12 +2,12 @@
 
 use super::WANTED;
 use super::members::Members;
+use super::state::FieldState;
 use crate::error::DemError;
-use crate::field_crate::far::{FarSolver, FarState};
-use crate::field_crate::{Choice, ElectricField, FieldError, FieldValues};
 use crate::setup::FieldStageSetup;
-use crate::simulation::state::FieldState;
 use amberfield_core::{Domain, FieldSettings, Tuning, Vector3};
+use amberfield_field::far::{FarSolver, FarState};
+use amberfield_field::{Choice, ElectricField, FieldError, FieldValues};
 
 /// Difference between the fields of a solver and of the grid, over E_rms and the tolerance, above which a run says that they
 /// have other boundaries.
@@ -157,11 +157,14 @@ impl Source {
     }
 }
 
+/// Charges for which the field chooses its parameters where there are none yet: of both signs, none in all.
+pub(super) fn stand_in(charge: &mut [f64]) {
+    for pair in charge.chunks_exact_mut(2) {
+        pair.copy_from_slice(&[1e-15, -1e-15]);
+    }
+}
+
 /// Chooses the internal grid's parameters while all is well, and compares its field with the solver's.
-#[cfg_attr(
-    not(feature = "field"),
-    expect(unreachable_code, reason = "a build without fields has none to compare")
-)]
 fn provide(
     domain: &Domain,
     settings: &FieldSettings,
@@ -190,7 +193,7 @@ fn provide(
     Ok(internal.choice().clone())
 }
 
-#[cfg(all(test, feature = "field"))]
+#[cfg(test)]
 mod tests {
     use super::*;
     use amberfield_core::Boundary;

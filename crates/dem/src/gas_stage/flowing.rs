@@ -5,6 +5,15 @@ use crate::motion::grains::Grains;
 use amberfield_core::{Domain, Gas, GasFlow, Particles, Vector3};
 use amberfield_gas::{ConnectFlow, Exchange, ExchangeState, GrainsView};
 
+/// Limits that exchanges with a gas set to the time step.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct FlowLimits {
+    /// Steps between exchanges.
+    pub(crate) steps: u64,
+    /// Shortest time in which a grain's slip decays [s].
+    pub(crate) response_s: f64,
+}
+
 /// Drag, buoyancy, pressure and viscous stress, lift; and what the grains do to the gas.
 #[derive(Debug)]
 pub(crate) struct FlowingGas {
@@ -17,7 +26,8 @@ pub(crate) struct FlowingGas {
 
 impl FlowingGas {
     pub(crate) fn new(
-        (gas, flow): (Gas, GasFlow),
+        gas: Gas,
+        flow: GasFlow,
         solver: &ConnectFlow,
         gravity: Vector3<f64>,
         particles: &Particles,
@@ -46,9 +56,9 @@ impl FlowingGas {
         )
     }
 
-    /// Steps between exchanges, and the shortest time in which a grain's slip decays [s].
-    pub(crate) fn limits(&self) -> (u64, f64) {
-        (self.steps, self.exchange.response_s())
+    /// Limits that the exchange sets to the time step.
+    pub(crate) fn limits(&self) -> FlowLimits {
+        FlowLimits { steps: self.steps, response_s: self.exchange.response_s() }
     }
 
     /// Whether step `number` ends an interval.
@@ -56,12 +66,13 @@ impl FlowingGas {
         number.is_multiple_of(self.steps)
     }
 
-    /// Exchanges what is due with the gas after step `number`, of a length [s].
+    /// Exchanges with the gas what is due after step `number`, which is `step_s` [s] long.
     pub(crate) fn exchange(
         &mut self,
         domain: &Domain,
         grains: &Grains,
-        (number, step_s): (u64, f64),
+        number: u64,
+        step_s: f64,
     ) -> Result<(), DemError> {
         let view = GrainsView {
             centre: &grains.centre,

@@ -2,21 +2,17 @@
 //!
 //! [`UniformGas`]: the same everywhere, undisturbed. [`FlowingGas`]: its flow is computed by somebody else, and grains act on it too.
 
-#[cfg(feature = "field")]
 mod flowing;
 mod uniform;
 
-#[cfg(not(feature = "field"))]
-use crate::gas_crate::FlowingGas;
-#[cfg(feature = "field")]
-pub(crate) use flowing::FlowingGas;
+pub(crate) use flowing::{FlowLimits, FlowingGas};
 pub(crate) use uniform::UniformGas;
 
 use crate::error::DemError;
 use crate::motion::grains::Grains;
 use crate::setup::GasSetup;
-use crate::simulation::state::State;
 use amberfield_core::{Particles, Vector3};
+use amberfield_gas::ExchangeState;
 
 /// The gas of a scene.
 #[derive(Debug)]
@@ -26,20 +22,19 @@ pub(crate) enum GasStage {
 }
 
 impl GasStage {
-    /// Afresh, or from a state.
+    /// Builds the stage, afresh or from a checkpoint.
     pub(crate) fn new(
         setup: GasSetup,
         gravity: Vector3<f64>,
         particles: &Particles,
-        state: Option<&State>,
+        saved: Option<&ExchangeState>,
     ) -> Result<Self, DemError> {
         let GasSetup { gas, solver } = setup;
         let Some(flow) = gas.flow else {
             return Ok(Self::Uniform(UniformGas::new(gas, gravity, particles)));
         };
         let solver = solver.ok_or_else(|| DemError::Setup("a gas that flows needs a solver".to_owned()))?;
-        let saved = state.and_then(|state| state.gas.as_ref());
-        let gas = FlowingGas::new((gas, flow), &solver, gravity, particles, saved)?;
+        let gas = FlowingGas::new(gas, flow, &solver, gravity, particles, saved)?;
         Ok(Self::Flowing(Box::new(gas)))
     }
 

@@ -4,8 +4,23 @@
 //! order and hands the others over through slots that are read in a fixed order, so that sums, and with them
 //! all results, have the same bits for any number of threads.
 
+use amberfield_core::Vector3;
+
 /// Grains per chunk.
 pub(crate) const CHUNK: usize = 1024;
+
+/// Force and torque that one chunk hands over to a grain of another.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Push {
+    /// Force [N].
+    pub(crate) force: Vector3<f64>,
+    /// Torque [N·m].
+    pub(crate) torque: Vector3<f64>,
+}
+
+/// Push of no force and no torque.
+pub(crate) const NO_PUSH: Push =
+    Push { force: Vector3::new(0.0, 0.0, 0.0), torque: Vector3::new(0.0, 0.0, 0.0) };
 
 /// Number of chunks of `count` grains.
 pub(crate) fn chunk_count(count: usize) -> usize {

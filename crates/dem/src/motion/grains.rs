@@ -1,6 +1,7 @@
 //! The moving grains, sorted in space: structures of arrays.
 
-use amberfield_core::{Particles, Vector3};
+use amberfield_core::{Domain, Particles, Vector3};
+use serde::{Deserialize, Serialize};
 
 /// Moving grains in the order of the last sort; everything constant stays with the set-up's particles and is
 /// found through `original`.
@@ -26,6 +27,23 @@ pub(crate) struct Grains {
     pub(crate) level: Vec<u8>,
     /// Memory of the reordering.
     pub(crate) spare: Spare,
+}
+
+/// What the grains put in a checkpoint, in the order of the last sort.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+pub(crate) struct GrainsState {
+    /// Index in the set-up's order.
+    pub(crate) original: Vec<u32>,
+    /// Centre [m].
+    pub(crate) centre: Vec<Vector3<f64>>,
+    /// Velocity [m/s].
+    pub(crate) velocity: Vec<Vector3<f64>>,
+    /// Angular velocity [rad/s].
+    pub(crate) angular: Vec<Vector3<f64>>,
+    /// Force of the last evaluation without gravity [N].
+    pub(crate) force: Vec<Vector3<f64>>,
+    /// Torque of the last evaluation [N·m]; empty when nothing can turn a grain.
+    pub(crate) torque: Vec<Vector3<f64>>,
 }
 
 /// Arrays that reordering writes into, kept so that rebuilds do not allocate.
@@ -68,6 +86,47 @@ impl Grains {
     pub(crate) fn position(&self, index: usize) -> Vector3<f64> {
         let c = self.centre[index];
         Vector3::new(c[0], c[1], c[2])
+    }
+
+    /// State for a checkpoint.
+    pub(crate) fn state(&self) -> GrainsState {
+        GrainsState {
+            original: self.original.clone(),
+            centre: (0..self.len()).map(|i| self.position(i)).collect(),
+            velocity: self.velocity.clone(),
+            angular: self.angular.clone(),
+            force: self.force.clone(),
+            torque: self.torque.clone(),
+        }
+    }
+
+    /// Moves as a state says; the grains are in its order already.
+    pub(crate) fn restore(&mut self, state: GrainsState) {
+        self.place(&state.centre);
+        self.velocity = state.velocity;
+        self.angular = state.angular;
+        self.force = state.force;
+        self.torque = state.torque;
+    }
+
+    /// Puts the grains at other centres [m].
+    pub(crate) fn place(&mut self, centres: &[Vector3<f64>]) {
+        for (c, x) in self.centre.iter_mut().zip(centres) {
+            (c[0], c[1], c[2]) = (x.x, x.y, x.z);
+        }
+    }
+
+    /// Moves the grains that have passed a periodic face back into the domain.
+    pub(crate) fn wrap(&mut self, domain: &Domain) {
+        for c in &mut self.centre {
+            let wrapped = domain.wrap(Vector3::new(c[0], c[1], c[2]));
+            (c[0], c[1], c[2]) = (wrapped.x, wrapped.y, wrapped.z);
+        }
+    }
+
+    /// Whether a grain's centre is finite.
+    pub(crate) fn is_finite(&self, index: usize) -> bool {
+        self.centre[index].iter().all(|x| x.is_finite())
     }
 
     /// Reorders to `order[new] = old`; grains that are not named are dropped.

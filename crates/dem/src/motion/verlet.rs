@@ -5,8 +5,7 @@
 //! v += ½Δt (a_new − a_old), which is velocity Verlet to the last term. Angular velocity likewise; a sphere
 //! needs no orientation.
 
-use crate::contacts::neighbours::Neighbours;
-use crate::motion::chunks::{CHUNK, chunk_count, for_each_chunk, is_parallel};
+use crate::motion::chunks::{CHUNK, Push, chunk_count, for_each_chunk, is_parallel};
 use crate::motion::grains::Grains;
 use amberfield_core::Vector3;
 use rayon::prelude::*;
@@ -53,6 +52,11 @@ impl Bounds {
             };
             (a, side)
         })
+    }
+
+    /// Whether an axis has no end.
+    pub(crate) fn is_periodic(&self) -> bool {
+        self.min.contains(&f64::NEG_INFINITY)
     }
 
     #[inline(always)]
@@ -125,11 +129,13 @@ fn turn(parallel: bool, angular: &mut [Vector3<f64>], change: impl Fn(usize) -> 
     }
 }
 
-/// Second pass: takes in what other chunks do, then corrects the velocities. `force` and `torque` hold the new
-/// values and are swapped with the grains'.
-pub(crate) fn kick(
+/// Corrects the velocities, in the second pass, by the new forces.
+///
+/// `pushes` gives what other chunks do to the grains of chunk k: index in the chunk, and push. It is added to
+/// `force` [N] and `torque` [N·m], which hold the new values and are swapped with the grains'.
+pub(crate) fn kick<'a, P: Iterator<Item = (usize, &'a Push)>>(
     grains: &mut Grains,
-    neighbours: &Neighbours,
+    pushes: impl Fn(usize) -> P + Sync,
     step: f64,
     force: &mut Vec<Vector3<f64>>,
     torque: &mut Vec<Vector3<f64>>,
@@ -146,7 +152,7 @@ pub(crate) fn kick(
             &mut [Vector3<f64>],
             &mut [Vector3<f64>]
         )| {
-            for (local, push) in neighbours.pushes(k) {
+            for (local, push) in pushes(k) {
                 force[local] += push.force;
             }
             let first = k * CHUNK;
@@ -162,7 +168,7 @@ pub(crate) fn kick(
             &mut [Vector3<f64>],
             &mut [Vector3<f64>]
         )| {
-            for (local, push) in neighbours.pushes(k) {
+            for (local, push) in pushes(k) {
                 torque[local] += push.torque;
             }
             let first = k * CHUNK;

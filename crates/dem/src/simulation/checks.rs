@@ -1,9 +1,10 @@
-//! Checks of a set-up before anything is built from it.
+//! Checks of a set-up, and of a state that is to go on with it.
 
-use crate::contacts::cells::{INDEX_BITS, INDEX_MASK};
-use crate::contacts::neighbours::Neighbours;
+use super::state::State;
+use crate::contacts::Contacts;
+use crate::contacts::cells::INDEX_MASK;
+use crate::contacts::material_pairs::PairTable;
 use crate::error::DemError;
-use crate::motion::chunks::CHUNK;
 use crate::motion::grains::Grains;
 use crate::setup::Setup;
 use amberfield_core::{Axis, Material, Particles, Skin, Step};
@@ -148,32 +149,77 @@ pub(crate) fn check_periods(setup: &Setup, skin: f64) -> Result<(), DemError> {
     Ok(())
 }
 
-/// Overlaps of grains at the start.
+/// Overlaps of grains with each other at the start.
 pub(crate) fn check_overlaps(
     grains: &Grains,
-    neighbours: &Neighbours,
+    contacts: &Contacts,
     particles: &Particles,
     allow_overlap: bool,
 ) -> Result<(), DemError> {
-    for (k, list) in neighbours.lists.iter().enumerate() {
-        for local in 0..list.start.len() - 1 {
-            let i = k * CHUNK + local;
-            for &code in &list.partner[list.start[local] as usize..list.start[local + 1] as usize] {
-                let j = (code & INDEX_MASK) as usize;
-                let (a, b) = (&grains.centre[i], &grains.centre[j]);
-                let shift = neighbours.shifts[(code >> INDEX_BITS) as usize];
-                let distance = (0..3).map(|x| (b[x] + shift[x] - a[x]).powi(2)).sum::<f64>().sqrt();
-                let id = |k: usize| particles.id[grains.original[k] as usize];
-                let (id_i, id_j) = (id(i).min(id(j)), id(i).max(id(j)));
-                if distance == 0.0 {
-                    return Err(DemError::Coincident { id_i, id_j });
-                }
-                let (overlap_m, limit_m) = (a[3] + b[3] - distance, 0.5 * a[3].min(b[3]));
-                if overlap_m > limit_m && !allow_overlap {
-                    return Err(DemError::Overlap { id_i, id_j, overlap_m, limit_m });
-                }
-            }
+    let id = |i: usize| particles.id[grains.original[i] as usize];
+    for pair in contacts.neighbours.pairs() {
+        let distance = pair.distance(grains, &contacts.neighbours.shifts);
+        let (a, b) = (grains.centre[pair.i][3], grains.centre[pair.j][3]);
+        let (id_i, id_j) = (id(pair.i).min(id(pair.j)), id(pair.i).max(id(pair.j)));
+        if distance == 0.0 {
+            return Err(DemError::Coincident { id_i, id_j });
         }
+        let (overlap_m, limit_m) = (a + b - distance, 0.5 * a.min(b));
+        if overlap_m > limit_m && !allow_overlap {
+            return Err(DemError::Overlap { id_i, id_j, overlap_m, limit_m });
+        }
+    }
+    Ok(())
+}
+
+/// Overlaps of grains with walls at the start.
+pub(crate) fn check_wall_overlaps(
+    grains: &Grains,
+    contacts: &Contacts,
+    particles: &Particles,
+    allow_overlap: bool,
+) -> Result<(), DemError> {
+    let walls = contacts.walls.as_ref().filter(|_| !allow_overlap);
+    let Some(deep) = walls.and_then(|walls| walls.too_deep(grains)) else { return Ok(()) };
+    Err(DemError::WallOverlap {
+        id: particles.id[grains.original[deep.grain] as usize],
+        wall: deep.wall,
+        overlap_m: deep.overlap,
+        limit_m: deep.limit,
+    })
+}
+
+/// Whether a state belongs to a set-up.
+pub(crate) fn check_state(setup: &Setup, state: &State) -> Result<(), DemError> {
+    let misfit = |text: &str| Err(DemError::State(text.to_owned()));
+    let State { grains, contacts, field, charging, gas, .. } = state;
+    let count = grains.original.len();
+    let total = setup.particles.len();
+    let mut seen = vec![false; total];
+    for &original in &grains.original {
+        let slot = seen.get_mut(original as usize);
+        if slot.is_none_or(|seen| std::mem::replace(seen, true)) {
+            return Err(DemError::State(format!("grain {original} of {total} is unknown or named twice")));
+        }
+    }
+    let transfers = setup.field.as_ref().is_some_and(|field| field.transfer.is_some());
+    if charging.as_ref().map(|charging| charging.charge.len()) != transfers.then_some(total) {
+        return misfit("its charging does not match the scene's");
+    }
+    let lengths = [grains.centre.len(), grains.velocity.len(), grains.angular.len(), grains.force.len()];
+    if lengths.iter().any(|&n| n != count) || contacts.reference.len() != count {
+        return misfit("its arrays differ in length");
+    }
+    let rotation = PairTable::new(&setup.materials).features().rotation();
+    if grains.torque.len() != if rotation { count } else { 0 } {
+        return misfit("its torques do not match the materials' friction");
+    }
+    let flows = setup.gas.as_ref().is_some_and(|gas| gas.gas.flow.is_some());
+    if gas.is_some() != flows || gas.as_ref().is_some_and(|gas| !gas.fits(count)) {
+        return misfit("its gas does not match the scene's");
+    }
+    if field.as_ref().is_some_and(|f| !f.fits(count)) {
+        return misfit("its field forces differ in length");
     }
     Ok(())
 }

@@ -1,10 +1,7 @@
 //! Energies of the grains.
 
-use crate::contacts::cells::INDEX_MASK;
-use crate::contacts::material_pairs::{Features, PairConstants, PairTable};
-use crate::contacts::neighbours::Neighbours;
-use crate::contacts::walls::Walls;
-use crate::motion::chunks::CHUNK;
+use crate::contacts::Contacts;
+use crate::contacts::material_pairs::{Features, PairConstants};
 use crate::motion::grains::Grains;
 use amberfield_core::Vector3;
 use amberfield_laws::rolling_friction;
@@ -51,48 +48,34 @@ pub(crate) fn gravity(grains: &Grains, gravity: Vector3<f64>) -> f64 {
 }
 
 /// Elastic energy of all touching contacts.
-pub(crate) fn contact(
-    grains: &Grains,
-    neighbours: &Neighbours,
-    walls: Option<&Walls>,
-    table: &PairTable,
-    features: Features,
-) -> f64 {
+pub(crate) fn contact(grains: &Grains, contacts: &Contacts) -> f64 {
+    let Contacts { table, features, neighbours, walls } = contacts;
     let mut sum = 0.0;
-    for (k, list) in neighbours.lists.iter().enumerate() {
-        for local in 0..list.start.len() - 1 {
-            for entry in list.start[local] as usize..list.start[local + 1] as usize {
-                if !list.touching[entry] {
-                    continue;
-                }
-                let (i, code) = (k * CHUNK + local, list.partner[entry]);
-                let j = (code & INDEX_MASK) as usize;
-                let (a, b) = (&grains.centre[i], &grains.centre[j]);
-                let shift = neighbours.shifts[(code >> crate::contacts::cells::INDEX_BITS) as usize];
-                let distance = (0..3).map(|x| (b[x] + shift[x] - a[x]).powi(2)).sum::<f64>().sqrt();
-                let pair = table.get(grains.material[i], grains.material[j]);
-                let springs = Springs {
-                    pair,
-                    features,
-                    radius: a[3] * b[3] / (a[3] + b[3]),
-                    overlap: (a[3] + b[3] - distance).max(0.0),
-                };
-                let spring = list.spring.get(entry).copied().unwrap_or_default();
-                let rolling = list.rolling.get(entry).copied().unwrap_or_default();
-                sum += springs.energy(&spring, &rolling);
-            }
-        }
+    for touching in neighbours.touching() {
+        let list = &neighbours.lists[touching.chunk];
+        let (a, b) = (&grains.centre[touching.i], &grains.centre[touching.j]);
+        let distance = touching.distance(grains, &neighbours.shifts);
+        let springs = Springs {
+            pair: table.get(grains.material[touching.i], grains.material[touching.j]),
+            features: *features,
+            radius: a[3] * b[3] / (a[3] + b[3]),
+            overlap: (a[3] + b[3] - distance).max(0.0),
+        };
+        let spring = list.spring.get(touching.entry).copied().unwrap_or_default();
+        let rolling = list.rolling.get(touching.entry).copied().unwrap_or_default();
+        sum += springs.energy(&spring, &rolling);
     }
     if let Some(walls) = walls {
         walls.each_contact(|i, material, overlap, spring, rolling| {
             let pair = table.get(grains.material[i], material);
-            let springs = Springs { pair, features, radius: grains.centre[i][3], overlap };
+            let springs = Springs { pair, features: *features, radius: grains.centre[i][3], overlap };
             sum += springs.energy(spring, rolling);
         });
     }
     sum
 }
 
+/// Springs of a touching contact, as the contact law has them.
 struct Springs<'a> {
     pair: &'a PairConstants<f64>,
     features: Features,

@@ -2,7 +2,7 @@
 
 use crate::contacts::material_pairs::PairTable;
 use crate::error::DemError;
-use crate::gas_stage::UniformGas;
+use crate::gas_stage::{FlowLimits, UniformGas};
 use crate::motion::grains::Grains;
 use amberfield_core::{Domain, Material, Particles};
 use amberfield_laws::{hertz_mindlin, time_step_limits};
@@ -36,21 +36,23 @@ pub(crate) struct Limits {
     hertz: f64,
     /// Gas that slows the grains and does not flow.
     gas: Option<UniformGas>,
-    /// Of a gas that flows: steps between exchanges, shortest time in which a grain's slip decays [s].
-    flow: Option<(u64, f64)>,
+    /// Limits of a gas that flows.
+    flow: Option<FlowLimits>,
     /// Electric limits; `None` without charges.
     electric: Option<ElectricLimits>,
+    /// Whether a run has been told that its step breaks a guard.
+    warned: bool,
 }
 
-/// Electric limits.
+/// Electric limits of the time step.
 #[derive(Clone, Copy, Debug)]
-pub(crate) struct ElectricLimits {
+struct ElectricLimits {
     /// Pair of touching grains [s].
-    pub(crate) pair: f64,
+    pair: f64,
     /// Grain that touches a conducting or insulating face of the domain: images of either sign are as stiff [s].
-    pub(crate) wall_image: f64,
+    wall_image: f64,
     /// Interval between field evaluations at which the cloud is unstable, over the interval's steps [s].
-    pub(crate) plasma: f64,
+    plasma: f64,
 }
 
 impl Limits {
@@ -70,7 +72,7 @@ impl Limits {
             let mass = particles.mass(i);
             hertz = hertz.min(hertz_mindlin::contact_time(young, 0.5 * radius, 0.5 * mass, 1.0));
         }
-        Self { rayleigh, hertz, gas, flow: None, electric: None }
+        Self { rayleigh, hertz, gas, flow: None, electric: None, warned: false }
     }
 
     /// Takes the plasma limit of a new evaluation of the field.
@@ -81,12 +83,33 @@ impl Limits {
     }
 
     /// Takes the limits of a gas that flows.
-    pub(crate) fn set_flow(&mut self, flow: (u64, f64)) {
+    pub(crate) fn set_flow(&mut self, flow: FlowLimits) {
         self.flow = Some(flow);
     }
 
-    pub(crate) fn set_electric(&mut self, electric: ElectricLimits) {
-        self.electric = Some(electric);
+    /// Takes the limits of charged grains, with the plasma limit of the last evaluation of the field [s].
+    pub(crate) fn set_electric(&mut self, stiffness: Stiffness, plasma: f64) {
+        let Stiffness { pair, wall_image } = stiffness;
+        self.electric = Some(ElectricLimits { pair, wall_image, plasma });
+    }
+
+    /// Fails where a step breaks a guard; where that is allowed, warns of it once.
+    pub(crate) fn watch(
+        &mut self,
+        step: f64,
+        speed: f64,
+        time_s: f64,
+        allow_unstable: bool,
+    ) -> Result<(), DemError> {
+        let Some(broken) = self.broken(step, speed, time_s) else { return Ok(()) };
+        if !allow_unstable {
+            return Err(broken);
+        }
+        if !self.warned {
+            tracing::warn!("{broken}");
+            self.warned = true;
+        }
+        Ok(())
     }
 
     /// All guards for a step and the grains' largest speed [m/s] (two of them head-on).
@@ -98,7 +121,7 @@ impl Limits {
         let gas = self.gas.map(|gas| ("gas response", gas.limit(speed)));
         let flow = self
             .flow
-            .map(|(steps, response)| [("gas response", response), (GAS_INTERVAL, response / steps as f64)]);
+            .map(|f| [("gas response", f.response_s), (GAS_INTERVAL, f.response_s / f.steps as f64)]);
         [("rayleigh", self.rayleigh), ("hertz", hertz)]
             .into_iter()
             .chain(gas)
@@ -118,7 +141,9 @@ impl Limits {
         let tightest = self.guards(step, speed).min_by(|a, b| a.limit_s.total_cmp(&b.limit_s))?;
         // `!(a <= b)`: a limit that is not a number is broken too.
         let holds = step <= tightest.limit_s;
-        if let (false, GAS_INTERVAL, Some((steps, response_s))) = (holds, tightest.name, self.flow) {
+        if let (false, GAS_INTERVAL, Some(FlowLimits { steps, response_s })) =
+            (holds, tightest.name, self.flow)
+        {
             return Some(DemError::GasInterval { interval_s: steps as f64 * step, response_s, time_s });
         }
         (!holds).then_some(DemError::Unstable {
@@ -130,13 +155,22 @@ impl Limits {
     }
 }
 
-/// Lower bounds of the limits of pair and wall image [s]: the lightest, smallest and most charged grain in one.
+/// Stiffness limits of charged grains at contact [s].
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Stiffness {
+    /// Pair of touching grains [s].
+    pub(crate) pair: f64,
+    /// Grain that touches a face of the domain which mirrors its charge [s].
+    pub(crate) wall_image: f64,
+}
+
+/// Lower bounds of the stiffness limits: the lightest, smallest and most charged grain in one.
 pub(crate) fn electric_stiffness_bound(
     grains: &Grains,
     particles: &Particles,
     member: &[bool],
     permittivity: f64,
-) -> (f64, f64) {
+) -> Stiffness {
     let (mut charge, mut inverse_mass, mut radius) = (0.0_f64, 0.0_f64, f64::INFINITY);
     for (i, &original) in grains.original.iter().enumerate() {
         if member[original as usize] {
@@ -148,10 +182,13 @@ pub(crate) fn electric_stiffness_bound(
     let mass = 1.0 / inverse_mass;
     let pair = time_step_limits::pair_stiffness(charge, charge, permittivity, 2.0 * radius);
     let wall = time_step_limits::wall_image_stiffness(charge, permittivity, radius);
-    (time_step_limits::stiffness_limit(0.5 * mass, pair), time_step_limits::stiffness_limit(mass, wall))
+    Stiffness {
+        pair: time_step_limits::stiffness_limit(0.5 * mass, pair),
+        wall_image: time_step_limits::stiffness_limit(mass, wall),
+    }
 }
 
-/// Limits of pair and wall image. Pairs: every member with its like, and the listed pairs, all at contact.
+/// Stiffness limits of the grains as they are. Pairs: every member with its like, and the listed pairs, all at contact.
 pub(crate) fn electric_stiffness(
     domain: &Domain,
     grains: &Grains,
@@ -159,7 +196,7 @@ pub(crate) fn electric_stiffness(
     member: &[bool],
     permittivity: f64,
     pairs: impl Iterator<Item = (usize, usize)>,
-) -> (f64, f64) {
+) -> Stiffness {
     let mirror = domain.faces().iter().flatten().any(|face| face.is_conductor() || face.is_insulating());
     let charge = |i: usize| {
         let original = grains.original[i] as usize;
@@ -182,5 +219,5 @@ pub(crate) fn electric_stiffness(
     for (i, j) in pairs {
         pair = pair.min(limit(i, j));
     }
-    (pair, wall)
+    Stiffness { pair, wall_image: wall }
 }

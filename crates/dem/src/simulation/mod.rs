@@ -1,8 +1,9 @@
 //! One run: the stages of a scene and the order in which they act.
 
-mod charge;
 pub(crate) mod checks;
+mod electric;
 pub(crate) mod energy;
+mod exits;
 pub(crate) mod guards;
 mod observe;
 mod plan;
@@ -13,62 +14,79 @@ pub(crate) mod timing;
 pub use observe::Deepest;
 
 use crate::charging::Charging;
-use crate::contacts::material_pairs::{Features, PairTable};
-use crate::contacts::neighbours::Neighbours;
-use crate::contacts::pairs::pair_forces;
-use crate::contacts::walls::Walls;
+use crate::contacts::Contacts;
 use crate::error::DemError;
 use crate::field_stage::{Extras, FieldStage};
 use crate::gas_stage::GasStage;
+use crate::motion::chunks::chunk_count;
 use crate::motion::grains::Grains;
 use crate::motion::verlet::{Bounds, ChunkMotion, drift, kick};
-use crate::simulation::guards::{ElectricLimits, Limits, electric_stiffness, electric_stiffness_bound};
-use crate::simulation::state::State;
-use crate::simulation::timing::{Stage, Stopwatch};
-use amberfield_core::{Domain, OnExit, Particles, Plan, TimeSettings, Vector3};
-use charge::Trade;
+use amberfield_core::{Domain, Particles, Plan, TimeSettings, Vector3};
+use guards::Limits;
+use state::{Progress, State};
+use timing::{Stage, Stopwatch};
 
 /// Margin of the displacement test against round-off.
 const HALF_SKIN: f64 = 0.499_999;
 
-/// A run. After an error of [`Self::step`] the grains are between two steps: do not step on.
+/// A run: the stages of a scene.
+///
+/// A step ([`Self::step`]) runs them in this order; the equations are in `docs/equations.md`, the sections are
+/// named here:
+///
+/// 1. *Begin*: count the step; keep the state where another process may be lost in it.
+/// 2. *Drift*: first half of velocity Verlet ("Motion").
+/// 3. *Exits*: grains beyond an open face end the run or are removed.
+/// 4. *Lists*: wrap periodic axes, sort grains in space, list neighbours anew, where a grain may have used
+///    up half the skin; look at the guards ("Time step").
+/// 5. *Grains*: contact forces of grains on each other, F_n and F_t ("Motion").
+/// 6. *Walls*: contact forces of walls, by the same law.
+/// 7. *Gas*: drag, buoyancy and lift, after an exchange with a gas that flows where one is due ("Gas").
+/// 8. *Charging*: contact areas A are followed; what they grew by moves charge, dT/dA ("Charge transfer").
+/// 9. *Field*: E is evaluated where it is due ("Electric field"), else extrapolated; qE is added.
+/// 10. *Guards*: are looked at again where gas or field are new ("Time step").
+/// 11. *Kick*: second half of velocity Verlet ("Motion").
+///
+/// After an error of [`Self::step`] the grains are between two steps: do not step on.
 #[derive(Debug)]
 pub struct Simulation {
+    /// Box, with its periodic axes.
     domain: Domain,
+    /// Box that grains may not leave: infinite along periodic axes.
+    bounds: Bounds,
+    /// Settings of the run.
     time: TimeSettings,
-    /// Grains as set up: ids, sizes, charges; motion is in `grains`.
+    /// Particles as set up: ids, sizes, charges; their motion is in `grains`.
     particles: Particles,
     plan: Plan,
-    table: PairTable,
-    features: Features,
-    periodic: bool,
-    bounds: Bounds,
-    limits: Limits,
-    step_s: f64,
-    skin: f64,
-    step_index: u64,
+    progress: Progress,
     grains: Grains,
-    neighbours: Neighbours,
-    walls: Option<Walls>,
+    contacts: Contacts,
     gas: Option<GasStage>,
-    field: Option<FieldStage>,
     charging: Option<Charging>,
-    extras: Extras,
-    /// Bound on any grain's displacement since the lists were built [m].
-    travel: f64,
-    /// Largest speed of the last drift [m/s].
-    speed: f64,
-    /// Forces and torques in the making.
-    new_force: Vec<Vector3<f64>>,
-    new_torque: Vec<Vector3<f64>>,
-    motion: Vec<ChunkMotion>,
-    /// Scratch of the sort.
-    keys: Vec<(u64, u32, u32)>,
-    order: Vec<u32>,
-    warned_unstable: bool,
+    field: Option<FieldStage>,
+    limits: Limits,
+    scratch: Scratch,
     /// State before a step in which another process may be lost.
     rescued: Option<State>,
     watch: Stopwatch,
+}
+
+/// Memory in which a step works; nothing in it is state.
+#[derive(Debug, Default)]
+struct Scratch {
+    /// Forces in the making [N].
+    force: Vec<Vector3<f64>>,
+    /// Torques in the making [N·m]; empty where nothing can turn a grain.
+    torque: Vec<Vector3<f64>>,
+    /// Findings of the drift, by chunk.
+    motion: Vec<ChunkMotion>,
+    /// Keys of the sort.
+    keys: Vec<(u64, u32, u32)>,
+    /// Order of the sort.
+    order: Vec<u32>,
+    /// Charges of walls and contacts that take part in an evaluation of the field.
+    extras: Extras,
 }
 
 impl Simulation {
@@ -78,129 +96,96 @@ impl Simulation {
     /// A grain that leaves or whose position is not finite, a step that a guard no longer allows, a field that
     /// fails.
     pub fn step(&mut self) -> Result<(), DemError> {
-        self.watch.start();
-        let may_be_lost = self.field.as_ref().is_some_and(|field| field.may_be_lost(self.step_s, self.speed));
-        // Only its solver knows the state of a gas that flows.
-        let flows = self.gas.as_ref().is_some_and(|gas| gas.flowing().is_some());
-        self.rescued = (may_be_lost && !flows).then(|| self.state());
-        self.step_index += 1;
-        let motion =
-            drift(&mut self.grains, self.time.gravity_m_s2, self.step_s, &self.bounds, &mut self.motion);
-        self.speed = motion.speed;
-        let left = motion.outside && self.handle_exits()?;
-        self.watch.lap(Stage::Integrate);
-        self.travel += self.step_s * motion.speed;
-        if left || self.must_rebuild() {
-            self.rebuild();
-            self.watch_guards()?;
-        }
-        self.watch.lap(Stage::Neighbours);
-        self.forces(self.step_s)?;
-        kick(&mut self.grains, &self.neighbours, self.step_s, &mut self.new_force, &mut self.new_torque);
-        self.watch.lap(Stage::Integrate);
+        let step_s = self.progress.step_s;
+        self.begin_step();
+        let outside = self.drift();
+        let removed = outside && self.handle_exits()?;
+        self.renew_lists(removed)?;
+        self.push_grains(step_s);
+        self.push_off_walls(step_s);
+        let exchanged = self.exchange_with_gas()?;
+        self.add_gas_forces(step_s);
+        self.charge_contacts();
+        let evaluated = self.evaluate_field_where_due()?;
+        self.add_electric_forces();
+        self.watch_guards_where(exchanged || evaluated)?;
+        self.kick(step_s);
         Ok(())
     }
 
-    /// The state before the step that failed, where a field solver was asked in it: nothing is lost with the solver.
+    /// The state before the step that failed, where a field solver was asked in it: nothing is lost with the
+    /// solver.
     pub fn rescued(&mut self) -> Option<State> {
         self.rescued.take()
     }
 
-    /// Contact, wall, gas and field forces at the present positions, into `new_force` and `new_torque`; pushes
-    /// across chunks wait in the outboxes.
-    fn forces(&mut self, step: f64) -> Result<(), DemError> {
-        let follow = self.charging.as_ref().map(|charging| charging.follow(self.step_index));
-        pair_forces(
-            &self.grains,
-            &mut self.neighbours,
-            &self.table,
-            step,
-            follow,
-            &mut self.new_force,
-            &mut self.new_torque,
-        );
-        self.watch.lap(Stage::Contacts);
-        if let Some(walls) = &mut self.walls {
-            let (force, torque) = (&mut self.new_force, &mut self.new_torque);
-            walls.forces(&self.grains, &self.table, self.features, step, force, torque);
-            self.watch.lap(Stage::Walls);
-        }
-        let exchanged = self.gas_forces(step)?;
-        self.charge_contacts(step);
-        // The forces at the start come with a step of zero: the field was evaluated just before.
-        let speed = self.speed;
-        let due = step > 0.0 && self.field.as_mut().is_some_and(|field| field.is_due(step, speed));
-        let due = due || (step > 0.0 && self.charges_have_changed());
-        if due {
-            self.evaluate_field()?;
-        }
-        if let Some(field) = &mut self.field {
-            field.add_forces(&self.grains, self.skin, self.step_s, &mut self.new_force);
-            if step > 0.0 {
-                field.book_step();
-            }
-            self.watch.lap(Stage::Field);
-        }
-        // Charges and pairs are looked at when lists are rebuilt; density and speeds are new here.
-        if due || exchanged { self.watch_limits() } else { Ok(()) }
+    /// Counts the step, and keeps the state before it where a field solver may be lost in it.
+    fn begin_step(&mut self) {
+        self.watch.start();
+        let Progress { step_s, speed, .. } = self.progress;
+        let may_be_lost = self.field.as_ref().is_some_and(|field| field.may_be_lost(step_s, speed));
+        // Only its solver knows the state of a gas that flows.
+        let flows = self.gas.as_ref().is_some_and(|gas| gas.flowing().is_some());
+        self.rescued = (may_be_lost && !flows).then(|| self.state());
+        self.progress.step_index += 1;
     }
 
-    /// Gas forces into `new_force`, after an exchange with a gas that flows where one is due; whether there was one.
-    fn gas_forces(&mut self, step: f64) -> Result<bool, DemError> {
-        let Some(gas) = &mut self.gas else { return Ok(false) };
-        let number = self.step_index;
-        let flowing = gas.flowing_mut().filter(|flowing| flowing.is_due(number));
-        let exchanged = flowing.is_some();
-        if let Some(flowing) = flowing {
-            flowing.exchange(&self.domain, &self.grains, (number, self.step_s))?;
-            self.limits.set_flow(flowing.limits());
+    /// Moves the grains; whether one of them is outside the box now.
+    fn drift(&mut self) -> bool {
+        let gravity = self.time.gravity_m_s2;
+        let step_s = self.progress.step_s;
+        let motion = drift(&mut self.grains, gravity, step_s, &self.bounds, &mut self.scratch.motion);
+        self.progress.speed = motion.speed;
+        motion.outside
+    }
+
+    /// Lists anew who is near whom where that may have changed: grains have been removed, or one may have
+    /// moved by half the skin.
+    fn renew_lists(&mut self, removed: bool) -> Result<(), DemError> {
+        self.watch.lap(Stage::Integrate);
+        self.progress.travel += self.progress.step_s * self.progress.speed;
+        if removed || self.has_used_up_skin() {
+            self.rebuild();
+            self.watch_guards()?;
         }
-        gas.add_forces(&self.grains, step, &mut self.new_force);
-        self.watch.lap(Stage::Gas);
-        Ok(exchanged)
+        self.watch.lap(Stage::Neighbours);
+        Ok(())
     }
 
     /// Whether a grain may have moved by half the skin since the lists were built. The travel is only a
     /// bound; when it is used up, the displacements themselves decide.
-    fn must_rebuild(&mut self) -> bool {
-        let limit = HALF_SKIN * self.skin;
-        if self.travel <= limit {
+    fn has_used_up_skin(&mut self) -> bool {
+        let limit = HALF_SKIN * self.progress.skin_m;
+        if self.progress.travel <= limit {
             return false;
         }
-        let displacement2 = self
-            .neighbours
-            .reference
+        let reference = &self.contacts.neighbours.reference;
+        let displacement2 = reference
             .iter()
             .enumerate()
             .map(|(i, x)| (self.grains.position(i) - x).norm_squared())
             .fold(0.0, f64::max);
-        self.travel = displacement2.sqrt();
-        self.travel > limit
+        self.progress.travel = displacement2.sqrt();
+        self.progress.travel > limit
     }
 
     /// Wraps, sorts and lists the grains anew; histories move along.
     fn rebuild(&mut self) {
-        self.trade(Trade::Pairs);
-        if self.periodic {
-            for c in &mut self.grains.centre {
-                let wrapped = self.domain.wrap(Vector3::new(c[0], c[1], c[2]));
-                (c[0], c[1], c[2]) = (wrapped.x, wrapped.y, wrapped.z);
-            }
+        self.trade_between_grains();
+        if self.bounds.is_periodic() {
+            self.grains.wrap(&self.domain);
         }
-        let wall_histories = self.walls.as_ref().map(|walls| walls.histories(&self.grains));
-        self.grains.spatial_order(&mut self.keys, &mut self.order);
-        let order = std::mem::take(&mut self.order);
-        self.reorder(&order);
-        self.order = order;
-        self.neighbours.build(&self.domain, &self.grains, &self.order);
-        if let Some(walls) = &mut self.walls {
-            walls.build(&self.domain, &self.grains, self.skin, &wall_histories.unwrap_or_default());
-        }
-        self.travel = 0.0;
+        let mut order = std::mem::take(&mut self.scratch.order);
+        self.grains.spatial_order(&mut self.scratch.keys, &mut order);
+        self.list(&order);
+        self.scratch.order = order;
+        self.progress.travel = 0.0;
     }
 
-    /// Takes in a new order of the grains, here and in the stages that keep something by grain.
-    fn reorder(&mut self, order: &[u32]) {
+    /// Reorders the grains to `order[new] = old` and lists them anew; those that are not named are dropped.
+    fn list(&mut self, order: &[u32]) {
+        // Taken before the grains are reordered: they find theirs again by the set-up's order.
+        let wall_histories = self.contacts.wall_histories(&self.grains);
         self.grains.reorder(order);
         if let Some(field) = &mut self.field {
             field.reorder(order);
@@ -208,128 +193,60 @@ impl Simulation {
         if let Some(gas) = self.gas.as_mut().and_then(GasStage::flowing_mut) {
             gas.reorder(order);
         }
+        let skin_m = self.progress.skin_m;
+        self.contacts.list(&self.domain, &self.grains, order, skin_m, &wall_histories);
     }
 
-    /// Handles grains outside; whether any was removed.
-    fn handle_exits(&mut self) -> Result<bool, DemError> {
-        let outside: Vec<usize> = (0..self.grains.len())
-            .filter(|&i| self.bounds.beyond(&self.grains.centre[i]).is_some())
-            .collect();
-        let id = |i: usize| self.particles.id[self.grains.original[i] as usize];
-        let time_s = self.time_s();
-        if let Some(&i) = outside.iter().filter(|&&i| !self.is_finite(i)).min_by_key(|&&i| id(i)) {
-            return Err(DemError::NotFinite { id: id(i), time_s });
-        }
-        if self.time.on_exit == OnExit::Stop
-            && let Some(&i) = outside.iter().min_by_key(|&&i| id(i))
-        {
-            let (axis, side) = self.bounds.beyond(&self.grains.centre[i]).expect("listed as outside");
-            let face = format!("{}_{}", ["x", "y", "z"][axis], ["min", "max"][side.unwrap_or(0)]);
-            return Err(DemError::Left { id: id(i), position_m: self.grains.position(i), face, time_s });
-        }
-        for &i in &outside {
-            tracing::warn!(id = id(i), time_s, "grain left the domain and was removed");
-        }
-        self.remove(&outside);
-        Ok(!outside.is_empty())
+    /// Computes the contact forces of grains on each other, for springs that advance by `step` [s]. They
+    /// overwrite those of the last step; the other forces are added to them.
+    fn push_grains(&mut self, step: f64) {
+        let step_index = self.progress.step_index;
+        let follow = self.charging.as_ref().map(|charging| charging.follow(step_index));
+        let Scratch { force, torque, .. } = &mut self.scratch;
+        self.contacts.push_grains(&self.grains, step, follow, force, torque);
+        self.watch.lap(Stage::Contacts);
     }
 
-    fn is_finite(&self, i: usize) -> bool {
-        self.grains.centre[i].iter().all(|x| x.is_finite())
+    /// Adds the contact forces of walls, for springs that advance by `step` [s].
+    fn push_off_walls(&mut self, step: f64) {
+        let Contacts { table, features, walls, .. } = &mut self.contacts;
+        let Some(walls) = walls else { return };
+        let Scratch { force, torque, .. } = &mut self.scratch;
+        walls.forces(&self.grains, table, *features, step, force, torque);
+        self.watch.lap(Stage::Walls);
     }
 
-    /// Removes grains (ascending sorted indices). The lists still have the old numbers: the rebuild that must
-    /// follow needs the order from them.
-    fn remove(&mut self, gone: &[usize]) {
-        if gone.is_empty() {
-            return;
-        }
-        self.trade(Trade::Pairs);
-        let wall_histories = self.walls.as_ref().map(|walls| walls.histories(&self.grains));
-        let mut keep: Vec<u32> = (0..self.grains.len() as u32).collect();
-        keep.retain(|&i| gone.binary_search(&(i as usize)).is_err());
-        self.reorder(&keep);
-        self.resize_scratch();
-        self.neighbours.build(&self.domain, &self.grains, &keep);
-        if let Some(walls) = &mut self.walls {
-            walls.build(&self.domain, &self.grains, self.skin, &wall_histories.unwrap_or_default());
-        }
+    /// Exchanges momentum with a gas that flows, where that is due; whether it was.
+    fn exchange_with_gas(&mut self) -> Result<bool, DemError> {
+        let Progress { step_index, step_s, .. } = self.progress;
+        let flowing = self.gas.as_mut().and_then(GasStage::flowing_mut);
+        let Some(flowing) = flowing.filter(|flowing| flowing.is_due(step_index)) else { return Ok(false) };
+        flowing.exchange(&self.domain, &self.grains, step_index, step_s)?;
+        self.limits.set_flow(flowing.limits());
+        Ok(true)
     }
 
-    /// Evaluates the field now.
-    fn evaluate_field(&mut self) -> Result<(), DemError> {
-        let time_s = self.time_s();
-        self.trade(Trade::Pairs);
-        self.ask_at_contacts();
-        if let Some(field) = &mut self.field {
-            if let Some(solver) = field.source.field.far_solver_mut() {
-                solver.at_time(time_s);
-            }
-            field.evaluate(&self.domain, &self.grains, &self.particles, &self.extras, self.step_s)?;
-            self.limits.set_plasma(field.plasma_limit);
-            if let Some(charging) = &mut self.charging {
-                let charge = &self.particles.charge;
-                charging.take(field.beside(), &mut self.neighbours, self.walls.as_mut(), charge);
-            }
-        }
-        Ok(())
+    /// Adds the forces of a gas, whose impulse is booked for `step` [s].
+    fn add_gas_forces(&mut self, step: f64) {
+        let Some(gas) = &mut self.gas else { return };
+        gas.add_forces(&self.grains, step, &mut self.scratch.force);
+        self.watch.lap(Stage::Gas);
     }
 
+    /// Finishes the velocities with the new forces, for a step of `step` [s].
+    fn kick(&mut self, step: f64) {
+        let neighbours = &self.contacts.neighbours;
+        let Scratch { force, torque, .. } = &mut self.scratch;
+        kick(&mut self.grains, |k| neighbours.pushes(k), step, force, torque);
+        self.watch.lap(Stage::Integrate);
+    }
+
+    /// Fits the scratch to the number of grains.
     fn resize_scratch(&mut self) {
         let count = self.grains.len();
-        self.new_force.resize(count, Vector3::zeros());
-        self.new_torque.resize(if self.grains.torque.is_empty() { 0 } else { count }, Vector3::zeros());
-        self.motion.resize(crate::motion::chunks::chunk_count(count), ChunkMotion::default());
-    }
-
-    /// Electric limits of the present pairs; `None` without a field.
-    fn electric_limits(&self) -> Option<ElectricLimits> {
-        let field = self.field.as_ref()?;
-        let (pair, wall_image) = electric_stiffness(
-            &self.domain,
-            &self.grains,
-            &self.particles,
-            &field.member,
-            field.permittivity(),
-            self.neighbours.pairs().map(|pair| (pair.i, pair.j)),
-        );
-        Some(ElectricLimits { pair, wall_image, plasma: field.plasma_limit })
-    }
-
-    /// Checks the guards anew at the present speed. The pairs are looked at only where a bound for any of
-    /// them does not do.
-    fn watch_guards(&mut self) -> Result<(), DemError> {
-        if let Some(field) = &self.field {
-            let (grains, particles) = (&self.grains, &self.particles);
-            let (pair, wall_image) =
-                electric_stiffness_bound(grains, particles, &field.member, field.permittivity());
-            self.limits.set_electric(ElectricLimits { pair, wall_image, plasma: field.plasma_limit });
-            if self.limits.broken(self.step_s, self.speed, self.time_s()).is_some() {
-                self.update_electric_limits();
-            }
-        }
-        self.watch_limits()
-    }
-
-    /// Computes the electric guards of the present pairs.
-    fn update_electric_limits(&mut self) {
-        if let Some(limits) = self.electric_limits() {
-            self.limits.set_electric(limits);
-        }
-    }
-
-    /// Checks the guards as they are at the present speed.
-    fn watch_limits(&mut self) -> Result<(), DemError> {
-        let Some(broken) = self.limits.broken(self.step_s, self.speed, self.time_s()) else {
-            return Ok(());
-        };
-        if !self.time.allow_unstable {
-            return Err(broken);
-        }
-        if !self.warned_unstable {
-            tracing::warn!("{broken}");
-            self.warned_unstable = true;
-        }
-        Ok(())
+        let turns = !self.grains.torque.is_empty();
+        self.scratch.force.resize(count, Vector3::zeros());
+        self.scratch.torque.resize(if turns { count } else { 0 }, Vector3::zeros());
+        self.scratch.motion.resize(chunk_count(count), ChunkMotion::default());
     }
 }

@@ -1,13 +1,13 @@
 //! What a run tells about itself.
 
 use super::Simulation;
+use super::energy::{self, ElectricEnergy, Energies};
+use super::guards::Guard;
+use super::timing::STAGE_NAMES;
 use crate::error::DemError;
-use crate::field_crate::ElectricField;
 use crate::field_stage::{FieldStage, Intervals, Limited};
-use crate::simulation::energy::{self, ElectricEnergy, Energies};
-use crate::simulation::guards::Guard;
-use crate::simulation::timing::STAGE_NAMES;
 use amberfield_core::{Particles, Plan, Vector3};
+use amberfield_field::ElectricField;
 
 /// A contact with a large overlap.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -24,7 +24,6 @@ pub struct Deepest {
 
 impl Simulation {
     /// What grains and a gas that flows give each other; `None` without one.
-    #[cfg(feature = "field")]
     #[must_use]
     pub fn gas_exchange(&self) -> Option<&amberfield_gas::Exchange> {
         self.gas.as_ref()?.flowing().map(crate::gas_stage::FlowingGas::known)
@@ -39,25 +38,25 @@ impl Simulation {
     /// Simulated time [s].
     #[must_use]
     pub fn time_s(&self) -> f64 {
-        self.step_index as f64 * self.step_s
+        self.progress.time_s()
     }
 
     /// Time step [s].
     #[must_use]
     pub fn step_s(&self) -> f64 {
-        self.step_s
+        self.progress.step_s
     }
 
     /// Neighbour-list skin [m].
     #[must_use]
     pub fn skin_m(&self) -> f64 {
-        self.skin
+        self.progress.skin_m
     }
 
     /// Steps done.
     #[must_use]
     pub fn step_index(&self) -> u64 {
-        self.step_index
+        self.progress.step_index
     }
 
     /// Number of grains that are still there.
@@ -96,7 +95,7 @@ impl Simulation {
         let field = self.field.as_ref()?;
         let mut sorted: Vec<usize> = (0..self.grains.len()).collect();
         sorted.sort_unstable_by_key(|&i| self.grains.original[i]);
-        let force = field.forces(&self.grains, self.skin, self.step_s);
+        let force = field.forces(&self.grains, self.progress.skin_m, self.progress.step_s);
         Some(sorted.into_iter().map(|i| force[i]).collect())
     }
 
@@ -109,22 +108,16 @@ impl Simulation {
             (None, _) | (_, ElectricEnergy::LeftOut) => None,
             (Some(field), ElectricEnergy::Forecast) => Some(field.forecast_energy()),
             (Some(field), ElectricEnergy::Evaluated) => {
-                self.extras.clear();
+                self.scratch.extras.clear();
                 if let Some(charging) = &self.charging {
-                    charging.add_facets(&mut self.extras);
+                    charging.add_facets(&mut self.scratch.extras);
                 }
-                Some(field.fresh_energy(&self.domain, &self.grains, &self.particles, &self.extras)?)
+                Some(field.fresh_energy(&self.domain, &self.grains, &self.particles, &self.scratch.extras)?)
             }
         };
         Ok(Energies {
             kinetic: energy::kinetic(&self.grains),
-            contact: energy::contact(
-                &self.grains,
-                &self.neighbours,
-                self.walls.as_ref(),
-                &self.table,
-                self.features,
-            ),
+            contact: energy::contact(&self.grains, &self.contacts),
             gravity: energy::gravity(&self.grains, self.time.gravity_m_s2),
             electric,
         })
@@ -141,13 +134,13 @@ impl Simulation {
                 deepest = Some(found);
             }
         };
-        for pair in self.neighbours.touching() {
+        for pair in self.contacts.neighbours.touching() {
             let (a, b) = (grains.centre[pair.i][3], grains.centre[pair.j][3]);
-            let overlap_m = a + b - pair.offset(grains, &self.neighbours.shifts).norm();
+            let overlap_m = a + b - pair.offset(grains, &self.contacts.neighbours.shifts).norm();
             let (id, other) = (id(pair.i), Some(id(pair.j)));
             look(Deepest { id, other, overlap_m, share: overlap_m / a.min(b) });
         }
-        if let Some(walls) = &self.walls {
+        if let Some(walls) = &self.contacts.walls {
             walls.each_contact(|i, _, overlap_m, _, _| {
                 look(Deepest { id: id(i), other: None, overlap_m, share: overlap_m / grains.centre[i][3] });
             });
@@ -166,19 +159,20 @@ impl Simulation {
     /// Id of a grain whose position or velocity is not finite.
     #[must_use]
     pub fn not_finite(&self) -> Option<u64> {
-        let lost = |i: &usize| {
+        let not_finite = |i: &usize| {
             let grains = &self.grains;
             !grains.position(*i).iter().chain(grains.velocity[*i].iter()).all(|value| value.is_finite())
         };
-        let ids =
-            (0..self.grains.len()).filter(lost).map(|i| self.particles.id[self.grains.original[i] as usize]);
+        let ids = (0..self.grains.len())
+            .filter(not_finite)
+            .map(|i| self.particles.id[self.grains.original[i] as usize]);
         ids.min()
     }
 
     /// Number of touching contacts, of grains and with walls, at the last evaluation.
     #[must_use]
     pub fn contacts(&self) -> usize {
-        self.neighbours.contacts() + self.walls.as_ref().map_or(0, |walls| walls.contacts())
+        self.contacts.count()
     }
 
     /// What the force limit did; `None` without a field.
@@ -209,10 +203,10 @@ impl Simulation {
     #[must_use]
     pub fn guards(&self) -> Vec<Guard> {
         let mut limits = self.limits.clone();
-        if let Some(electric) = self.electric_limits() {
-            limits.set_electric(electric);
+        if let (Some(stiffness), Some(field)) = (self.electric_stiffness(), &self.field) {
+            limits.set_electric(stiffness, field.plasma_limit);
         }
-        limits.guards(self.step_s, self.speed).collect()
+        limits.guards(self.progress.step_s, self.progress.speed).collect()
     }
 
     /// The field; `None` without a field stage.

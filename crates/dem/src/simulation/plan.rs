@@ -1,19 +1,29 @@
 //! Which stages a scene has, and why.
 
 use crate::contacts::material_pairs::Features;
+use crate::field_stage::FieldStage;
 use crate::gas_stage::GasStage;
 use amberfield_core::{ChargeTransfer, Plan};
 
-/// The plan; the field's own plan is appended.
-pub(super) fn plan(
-    features: Features,
-    periodic: bool,
-    (walls, gas): (usize, Option<&GasStage>),
-    levels: usize,
-    field_asked: bool,
-    transfer: Option<&ChargeTransfer>,
-    field: Option<Plan>,
-) -> Plan {
+/// What decides which stages are built.
+pub(super) struct Planned<'a> {
+    pub(super) features: Features,
+    /// Whether an axis is periodic.
+    pub(super) periodic: bool,
+    /// Number of walls.
+    pub(super) walls: usize,
+    /// Levels of size of the neighbour search.
+    pub(super) levels: usize,
+    pub(super) gas: Option<&'a GasStage>,
+    pub(super) transfer: Option<&'a ChargeTransfer>,
+    /// Whether the scene asks for a field, which is left out where nothing is charged.
+    pub(super) field_asked: bool,
+    pub(super) field: Option<&'a FieldStage>,
+}
+
+/// The plan of a run, with the field's own plan at its end.
+pub(super) fn plan(planned: &Planned<'_>) -> Plan {
+    let &Planned { features, periodic, walls, levels, gas, transfer, field_asked, field } = planned;
     let mut plan = Plan::new();
     plan.decide(true, "integrate", "velocity Verlet, every step".to_owned(), "");
     let grids = format!("linked cells on {levels} level(s) of size, Verlet lists rebuilt by displacement");
@@ -59,7 +69,7 @@ pub(super) fn plan(
         plan.leave_out("field", reason)
     }
     if let Some(field) = field {
-        plan.extend(field);
+        plan.extend(field.source.field.plan());
     }
     plan
 }

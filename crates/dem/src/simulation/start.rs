@@ -1,22 +1,26 @@
 //! Starting a run, afresh or from a checkpoint.
 
-use super::Simulation;
+use super::guards::Limits;
+use super::state::{Progress, State};
+use super::timing::Stopwatch;
+use super::{Scratch, Simulation, checks};
 use crate::charging::Charging;
+use crate::contacts::Contacts;
 use crate::contacts::cells::{Cells, levels_of, shifts};
 use crate::contacts::material_pairs::{Features, PairTable};
 use crate::contacts::neighbours::Neighbours;
 use crate::contacts::walls::Walls;
 use crate::error::DemError;
-use crate::field_stage::{Extras, FieldStage};
+use crate::field_stage::{FieldStage, FieldState};
 use crate::gas_stage::GasStage;
 use crate::motion::grains::Grains;
-use crate::motion::verlet::{Bounds, kick};
+use crate::motion::verlet::Bounds;
 use crate::setup::{FieldStageSetup, Setup};
-use crate::simulation::checks;
-use crate::simulation::guards::Limits;
-use crate::simulation::state::State;
-use crate::simulation::timing::Stopwatch;
 use amberfield_core::{Axis, Domain, Particles, Step, Vector3};
+
+/// Length of the step that is no step [s]: forces at the start are computed where grains stand, and neither
+/// springs nor velocities advance.
+const AT_START: f64 = 0.0;
 
 impl Simulation {
     /// Checks a scene, builds its stages and computes the forces at the start.
@@ -30,15 +34,10 @@ impl Simulation {
         let mut run = Self::assemble(setup, skin, None)?;
         run.rebuild();
         let allow = run.time.allow_overlap;
-        checks::check_overlaps(&run.grains, &run.neighbours, &run.particles, allow)?;
-        if let (Some(walls), false) = (&run.walls, allow)
-            && let Some(error) = walls.too_deep(&run.grains, &run.particles)
-        {
-            return Err(error);
-        }
+        checks::check_overlaps(&run.grains, &run.contacts, &run.particles, allow)?;
+        checks::check_wall_overlaps(&run.grains, &run.contacts, &run.particles, allow)?;
         run.choose_step()?;
-        run.forces(0.0)?;
-        run.settle_forces();
+        run.forces_at_start()?;
         Ok(run)
     }
 
@@ -48,38 +47,21 @@ impl Simulation {
     /// As [`Self::new`], and a state that does not fit the scene.
     pub fn resume(mut setup: Setup, state: State) -> Result<Self, DemError> {
         checks::check(&setup)?;
-        check_state(&setup, &state)?;
+        checks::check_state(&setup, &state)?;
         if let Some(charging) = &state.charging {
             setup.particles.charge.clone_from(&charging.charge);
         }
-        let mut run = Self::assemble(setup, state.skin_m, Some(&state))?;
-        run.grains.reorder(&state.original);
-        let count = state.original.len();
-        // Lists are built from the centres they were built from before.
-        let place = |grains: &mut Grains, centres: &[Vector3<f64>]| {
-            for (c, x) in grains.centre.iter_mut().zip(centres) {
-                (c[0], c[1], c[2]) = (x.x, x.y, x.z);
-            }
-        };
-        place(&mut run.grains, &state.reference);
-        let order: Vec<u32> = (0..count as u32).collect();
-        run.neighbours.build(&run.domain, &run.grains, &order);
-        if let Some(walls) = &mut run.walls {
-            walls.build(&run.domain, &run.grains, run.skin, &state.walls);
-        }
-        run.neighbours.restore(&run.grains, &state.pairs).map_err(DemError::State)?;
+        let skin = state.progress.skin_m;
+        let mut run = Self::assemble(setup, skin, Some(&state))?;
+        run.grains.reorder(&state.grains.original);
+        // Lists are built from the centres from which they were built before.
+        run.grains.place(&state.contacts.reference);
+        run.contacts.restore(&run.domain, &run.grains, skin, &state.contacts).map_err(DemError::State)?;
         if let (Some(charging), Some(saved)) = (&mut run.charging, &state.charging) {
-            charging.restore(saved, &mut run.neighbours).map_err(DemError::State)?;
+            charging.restore(saved, &mut run.contacts.neighbours).map_err(DemError::State)?;
         }
-        place(&mut run.grains, &state.centre);
-        run.grains.velocity = state.velocity;
-        run.grains.angular = state.angular;
-        run.grains.force = state.force;
-        run.grains.torque = state.torque;
-        run.step_index = state.step_index;
-        run.step_s = state.step_s;
-        run.travel = state.travel;
-        run.speed = state.speed;
+        run.grains.restore(state.grains);
+        run.progress = state.progress;
         run.resize_scratch();
         run.update_electric_limits();
         run.set_step_of_gas();
@@ -100,90 +82,70 @@ impl Simulation {
     #[must_use]
     pub fn state(&self) -> State {
         State {
-            step_index: self.step_index,
-            step_s: self.step_s,
-            skin_m: self.skin,
-            travel: self.travel,
-            speed: self.speed,
-            original: self.grains.original.clone(),
-            centre: (0..self.grains.len()).map(|i| self.grains.position(i)).collect(),
-            velocity: self.grains.velocity.clone(),
-            angular: self.grains.angular.clone(),
-            force: self.grains.force.clone(),
-            torque: self.grains.torque.clone(),
-            reference: self.neighbours.reference.clone(),
-            pairs: self.neighbours.histories(&self.grains),
-            walls: self.walls.as_ref().map(|w| w.histories(&self.grains)).unwrap_or_default(),
+            progress: self.progress,
+            grains: self.grains.state(),
+            contacts: self.contacts.state(&self.grains),
             field: self.field.as_ref().map(FieldStage::state),
-            charging: self.charging.as_ref().map(|c| c.state(&self.particles, &self.neighbours)),
+            charging: self.charging.as_ref().map(|c| c.state(&self.particles, &self.contacts.neighbours)),
             gas: None,
         }
     }
 
-    fn assemble(setup: Setup, skin: f64, state: Option<&State>) -> Result<Self, DemError> {
+    /// Builds the stages that a scene needs; grains are in the set-up's order, nothing is listed yet.
+    fn assemble(setup: Setup, skin_m: f64, state: Option<&State>) -> Result<Self, DemError> {
         let Setup { domain, materials, particles, walls, time, gas, field } = setup;
         let table = PairTable::new(&materials);
         let transfer = field.as_ref().and_then(|field| field.transfer);
         let features = Features { charging: transfer.is_some(), ..table.features() };
         let (level, level_radius) = levels_of(particles.radius.iter().copied());
         let shifts = shifts(&domain);
-        let (wall_count, asked_for) = (walls.len(), field.is_some());
-        let walls =
-            if walls.is_empty() { None } else { Some(Walls::new(&walls, shifts, features.charging)?) };
-        let charging = field.as_ref().zip(transfer).map(|(field, transfer)| {
-            let of_field = (field.settings.relative_permittivity, field.settings.tolerance);
-            Charging::new(transfer, of_field, &materials, &particles, wall_count)
-        });
-        let field = match field {
-            Some(f) if f.transfer.is_some() || is_charged(&f, &particles) => {
-                let saved = state.and_then(|s| s.field.as_ref());
-                if state.is_some() && saved.is_none() {
-                    return Err(DemError::State("it holds no electric field".to_owned()));
-                }
-                Some(FieldStage::new(&domain, f, &particles, saved)?)
-            }
-            _ => None,
+        let (wall_count, field_asked) = (walls.len(), field.is_some());
+        let walls = match wall_count {
+            0 => None,
+            _ => Some(Walls::new(&walls, shifts, features.charging).map_err(DemError::Setup)?),
         };
-        let gas = gas.map(|gas| GasStage::new(gas, time.gravity_m_s2, &particles, state)).transpose()?;
-        let neighbours = Neighbours::new(Cells::new(level_radius, skin), shifts, features);
-        let periodic = Axis::ALL.into_iter().any(|axis| domain.is_periodic(axis));
-        let plan = super::plan::plan(
+        let neighbours = Neighbours::new(Cells::new(level_radius, skin_m), shifts, features);
+        let contacts = Contacts { table, features, neighbours, walls };
+        let charging = field.as_ref().zip(transfer).map(|(field, transfer)| {
+            Charging::new(transfer, &field.settings, &materials, &particles, wall_count)
+        });
+        let saved_field = state.map(|state| state.field.as_ref());
+        let field =
+            field.map(|field| field_stage(&domain, field, &particles, saved_field)).transpose()?.flatten();
+        let saved_gas = state.and_then(|state| state.gas.as_ref());
+        let gas = gas.map(|gas| GasStage::new(gas, time.gravity_m_s2, &particles, saved_gas)).transpose()?;
+        let bounds = bounds(&domain);
+        let plan = super::plan::plan(&super::plan::Planned {
             features,
-            periodic,
-            (wall_count, gas.as_ref()),
-            neighbours.level_count(),
-            asked_for,
-            transfer.as_ref(),
-            field.as_ref().map(|f| f.source.field.plan()),
-        );
+            periodic: bounds.is_periodic(),
+            walls: wall_count,
+            levels: contacts.neighbours.level_count(),
+            gas: gas.as_ref(),
+            transfer: transfer.as_ref(),
+            field_asked,
+            field: field.as_ref(),
+        });
+        let uniform_gas = gas.as_ref().and_then(GasStage::uniform);
         let mut run = Self {
-            bounds: bounds(&domain),
-            domain,
-            time,
             plan,
-            limits: Limits::new(&particles, &materials, &table, gas.as_ref().and_then(GasStage::uniform)),
-            table,
-            features,
-            periodic,
-            step_s: 0.0,
-            skin,
-            step_index: 0,
+            progress: Progress {
+                step_index: 0,
+                step_s: 0.0,
+                skin_m,
+                travel: 0.0,
+                speed: particles.velocity.iter().map(|v| v.norm()).fold(0.0, f64::max),
+            },
             grains: Grains::new(&particles, level, features.rotation()),
-            neighbours,
-            walls,
-            gas,
-            field,
-            charging,
-            extras: Extras::default(),
-            travel: 0.0,
-            speed: particles.velocity.iter().map(|v| v.norm()).fold(0.0, f64::max),
+            limits: Limits::new(&particles, &materials, &contacts.table, uniform_gas),
+            domain,
+            bounds,
+            time,
             particles,
-            new_force: Vec::new(),
-            new_torque: Vec::new(),
-            motion: Vec::new(),
-            keys: Vec::new(),
-            order: Vec::new(),
-            warned_unstable: false,
+            contacts,
+            gas,
+            charging,
+            field,
+            scratch: Scratch::default(),
             rescued: None,
             watch: Stopwatch::default(),
         };
@@ -195,11 +157,12 @@ impl Simulation {
     /// automatic step needs the limit.
     fn choose_step(&mut self) -> Result<(), DemError> {
         self.update_electric_limits();
-        self.step_s = match self.time.step {
+        let speed = self.progress.speed;
+        self.progress.step_s = match self.time.step {
             Step::Seconds(step) => step,
-            Step::Auto => self.limits.auto_step(self.speed),
+            Step::Auto => self.limits.auto_step(speed),
         };
-        if !self.step_s.is_finite() {
+        if !self.progress.step_s.is_finite() {
             return Err(DemError::Setup(
                 "step_s = \"auto\" needs at least one grain; give a number".to_owned(),
             ));
@@ -207,9 +170,9 @@ impl Simulation {
         if self.field.is_some() {
             self.evaluate_field()?;
             self.update_electric_limits();
-            let shorter = self.limits.auto_step(self.speed);
-            if self.time.step == Step::Auto && shorter < self.step_s {
-                self.step_s = shorter;
+            let shorter = self.limits.auto_step(speed);
+            if self.time.step == Step::Auto && shorter < self.progress.step_s {
+                self.progress.step_s = shorter;
                 self.evaluate_field()?;
             }
         }
@@ -220,16 +183,42 @@ impl Simulation {
     /// Tells a gas that flows how long a step is.
     fn set_step_of_gas(&mut self) {
         if let Some(gas) = self.gas.as_mut().and_then(GasStage::flowing_mut) {
-            gas.set_step(self.step_s);
+            gas.set_step(self.progress.step_s);
             self.limits.set_flow(gas.limits());
         }
     }
 
-    /// Takes the first forces as those of the last step, without moving.
-    fn settle_forces(&mut self) {
-        let step = 0.0;
-        kick(&mut self.grains, &self.neighbours, step, &mut self.new_force, &mut self.new_torque);
+    /// Computes the forces with which the first step begins: the stages of a step that make forces, without
+    /// motion, trade or a new field, which was evaluated just before.
+    fn forces_at_start(&mut self) -> Result<(), DemError> {
+        self.push_grains(AT_START);
+        self.push_off_walls(AT_START);
+        let exchanged = self.exchange_with_gas()?;
+        self.add_gas_forces(AT_START);
+        self.follow_contact_areas();
+        self.add_electric_forces_at_start();
+        self.watch_guards_where(exchanged)?;
+        self.kick(AT_START);
+        Ok(())
     }
+}
+
+/// The field of a scene that asks for one; `None` where every charge is zero and nothing makes one. `saved` is
+/// what a state holds of it, if the run goes on from one.
+fn field_stage(
+    domain: &Domain,
+    setup: FieldStageSetup,
+    particles: &Particles,
+    saved: Option<Option<&FieldState>>,
+) -> Result<Option<FieldStage>, DemError> {
+    if setup.transfer.is_none() && !is_charged(&setup, particles) {
+        return Ok(None);
+    }
+    let saved = match saved {
+        Some(None) => return Err(DemError::State("it holds no electric field".to_owned())),
+        saved => saved.flatten(),
+    };
+    Ok(Some(FieldStage::new(domain, setup, particles, saved)?))
 }
 
 /// Whether any member of a field is charged.
@@ -237,44 +226,12 @@ fn is_charged(field: &FieldStageSetup, particles: &Particles) -> bool {
     field.member.iter().zip(&particles.charge).any(|(member, charge)| *member && *charge != 0.0)
 }
 
-/// Infinite along periodic axes.
+/// The box that grains may not leave: infinite along periodic axes.
 fn bounds(domain: &Domain) -> Bounds {
     let side = |corner: Vector3<f64>, infinite: f64| {
         std::array::from_fn(|a| if domain.is_periodic(Axis::ALL[a]) { infinite } else { corner[a] })
     };
     Bounds { min: side(domain.min(), f64::NEG_INFINITY), max: side(domain.max(), f64::INFINITY) }
-}
-
-fn check_state(setup: &Setup, state: &State) -> Result<(), DemError> {
-    let count = state.original.len();
-    let total = setup.particles.len();
-    let mut seen = vec![false; total];
-    for &original in &state.original {
-        let slot = seen.get_mut(original as usize);
-        if slot.is_none_or(|seen| std::mem::replace(seen, true)) {
-            return Err(DemError::State(format!("grain {original} of {total} is unknown or named twice")));
-        }
-    }
-    let transfers = setup.field.as_ref().is_some_and(|field| field.transfer.is_some());
-    if state.charging.as_ref().map(|charging| charging.charge.len()) != transfers.then_some(total) {
-        return Err(DemError::State("its charging does not match the scene's".to_owned()));
-    }
-    let lengths = [state.centre.len(), state.velocity.len(), state.angular.len(), state.force.len()];
-    if lengths.iter().any(|&n| n != count) || state.reference.len() != count {
-        return Err(DemError::State("its arrays differ in length".to_owned()));
-    }
-    let rotation = PairTable::new(&setup.materials).features().rotation();
-    if state.torque.len() != if rotation { count } else { 0 } {
-        return Err(DemError::State("its torques do not match the materials' friction".to_owned()));
-    }
-    let flows = setup.gas.as_ref().is_some_and(|gas| gas.gas.flow.is_some());
-    if state.gas.is_some() != flows || state.gas.as_ref().is_some_and(|gas| !gas.fits(count)) {
-        return Err(DemError::State("its gas does not match the scene's".to_owned()));
-    }
-    if state.field.as_ref().is_some_and(|f| !f.fits(count)) {
-        return Err(DemError::State("its field forces differ in length".to_owned()));
-    }
-    Ok(())
 }
 
 #[cfg(test)]
@@ -341,11 +298,11 @@ mod tests {
 
     /// Entries of tangential and rolling history, torques.
     fn memory(run: &Simulation) -> [usize; 3] {
-        let lists = &run.neighbours.lists;
+        let lists = &run.contacts.neighbours.lists;
         [
             lists.iter().map(|l| l.spring.capacity()).sum(),
             lists.iter().map(|l| l.rolling.capacity()).sum(),
-            run.grains.torque.capacity() + run.new_torque.capacity(),
+            run.grains.torque.capacity() + run.scratch.torque.capacity(),
         ]
     }
 

@@ -1,118 +1,45 @@
-//! The complete state of a run, for checkpoints.
+//! The complete state of a run, for checkpoints: every stage's own, one after another.
 
-use crate::charging::{Facets, Ledger};
-use crate::contacts::memory::Memory;
-use crate::field_crate::Choice;
-use crate::field_crate::far::FarState;
-use crate::gas_crate::ExchangeState;
-use amberfield_core::Vector3;
+use crate::charging::ChargingState;
+use crate::contacts::memory::ContactsState;
+use crate::field_stage::FieldState;
+use crate::motion::grains::GrainsState;
+use amberfield_field::Choice;
+use amberfield_gas::ExchangeState;
 use serde::{Deserialize, Serialize};
 
-/// History of a touching pair.
+/// How far a run has come.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
-pub(crate) struct PairHistory {
-    /// Grain whose list holds the pair, in the sorted order.
-    pub(crate) i: u32,
-    /// Entry in that list.
-    pub(crate) entry: u32,
-    /// Partner, in the set-up's order.
-    pub(crate) partner: u32,
-    /// Tangential force [N] and contact radius [m].
-    pub(crate) spring: [f64; 4],
-    /// Rolling torque [N·m].
-    pub(crate) rolling: [f64; 3],
-}
-
-/// History of a contact with a wall.
-#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
-pub(crate) struct WallHistory {
-    /// Grain, in the set-up's order.
-    pub(crate) grain: u32,
-    /// Wall.
-    pub(crate) wall: u32,
-    /// Direction from the grain to the wall.
-    pub(crate) normal: [f64; 3],
-    /// Overlap [m].
-    pub(crate) overlap: f64,
-    /// Of a mesh, where it is touched.
-    pub(crate) triangle: u32,
-    /// Tangential force [N] and contact radius [m].
-    pub(crate) spring: [f64; 4],
-    /// Rolling torque [N·m].
-    pub(crate) rolling: [f64; 3],
-    pub(crate) charging: Memory,
-}
-
-/// Charging of a listed pair.
-#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
-pub(crate) struct PairGrowth {
-    /// Chunk whose list holds the pair, and entry in it.
-    pub(crate) slot: [u32; 2],
-    pub(crate) memory: Memory,
-}
-
-/// State of charge transfer.
-#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
-pub(crate) struct ChargingState {
-    /// Charges now, and at the last evaluation of the field, by the set-up's order [C].
-    pub(crate) charge: Vec<f64>,
-    pub(crate) evaluated: Vec<f64>,
-    pub(crate) pairs: Vec<PairGrowth>,
-    pub(crate) facets: Facets,
-    pub(crate) ledger: Ledger,
-    pub(crate) backwards: bool,
-    pub(crate) lag: f64,
-}
-
-/// State of the field stage.
-#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
-pub(crate) struct FieldState {
-    pub(crate) choice: Choice,
-    /// The internal grid's parameters, should the field solver be lost.
-    pub(crate) fallback: Option<Choice>,
-    /// Whether a field solver has a part in it, and is not lost yet.
-    pub(crate) has_solver: bool,
-    /// Iterations of its last solve for the motion.
-    pub(crate) solver_iterations: u64,
-    /// Of a field solver in another process.
-    pub(crate) far: FarState,
-    pub(crate) forecast: crate::field_stage::Forecast,
-    pub(crate) energy: crate::field_stage::EnergyForecast,
-    pub(crate) control: crate::field_stage::IntervalControl,
+pub(crate) struct Progress {
+    /// Steps done, or in progress within a step.
+    pub(crate) step_index: u64,
+    /// Time step [s].
+    pub(crate) step_s: f64,
+    /// Skin of the neighbour lists [m].
+    pub(crate) skin_m: f64,
+    /// Bound on any grain's displacement since the lists were built [m].
     pub(crate) travel: f64,
-    pub(crate) plasma_steps: u64,
-    pub(crate) plasma_limit: f64,
-    pub(crate) limited: crate::field_stage::Limited,
+    /// Largest speed of the last drift [m/s].
+    pub(crate) speed: f64,
 }
 
-impl FieldState {
-    /// Whether it is one of `count` grains.
-    pub(crate) fn fits(&self, count: usize) -> bool {
-        self.forecast.fits(count)
+impl Progress {
+    /// Simulated time [s].
+    pub(crate) fn time_s(&self) -> f64 {
+        self.step_index as f64 * self.step_s
     }
 }
 
 /// Everything that a run needs to go on bit for bit, given the same [`crate::Setup`]. Opaque; serialise it
-/// with serde.
+/// with serde. The order of the fields, and of theirs, is that of a checkpoint's bytes.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct State {
-    pub(crate) step_index: u64,
-    pub(crate) step_s: f64,
-    pub(crate) skin_m: f64,
-    pub(crate) travel: f64,
-    pub(crate) speed: f64,
-    pub(crate) original: Vec<u32>,
-    pub(crate) centre: Vec<Vector3<f64>>,
-    pub(crate) velocity: Vec<Vector3<f64>>,
-    pub(crate) angular: Vec<Vector3<f64>>,
-    pub(crate) force: Vec<Vector3<f64>>,
-    pub(crate) torque: Vec<Vector3<f64>>,
-    pub(crate) reference: Vec<Vector3<f64>>,
-    pub(crate) pairs: Vec<PairHistory>,
-    pub(crate) walls: Vec<WallHistory>,
+    pub(crate) progress: Progress,
+    pub(crate) grains: GrainsState,
+    pub(crate) contacts: ContactsState,
     pub(crate) field: Option<FieldState>,
     pub(crate) charging: Option<ChargingState>,
-    /// Of a gas that flows; not in a [`crate::Simulation::state`].
+    /// State of a gas that flows; not in a [`crate::Simulation::state`].
     pub(crate) gas: Option<ExchangeState>,
 }
 
@@ -120,7 +47,7 @@ impl State {
     /// Number of steps done.
     #[must_use]
     pub fn step_index(&self) -> u64 {
-        self.step_index
+        self.progress.step_index
     }
 
     /// Whether a field solver that the scene has was lost, and the internal grid goes on.

@@ -8,13 +8,11 @@ pub(crate) use touches::{Surface, Touch};
 
 use crate::contacts::law::{Contact, History, respond};
 use crate::contacts::material_pairs::{Features, PairTable};
-use crate::contacts::memory::Memory;
+use crate::contacts::memory::{Memory, WallHistory};
 use crate::contacts::walls::mesh::{Candidate, Found, MOST_CONTACTS, MeshWall};
-use crate::error::DemError;
 use crate::motion::chunks::{CHUNK, chunk_count, for_each_chunk, is_parallel};
 use crate::motion::grains::Grains;
-use crate::simulation::state::WallHistory;
-use amberfield_core::{Domain, Particles, Vector3, Wall, WallCharging, WallShape};
+use amberfield_core::{Domain, Vector3, Wall, WallCharging, WallShape};
 use std::ops::Range;
 
 /// Cosine of the largest turn between two steps for which a contact is still the same (60°).
@@ -33,6 +31,19 @@ struct Solid {
     charging: WallCharging,
     bounds_field: bool,
     shape: Shape,
+}
+
+/// A grain that overlaps a wall too much.
+#[derive(Debug)]
+pub(crate) struct TooDeep {
+    /// Sorted index of the grain.
+    pub(crate) grain: usize,
+    /// Name of the wall.
+    pub(crate) wall: String,
+    /// Overlap [m].
+    pub(crate) overlap: f64,
+    /// Largest overlap accepted [m].
+    pub(crate) limit: f64,
 }
 
 /// A contact with its history.
@@ -80,7 +91,7 @@ pub(crate) struct Walls {
 }
 
 impl Walls {
-    pub(crate) fn new(walls: &[Wall], shifts: [[f64; 3]; 32], charge: bool) -> Result<Self, DemError> {
+    pub(crate) fn new(walls: &[Wall], shifts: [[f64; 3]; 32], charge: bool) -> Result<Self, String> {
         let mut solids = Vec::new();
         for wall in walls {
             let shape = match &wall.shape {
@@ -88,10 +99,10 @@ impl Walls {
                     let size = normal.norm();
                     let good = point.iter().all(|x| x.is_finite()) && size.is_finite() && size > 0.0;
                     if !good {
-                        return Err(DemError::Setup(format!(
+                        return Err(format!(
                             "wall '{}' needs a finite point and a normal that is not zero",
                             wall.name
-                        )));
+                        ));
                     }
                     Shape::Plane { point: *point, normal: normal / size }
                 }
@@ -99,17 +110,17 @@ impl Walls {
                     let known = mesh.triangles.iter().flatten().all(|&v| (v as usize) < mesh.vertices.len());
                     let finite = mesh.vertices.iter().all(|v| v.iter().all(|x| x.is_finite()));
                     if !(known && finite) {
-                        return Err(DemError::Setup(format!(
+                        return Err(format!(
                             "wall '{}' has a triangle with an unknown vertex or a vertex that is not finite",
                             wall.name
-                        )));
+                        ));
                     }
                     let mesh = MeshWall::new(mesh);
                     if mesh.is_empty() {
-                        return Err(DemError::Setup(format!(
+                        return Err(format!(
                             "wall '{}' has no triangle with an area; check its file and scale",
                             wall.name
-                        )));
+                        ));
                     }
                     Shape::Mesh(Box::new(mesh))
                 }
@@ -238,33 +249,32 @@ impl Walls {
     }
 
     /// The first grain that overlaps a wall by more than half its radius.
-    pub(crate) fn too_deep(&self, grains: &Grains, particles: &Particles) -> Option<DemError> {
-        for (i, &original) in grains.original.iter().enumerate() {
-            let (centre, radius) = (grains.position(i), grains.centre[i][3]);
-            for solid in &self.solids {
-                let overlap = match &solid.shape {
-                    Shape::Plane { point, normal } => radius - (centre - point).dot(normal),
-                    Shape::Mesh(mesh) => {
-                        let mut near = Vec::new();
-                        mesh.within(centre, radius, &mut near);
-                        let mut found = [Found::default(); MOST_CONTACTS];
-                        let pairs = near.iter().map(|&t| (t, centre));
-                        let count = mesh.contacts(radius, pairs, &mut Vec::new(), &mut found);
-                        found[..count].iter().map(|f| f.overlap).fold(0.0, f64::max)
-                    }
-                };
-                let limit = 0.5 * radius;
-                if overlap > limit {
-                    return Some(DemError::WallOverlap {
-                        id: particles.id[original as usize],
-                        wall: solid.name.clone(),
-                        overlap_m: overlap,
-                        limit_m: limit,
-                    });
-                }
+    pub(crate) fn too_deep(&self, grains: &Grains) -> Option<TooDeep> {
+        (0..grains.len()).find_map(|grain| {
+            let (centre, radius) = (grains.position(grain), grains.centre[grain][3]);
+            let limit = 0.5 * radius;
+            self.solids.iter().find_map(|solid| {
+                let overlap = solid.overlap(centre, radius);
+                (overlap > limit).then(|| TooDeep { grain, wall: solid.name.clone(), overlap, limit })
+            })
+        })
+    }
+}
+
+impl Solid {
+    /// Largest overlap [m] with a grain at `centre` [m]; zero or negative where it does not touch.
+    fn overlap(&self, centre: Vector3<f64>, radius: f64) -> f64 {
+        match &self.shape {
+            Shape::Plane { point, normal } => radius - (centre - point).dot(normal),
+            Shape::Mesh(mesh) => {
+                let mut near = Vec::new();
+                mesh.within(centre, radius, &mut near);
+                let mut found = [Found::default(); MOST_CONTACTS];
+                let pairs = near.iter().map(|&t| (t, centre));
+                let count = mesh.contacts(radius, pairs, &mut Vec::new(), &mut found);
+                found[..count].iter().map(|f| f.overlap).fold(0.0, f64::max)
             }
         }
-        None
     }
 }
 

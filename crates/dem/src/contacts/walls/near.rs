@@ -2,11 +2,10 @@
 
 use super::{ChunkWalls, Entry, Shape, Solid, WallContact};
 use crate::contacts::cells::NO_SHIFT;
-use crate::contacts::memory::Memory;
+use crate::contacts::memory::{Memory, WallHistory};
 use crate::contacts::walls::mesh::MOST_CONTACTS;
 use crate::motion::chunks::CHUNK;
 use crate::motion::grains::Grains;
-use crate::simulation::state::WallHistory;
 use amberfield_core::{Axis, Domain, Vector3};
 
 impl ChunkWalls {

@@ -1,4 +1,4 @@
-//! What charge transfer and the guards ask of the field, and tell it.
+//! Answers of the field stage to charge transfer and the guards, and what they tell it.
 
 use super::FieldStage;
 use amberfield_core::constants::VACUUM_PERMITTIVITY;
@@ -33,12 +33,5 @@ impl FieldStage {
     /// Whether E is evaluated as often as its error asks.
     pub(crate) fn is_automatic(&self) -> bool {
         self.settings.coupling_interval == CouplingInterval::Auto
-    }
-}
-
-/// Charges for which the field chooses its parameters where there are none yet: of both signs, none in all.
-pub(super) fn stand_in(charge: &mut [f64]) {
-    for pair in charge.chunks_exact_mut(2) {
-        pair.copy_from_slice(&[1e-15, -1e-15]);
     }
 }

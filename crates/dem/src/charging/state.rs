@@ -1,0 +1,18 @@
+//! What charge transfer puts in a checkpoint.
+
+use super::{Facets, Ledger};
+use crate::contacts::memory::PairGrowth;
+use serde::{Deserialize, Serialize};
+
+/// State of charge transfer.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+pub(crate) struct ChargingState {
+    /// Charges now, and at the last evaluation of the field, by the set-up's order [C].
+    pub(crate) charge: Vec<f64>,
+    pub(crate) evaluated: Vec<f64>,
+    pub(crate) pairs: Vec<PairGrowth>,
+    pub(crate) facets: Facets,
+    pub(crate) ledger: Ledger,
+    pub(crate) backwards: bool,
+    pub(crate) lag: f64,
+}

@@ -1,0 +1,181 @@
+//! Charges in a step: contacts that trade them, the field that they make, and the guards that they set.
+
+use super::Simulation;
+use super::guards::{Stiffness, electric_stiffness, electric_stiffness_bound};
+use super::state::Progress;
+use super::timing::Stage;
+use crate::charging::{Charging, Facet, Ledger, Round};
+use crate::error::DemError;
+
+impl Simulation {
+    /// Follows the areas of contacts, and moves the charge that is due: between grains every few steps, with
+    /// walls in every step.
+    pub(super) fn charge_contacts(&mut self) {
+        if self.charging.is_none() {
+            return;
+        }
+        self.follow_contact_areas();
+        if Charging::is_due(self.progress.step_index) {
+            self.trade_between_grains();
+        }
+        self.trade_with_walls();
+        self.watch.lap(Stage::Charging);
+    }
+
+    /// Follows the areas of contacts without moving charge.
+    pub(super) fn follow_contact_areas(&mut self) {
+        if let Some(charging) = &mut self.charging {
+            charging.follow_areas(self.progress.step_index, &self.grains, &mut self.contacts);
+        }
+    }
+
+    /// Evaluates the field where it is due: its interval has ended, or the charges have changed too much;
+    /// whether it was.
+    pub(super) fn evaluate_field_where_due(&mut self) -> Result<bool, DemError> {
+        let Progress { step_s, speed, .. } = self.progress;
+        let interval_ended = self.field.as_mut().is_some_and(|field| field.is_due(step_s, speed));
+        let due = interval_ended || self.charges_have_changed();
+        if due {
+            self.evaluate_field()?;
+        }
+        Ok(due)
+    }
+
+    /// Whether the charges have changed so much that the field is due before its interval ends.
+    fn charges_have_changed(&self) -> bool {
+        let (Some(charging), Some(field)) = (&self.charging, &self.field) else { return false };
+        Charging::is_due(self.progress.step_index)
+            && field.is_automatic()
+            && charging.wants_field(&self.particles.charge)
+    }
+
+    /// Evaluates the field at the present positions and charges, and at the contacts that trade.
+    pub(super) fn evaluate_field(&mut self) -> Result<(), DemError> {
+        let Progress { step_s, speed, skin_m, .. } = self.progress;
+        let time_s = self.progress.time_s();
+        self.trade_between_grains();
+        let Some(field) = &mut self.field else { return Ok(()) };
+        let extras = &mut self.scratch.extras;
+        if let Some(charging) = &mut self.charging {
+            let round = Round {
+                domain: &self.domain,
+                grains: &self.grains,
+                contacts: &mut self.contacts,
+                field: &mut *field,
+                charge: &mut self.particles.charge,
+            };
+            charging.ask_field(&round, speed * step_s, skin_m, extras);
+        }
+        if let Some(solver) = field.source.field.far_solver_mut() {
+            solver.at_time(time_s);
+        }
+        field.evaluate(&self.domain, &self.grains, &self.particles, extras, step_s)?;
+        self.limits.set_plasma(field.plasma_limit);
+        if let Some(charging) = &mut self.charging {
+            charging.take_field(field.beside(), &mut self.contacts, &self.particles.charge);
+        }
+        Ok(())
+    }
+
+    /// Adds the electric forces of a step: E as it was evaluated in it, or on the line through the last two
+    /// evaluations.
+    pub(super) fn add_electric_forces(&mut self) {
+        self.add_electric_forces_at_start();
+        if let Some(field) = &mut self.field {
+            field.book_step();
+            self.watch.lap(Stage::Field);
+        }
+    }
+
+    /// Adds the electric forces without booking a step.
+    pub(super) fn add_electric_forces_at_start(&mut self) {
+        let Progress { step_s, skin_m, .. } = self.progress;
+        if let Some(field) = &mut self.field {
+            field.add_forces(&self.grains, skin_m, step_s, &mut self.scratch.force);
+        }
+    }
+
+    /// Moves what is due between pairs of grains.
+    pub(super) fn trade_between_grains(&mut self) {
+        self.trade(Charging::trade_between_grains);
+    }
+
+    /// Moves what is due between grains and walls.
+    fn trade_with_walls(&mut self) {
+        self.trade(Charging::trade_with_walls);
+    }
+
+    /// Runs a round of trade, where charge is traded at all.
+    fn trade(&mut self, round_of: fn(&mut Charging, Round<'_>)) {
+        let (Some(charging), Some(field)) = (&mut self.charging, &mut self.field) else { return };
+        let round = Round {
+            domain: &self.domain,
+            grains: &self.grains,
+            contacts: &mut self.contacts,
+            field,
+            charge: &mut self.particles.charge,
+        };
+        round_of(charging, round);
+    }
+
+    /// Checks the guards anew at the present speed and charges. The pairs are looked at only where a bound
+    /// for any of them does not do.
+    pub(super) fn watch_guards(&mut self) -> Result<(), DemError> {
+        if let Some(field) = &self.field {
+            let (grains, particles) = (&self.grains, &self.particles);
+            let bound = electric_stiffness_bound(grains, particles, &field.member, field.permittivity());
+            self.limits.set_electric(bound, field.plasma_limit);
+            let Progress { step_s, speed, .. } = self.progress;
+            if self.limits.broken(step_s, speed, self.progress.time_s()).is_some() {
+                self.update_electric_limits();
+            }
+        }
+        self.watch_guards_where(true)
+    }
+
+    /// Checks the guards as they are, at the present speed, where something is `new`: charges and pairs are
+    /// looked at when lists are rebuilt; an exchange with a gas or an evaluation of the field changes
+    /// density and speeds.
+    pub(super) fn watch_guards_where(&mut self, new: bool) -> Result<(), DemError> {
+        if !new {
+            return Ok(());
+        }
+        let Progress { step_s, speed, .. } = self.progress;
+        self.limits.watch(step_s, speed, self.progress.time_s(), self.time.allow_unstable)
+    }
+
+    /// Computes the electric guards of the present pairs.
+    pub(super) fn update_electric_limits(&mut self) {
+        if let (Some(stiffness), Some(field)) = (self.electric_stiffness(), &self.field) {
+            self.limits.set_electric(stiffness, field.plasma_limit);
+        }
+    }
+
+    /// Stiffness limits of the present pairs; `None` without a field.
+    pub(super) fn electric_stiffness(&self) -> Option<Stiffness> {
+        let field = self.field.as_ref()?;
+        Some(electric_stiffness(
+            &self.domain,
+            &self.grains,
+            &self.particles,
+            &field.member,
+            field.permittivity(),
+            self.contacts.neighbours.pairs().map(|pair| (pair.i, pair.j)),
+        ))
+    }
+
+    /// Charge that charge transfer has moved, walls by their number; `None` without it.
+    #[must_use]
+    pub fn ledger(&self) -> Option<&Ledger> {
+        self.charging.as_ref().map(|charging| &charging.ledger)
+    }
+
+    /// Facets of walls that have been charged.
+    #[must_use]
+    pub fn facets(&self) -> &[Facet] {
+        self.charging.as_ref().map_or(&[], Charging::facets)
+    }
+}
+
+#[cfg(test)]
+mod tests;
