@@ -1,8 +1,8 @@
-//! The plain bed by the lower folders of this crate alone: motion and contacts, compiled here without all that
-//! builds on them. There is no electric field, no charge, no gas and no wall in this program.
+//! The plain bed by the lower folders of this crate alone: motion and contacts, compiled here without all
+//! that builds on them. There is no electric field, no charge, no gas and no wall in this program.
 //!
-//! `cargo xtask leaving-out` compares its instructions with those of `plain_bed`, which runs the same bed as a
-//! `Simulation`. Both print the same numbers.
+//! `cargo xtask leaving-out` compares its instructions with those of `plain_bed`, which runs the same bed as
+//! a `Simulation`. Both print the same numbers.
 
 #[path = "../src/contacts/mod.rs"]
 #[expect(dead_code, unused_imports, reason = "a plain bed needs a part of them")]

@@ -4,7 +4,7 @@ use amberfield_core::Vector3;
 use amberfield_field::FieldError;
 use amberfield_gas::GasError;
 
-/// Why a scene cannot start or a run cannot go on.
+/// Reason why a scene cannot start or a run cannot go on.
 #[derive(Debug, Clone, PartialEq, thiserror::Error)]
 #[non_exhaustive]
 pub enum DemError {
@@ -13,7 +13,8 @@ pub enum DemError {
     Setup(String),
     /// Two grains overlap too much at the start.
     #[error(
-        "grains {id_i} and {id_j} overlap by {overlap_m:e} m at the start, more than {limit_m:e} m (half the smaller radius); move them apart or set allow_overlap = true"
+        "grains {id_i} and {id_j} overlap by {overlap_m:e} m at the start, more than {limit_m:e} m \
+         (half the smaller radius); move them apart or set allow_overlap = true"
     )]
     Overlap {
         /// Id of one grain.
@@ -35,7 +36,8 @@ pub enum DemError {
     },
     /// A grain is too deep in a wall at the start.
     #[error(
-        "grain {id} overlaps wall '{wall}' by {overlap_m:e} m at the start, more than {limit_m:e} m (half its radius); move it or set allow_overlap = true"
+        "grain {id} overlaps wall '{wall}' by {overlap_m:e} m at the start, more than {limit_m:e} m \
+         (half its radius); move it or set allow_overlap = true"
     )]
     WallOverlap {
         /// Id of the grain.
@@ -49,7 +51,8 @@ pub enum DemError {
     },
     /// The step is beyond a stability guard.
     #[error(
-        "time step {step_s:e} s is beyond the {guard} limit of {limit_s:e} s at t = {time_s:e} s; make step_s smaller, use step_s = \"auto\", or set allow_unstable = true"
+        "time step {step_s:e} s is beyond the {guard} limit of {limit_s:e} s at t = {time_s:e} s; \
+         make step_s smaller, use step_s = \"auto\", or set allow_unstable = true"
     )]
     Unstable {
         /// Name of the guard.
@@ -63,13 +66,14 @@ pub enum DemError {
     },
     /// A grain left the domain.
     #[error(
-        "grain {id} left the domain through face {face} at ({:e}, {:e}, {:e}) m, t = {time_s:e} s; add a wall there, enlarge the domain, or set particles.on_exit = \"delete\"",
+        "grain {id} left the domain through face {face} at ({:e}, {:e}, {:e}) m, t = {time_s:e} s; \
+         add a wall there, enlarge the domain, or set particles.on_exit = \"delete\"",
         position_m.x, position_m.y, position_m.z
     )]
     Left {
         /// Id of the grain.
         id: u64,
-        /// Its position [m].
+        /// Position of the grain [m].
         position_m: Vector3<f64>,
         /// The face, such as `z_min`.
         face: String,
@@ -92,7 +96,8 @@ pub enum DemError {
     Gas(#[from] GasError),
     /// Gas and grains exchange too rarely.
     #[error(
-        "gas.interval_s is {interval_s:e} s, longer than the {response_s:e} s in which a grain takes up the gas's velocity, at t = {time_s:e} s; make it shorter, or set allow_unstable = true"
+        "gas.interval_s is {interval_s:e} s, longer than the {response_s:e} s in which a grain takes up \
+         the gas's velocity, at t = {time_s:e} s; make it shorter, or set allow_unstable = true"
     )]
     GasInterval {
         /// Interval [s].

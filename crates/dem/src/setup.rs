@@ -1,4 +1,4 @@
-//! What a simulation is made of.
+//! Parts of a simulation.
 
 use amberfield_core::{ChargeTransfer, Domain, FieldSettings, Gas, Material, Particles, TimeSettings, Wall};
 use amberfield_field::Choice;
@@ -8,7 +8,7 @@ use amberfield_gas::ConnectFlow;
 /// The electric field of a scene.
 #[derive(Clone, Debug)]
 pub struct FieldStageSetup {
-    /// What the scene asks of the field.
+    /// Settings of the field.
     pub settings: FieldSettings,
     /// Whether each grain, in the order of `Setup::particles`, makes and feels the field.
     pub member: Vec<bool>,
@@ -23,7 +23,7 @@ pub struct FieldStageSetup {
 }
 
 impl FieldStageSetup {
-    /// On the internal grid, with parameters of the field's choice.
+    /// Asks for a field on the internal grid, with parameters of its own choice.
     #[must_use]
     pub fn new(settings: FieldSettings, member: Vec<bool>) -> Self {
         Self { settings, member, choice: None, solver: None, transfer: None, fallback: false }
@@ -33,14 +33,14 @@ impl FieldStageSetup {
 /// The gas of a scene.
 #[derive(Clone, Debug)]
 pub struct GasSetup {
-    /// What the scene says of it.
+    /// Properties of the gas, and its drag law.
     pub gas: Gas,
-    /// Who computes its flow; `None`: nobody.
+    /// Solver of its flow; `None`: the gas is the same everywhere.
     pub solver: Option<ConnectFlow>,
 }
 
 impl From<Gas> for GasSetup {
-    /// The same everywhere.
+    /// Takes a gas that is the same everywhere.
     fn from(gas: Gas) -> Self {
         Self { gas, solver: None }
     }

@@ -111,7 +111,8 @@ fn few_grains_in_the_smallest_periodic_box_keep_momentum_and_energy() {
     assert!(met > 20, "{met}");
 }
 
-/// Mixed sizes that fall on a mesh floor in a box open at one side, through which grains leave; charged, limited.
+/// Mixed sizes that fall on a mesh floor in a box open at one side, through which grains leave; charged,
+/// limited.
 fn everything() -> Setup {
     let half = 12.0 * RADIUS;
     let mut grains = lattice([-half, -half, 0.0], [half, half, 20.0 * RADIUS], 2.1 * RADIUS, 0.8, 4);

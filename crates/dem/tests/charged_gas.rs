@@ -1,4 +1,5 @@
-//! A frictionless elastic gas of charged grains keeps its energy, although its field is evaluated now and then only.
+//! A frictionless elastic gas of charged grains keeps its energy, although its field is evaluated now and
+//! then only.
 
 mod common;
 

@@ -19,7 +19,8 @@ const SPEED: f64 = 0.1;
 const CUTOFF: f64 = 5e-7;
 /// Charge of one impact at 400 steps a contact, relative.
 const ONE_IMPACT: f64 = 1e-4;
-/// The largest area lies between two steps: the error is of second order, bounded by this over the squared number of steps.
+/// The largest area lies between two steps: the error is of second order, bounded by this over the squared
+/// number of steps.
 const SECOND_ORDER: f64 = 10.0;
 /// Charges that add up, over the sum of what moved.
 const ROUND_OFF: f64 = 1e-13;

@@ -23,7 +23,7 @@ fn free_fall_is_exact() {
     assert!((grains.velocity[0].z - (0.2 - 9.81 * t)).abs() < ROUND_OFF);
 }
 
-/// What a head-on collision of two equal grains showed.
+/// Record of a head-on collision of two equal grains.
 struct Collision {
     restitution: f64,
     largest_overlap: f64,
@@ -97,8 +97,8 @@ fn restitution_converges_with_first_order() {
             .iter()
             .map(|steps| (collide(e, 0.2, duration / steps).restitution - e).abs())
             .collect();
-        // The contact begins and ends within a step, where the damping jumps as δ^{1/4}: first order, and where in a
-        // step it ends adds some scatter.
+        // The contact begins and ends within a step, where the damping jumps as δ^{1/4}: first order, and
+        // where in a step it ends adds some scatter.
         let order = (errors[0] / errors[3]).log2() / 6.0;
         assert!((0.8..1.5).contains(&order), "e = {e}: observed order {order}, errors {errors:?}");
     }

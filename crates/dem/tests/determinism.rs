@@ -1,4 +1,4 @@
-//! Same bits for any number of threads and across a checkpoint; momentum.
+//! Bits that are the same for any number of threads and across a checkpoint; momentum.
 
 mod common;
 
@@ -91,14 +91,18 @@ proptest! {
 
     /// Contact forces are equal and opposite: linear momentum stays to round-off, with history and rolling.
     #[test]
-    fn momentum_is_conserved(seed in 0_u64..1000, friction in 0.0..0.8_f64, rolling in 0.0..0.2_f64, e in 0.3..1.0_f64) {
+    fn momentum_is_conserved(
+        seed in 0_u64..1000, friction in 0.0..0.8_f64, rolling in 0.0..0.2_f64, e in 0.3..1.0_f64
+    ) {
         let half = 6.0 * RADIUS;
         let grains = lattice([-half; 3], [half; 3], 2.2 * RADIUS, 0.5, seed);
         let mut scene = setup(grains, material(e, friction, rolling), 5e-6);
-        scene.domain = Domain::new(Vector3::repeat(-half), Vector3::repeat(half), [[Boundary::Periodic; 2]; 3]).unwrap();
+        let faces = [[Boundary::Periodic; 2]; 3];
+        scene.domain = Domain::new(Vector3::repeat(-half), Vector3::repeat(half), faces).unwrap();
         let mut simulation = Simulation::new(scene).unwrap();
         let momentum = |p: &Particles| (0..p.len()).map(|i| p.velocity[i] * p.mass(i)).sum::<Vector3<f64>>();
-        let scale: f64 = { let p = simulation.particles(); (0..p.len()).map(|i| p.velocity[i].norm() * p.mass(i)).sum() };
+        let p = simulation.particles();
+        let scale: f64 = (0..p.len()).map(|i| p.velocity[i].norm() * p.mass(i)).sum();
         let before = momentum(&simulation.particles());
         run(&mut simulation, 300);
         let after = momentum(&simulation.particles());

@@ -1,4 +1,4 @@
-//! How far the guards of the time step are from the true edge of stability, found by bisection.
+//! Distance of the time step's guards from the true edge of stability, found by bisection.
 
 mod common;
 
@@ -79,7 +79,8 @@ fn edge_over(guard: &str, scene: &Setup) -> f64 {
 
 #[test]
 fn pair_guard_is_the_edge_for_a_charge_between_two_others() {
-    // Both push it back: twice the stiffness of one is one's with half the mass, as the guard has it for equal grains.
+    // Both push it back: twice the stiffness of one is one's with half the mass, as the guard has it for
+    // equal grains.
     let scene = held(&[10.0 + DISPLACED, 10.0 - NEXT, 10.0 + NEXT], Boundary::Open, 0.0);
     let edge = edge_over("electric pair", &scene);
     assert!((edge - 1.0).abs() < AGREEMENT, "{edge}");
@@ -87,8 +88,8 @@ fn pair_guard_is_the_edge_for_a_charge_between_two_others() {
 
 #[test]
 fn plasma_guard_is_within_the_edge_for_a_charge_whose_field_is_extrapolated() {
-    // The box around the three makes ω_p nearly the charge's own frequency. No interval is stable for ever; this one's growth is not seen in
-    // thousands of steps.
+    // The box around the three makes ω_p nearly the charge's own frequency. No interval is stable for ever;
+    // this one's growth is not seen in thousands of steps.
     let mut scene = held(&[10.0 + DISPLACED, 10.0 - NEXT, 10.0 + NEXT], Boundary::Open, 0.0);
     for interval in [4, 20] {
         let field = scene.field.as_mut().expect("a field");
@@ -141,7 +142,7 @@ fn rayleigh_guard_is_within_the_edge_for_a_grain_that_rocks_between_two() {
 
 #[test]
 fn hertz_guard_is_within_the_edge_for_an_elastic_impact() {
-    /// What a rebound may gain by steps that are nearly too long.
+    /// Gain of a rebound that is allowed with steps that are nearly too long.
     const GAIN: f64 = 0.05;
     const SPEED: f64 = 1.0;
     let mut scene = held(&[12.5, 10.0], Boundary::Open, 0.0);

@@ -77,8 +77,8 @@ fn duplicate_facets_and_slivers_change_nothing() {
     // Every facet twice, once turned over.
     let turned: Vec<[u32; 3]> = triangles.iter().map(|t| [t[0], t[2], t[1]]).collect();
     triangles.extend(turned);
-    // Slivers along the ball's path: widths down to round-off, and some whose third corner is out of the plane by
-    // the rounding of a 32-bit file.
+    // Slivers along the ball's path: widths down to round-off, and some whose third corner is out of the
+    // plane by the rounding of a 32-bit file.
     for (k, (width, lift)) in
         [(1e-6, 0.0), (1e-9, 0.0), (1e-12, 1e-19), (1e-15, -1e-15), (3e-18, 2e-18), (0.0, -1e-10)]
             .into_iter()

@@ -1,4 +1,4 @@
-//! What is allocated, and when: nothing in a step between two rebuilds, nothing for a field that is not there.
+//! Allocations: none in a step between two rebuilds, none for a field that is not there.
 
 mod common;
 
@@ -117,7 +117,7 @@ mod charged {
 
     #[test]
     fn field_that_is_not_needed_allocates_nothing() {
-        /// For the sentences of the plan.
+        /// Bytes of the plan's sentences.
         const TEXT: u64 = 500;
         alone(|| {
             let bytes = |scene: Setup| {

@@ -8,8 +8,8 @@ use common::{DENSITY, RADIUS, floor, grain, material, run, setup};
 const DOWN: f64 = 0.05;
 const YOUNG: f64 = 1e7;
 const POISSON: f64 = 0.25;
-/// Error of the slip at 3000 steps in a contact: the tangential spring takes the slip at the end of each step,
-/// first order.
+/// Error of the slip at 3000 steps in a contact: the tangential spring takes the slip at the end of each
+/// step, first order.
 const STEPS_3000: f64 = 2e-3;
 
 /// A ball's velocity normal to and along the floor, and its spin.
@@ -51,9 +51,10 @@ fn simulated(restitution: f64, friction: f64, along: f64, step: f64) -> Rebound 
     }
 }
 
-/// The same contact as an ordinary differential equation, Runge–Kutta of fourth order with steps so short that
-/// the halved step changes nothing below 1e-6. Elastic: δ' = −v_n, m v_n' = (4/3)Y*√r δ^{3/2}, F' = −8G*√(rδ) v_s
-/// (+ F a'/a while the contact radius a = √(rδ) shrinks), |F| ≤ μ F_n, m v' = F, (2/5)m r² ω' = −(r − δ)F.
+/// Contact of the scene as an ordinary differential equation, Runge–Kutta of fourth order with steps so short
+/// that the halved step changes nothing below 1e-6. Elastic: δ' = −v_n, m v_n' = (4/3)Y*√r δ^{3/2}, F' =
+/// −8G*√(rδ) v_s (+ F a'/a while the contact radius a = √(rδ) shrinks), |F| ≤ μ F_n, m v' = F, (2/5)m r² ω' =
+/// −(r − δ)F.
 fn integrated(friction: f64, along: f64) -> Rebound {
     let y = YOUNG / (2.0 * (1.0 - POISSON * POISSON));
     let shear = YOUNG / (2.0 * (1.0 + POISSON)) / (2.0 * (2.0 - POISSON));
@@ -115,8 +116,9 @@ fn sticking_impact_converges_to_the_integrated_one() {
 
 #[test]
 fn tangential_rebound_follows_the_limits_of_maw_barber_and_fawcett() {
-    // ψ = 2(1 − ν) v_t/(μ(2 − ν) v_n), χ = (7/2)(1 − ν)/(2 − ν) (Maw, Barber & Fawcett, Wear 38, 101 (1976)): contact
-    // point velocities before (1) and after (2) obey ψ₂ = ψ₁ − 4χ for ψ₁ ≥ 4χ − 1, and less is lost below.
+    // ψ = 2(1 − ν) v_t/(μ(2 − ν) v_n), χ = (7/2)(1 − ν)/(2 − ν) (Maw, Barber & Fawcett, Wear 38, 101 (1976)):
+    // contact point velocities before (1) and after (2) obey ψ₂ = ψ₁ − 4χ for ψ₁ ≥ 4χ − 1, and less is lost
+    // below.
     let (chi, scale) = (3.5 * (1.0 - POISSON) / (2.0 - POISSON), 2.0 * (1.0 - POISSON) / (2.0 - POISSON));
     let friction = 0.2;
     for psi in [0.2, 0.6, 1.0, 2.0, 3.0, 4.0, 4.0 * chi - 0.8, 4.0 * chi, 8.0] {
@@ -128,7 +130,8 @@ fn tangential_rebound_follows_the_limits_of_maw_barber_and_fawcett() {
         } else {
             assert!(after > psi - 4.0 * chi - 0.01 && after.abs() <= psi, "ψ₁ = {psi}: {after}");
         }
-        // Sticking all the time the spring swings 1.7 times and returns the slip's sign; in between it reverses it.
+        // Sticking all the time the spring swings 1.7 times and returns the slip's sign; in between it
+        // reverses it.
         assert!(psi > 0.9 || after > 0.0, "ψ₁ = {psi}: {after}");
         assert!(!(3.5..5.0).contains(&psi) || after < 0.0, "ψ₁ = {psi}: {after}");
     }

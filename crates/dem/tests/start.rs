@@ -1,4 +1,4 @@
-//! What is refused at the start, and grains that leave.
+//! Scenes that are refused at the start, and grains that leave.
 
 mod common;
 

@@ -32,7 +32,7 @@ pub(crate) fn run(root: &Path) -> Result<()> {
     #[expect(clippy::cast_precision_loss, reason = "a ratio for the eye")]
     let ratio = whole.instructions as f64 / bare.instructions as f64;
     println!(
-        "plain bed, 1728 grains, 400 steps: {} instructions as a run, {} with motion and contacts alone: \
+        "plain bed, 1728 grains, 1000 steps: {} instructions as a run, {} with motion and contacts alone: \
          ratio {ratio:.5}",
         whole.instructions, bare.instructions
     );

@@ -8,8 +8,8 @@ pub(crate) const RADIUS: f64 = 1e-3;
 pub(crate) const STEP_S: f64 = 8e-6;
 /// Skin of the neighbour lists [m].
 pub(crate) const SKIN_M: f64 = 0.2 * RADIUS;
-/// Steps of a run.
-pub(crate) const STEPS: usize = 400;
+/// Steps of a run: enough that checking and building the scene count for little.
+pub(crate) const STEPS: usize = 1000;
 /// Contacts that a run ends with at least: a bed without contacts says little.
 pub(crate) const FEWEST_CONTACTS: usize = 100;
 
@@ -61,6 +61,7 @@ pub(crate) fn materials() -> Vec<Material> {
 }
 
 /// Prints what a run ends with, to the last bit; `velocity` [m/s] is in the order of the set-up.
+#[expect(clippy::print_stdout, reason = "a program of its own, whose lines are compared")]
 pub(crate) fn tell(contacts: usize, velocity: impl Iterator<Item = Vector3<f64>>) {
     assert!(contacts > FEWEST_CONTACTS, "{contacts} contacts are too few");
     let sum: f64 = velocity.map(|velocity| velocity.norm_squared()).sum();

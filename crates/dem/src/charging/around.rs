@@ -1,4 +1,4 @@
-//! Which grains touch which, while charges change so fast that contacts must see each other's.
+//! Touching grains of every grain, for contacts that must see each other's charges change.
 
 use crate::contacts::neighbours::{Listed, Neighbours};
 use crate::motion::grains::Grains;
@@ -7,14 +7,14 @@ use amberfield_core::Vector3;
 /// Two places closer than this, over their distance from the grain, are the same grain's.
 const SAME: f64 = 1e-9;
 
-/// A partner that is no grain: a wall.
-pub(super) const NOBODY: usize = usize::MAX;
+/// Index that stands for a wall where a partner's is asked for.
+pub(super) const WALL: usize = usize::MAX;
 
 /// A grain that touches another.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Toucher {
     pub(super) grain: usize,
-    /// From the grain that it touches to it [m].
+    /// Offset from the grain that it touches to it [m].
     pub(super) offset: Vector3<f64>,
 }
 
@@ -36,9 +36,9 @@ impl Around {
         for i in 2..self.start.len() {
             self.start[i] += self.start[i - 1];
         }
-        let nobody = Toucher { grain: 0, offset: Vector3::zeros() };
+        let empty = Toucher { grain: 0, offset: Vector3::zeros() };
         self.touchers.clear();
-        self.touchers.resize(self.start[grains.len() + 1] as usize, nobody);
+        self.touchers.resize(self.start[grains.len() + 1] as usize, empty);
         for pair in neighbours.touching() {
             let (i, j, offset) = (pair.i, pair.j, pair.offset(grains, &neighbours.shifts));
             for (a, b, offset) in [(i, j, offset), (j, i, -offset)] {
@@ -62,7 +62,7 @@ impl Around {
         for toucher in of_i.iter().filter(|t| t.grain != j.grain || !same(&t.offset, &j.offset)) {
             each(toucher.grain, toucher.offset);
         }
-        if j.grain == NOBODY {
+        if j.grain == WALL {
             return;
         }
         for toucher in self.of(j.grain) {

@@ -1,12 +1,13 @@
 //! E_x: the field at a contact of everything but the colliders.
 //!
-//! Every evaluation of the field is asked for E at the contacts too, those that touch and those that may touch before the next one: places
-//! without charge, at which every method gives the field of all charges with all images. Less the colliders' own fields, and at a wall
-//! that bounds the field less the grain's own image, it is E_x. A grounded wall that the field does not know mirrors
-//! the others' charges in its tangent plane at the contact, which doubles their normal field there.
+//! Every evaluation of the field is asked for E at the contacts too, those that touch and those that may
+//! touch before the next one. They are places without charge, at which every method gives the field of all
+//! charges with all images. E_x is that field less the colliders' own, and at a wall that bounds the field
+//! less the grain's own image. A grounded wall that the field does not know mirrors the others' charges in
+//! its tangent plane at the contact, which doubles their normal field there.
 //!
-//! A contact that was not foreseen has until the next evaluation the mean of E at the two centres without the partner's field, or at a wall
-//! E at the centre without the own image.
+//! A contact that was not foreseen has a stand-in until the next evaluation: the mean of E at the two centres
+//! without the partner's field, or at a wall E at the centre without the grain's own image.
 
 use super::around::Toucher;
 use super::{Charging, Traders, inside};
@@ -17,7 +18,8 @@ use crate::field_stage::Extras;
 use crate::motion::grains::Grains;
 use amberfield_core::{Axis, Domain, Side, Vector3, WallCharging};
 
-/// How far before a wall its field is asked for, over the radius: a wall of facets may lie outside the field's curved domain.
+/// Distance before a wall at which its field is asked for, over the radius: a wall of facets may lie outside
+/// the field's curved domain.
 const BEFORE_WALL: f64 = 0.02;
 /// A wall this close to a face of the domain, over the radius, is the face.
 const SAME_FACE: f64 = 1e-6;
@@ -48,7 +50,9 @@ impl Charging {
         }
     }
 
-    /// Adds the charges of walls and the places of contacts, those of pairs up to `margin` [m] apart included.
+    /// Adds the charges of walls and the places of contacts to `extras`. Pairs that are up to `margin` [m]
+    /// apart are asked for as well: they may touch before the next evaluation. `charge` is by the set-up's
+    /// order [C].
     pub(super) fn ask(
         &mut self,
         traders: Traders<'_>,
@@ -144,7 +148,7 @@ impl Charging {
         0.5 * (sum.dot(&offset) / distance2.sqrt() + self.coulomb * (of_j - of_i) / distance2)
     }
 
-    /// The same at a wall.
+    /// E_x·n of a contact with a wall that was not foreseen [V/m].
     pub(super) fn unforeseen_at_wall(&self, traders: Traders<'_>, touch: &Touch, charge: &[f64]) -> f64 {
         let field = traders.field.at(touch.grain).dot(&touch.normal);
         let own = charge[traders.grains.original[touch.grain] as usize];
@@ -152,8 +156,8 @@ impl Charging {
         factor * (field - image * self.coulomb * own / (4.0 * touch.distance * touch.distance))
     }
 
-    /// Change of E·n since the last evaluation at a distance `reach` [m] along `normal` from grain i, made by the grains that touch i
-    /// or its partner; `charge` is that of a sorted index [C].
+    /// Change of E·n since the last evaluation, at a distance `reach` [m] along `normal` from grain i, made
+    /// by the grains that touch i or its partner. `charge` gives that of a sorted index [C].
     pub(super) fn gained_beside(
         &self,
         grains: &Grains,
@@ -174,11 +178,11 @@ impl Charging {
     }
 }
 
-/// What a wall does to the field of a grain and of the others at their contact.
+/// Effect of a wall on the field of a grain and of the others at their contact.
 struct Mirror {
     /// Sign of E·n of the grain's own image in the field, as of [`image_sign`].
     image: f64,
-    /// What the others' E·n is multiplied by: a grounded wall that the field does not know doubles it.
+    /// Factor of the others' E·n: a grounded wall that the field does not know doubles it.
     factor: f64,
 }
 
@@ -188,8 +192,8 @@ fn mirror(domain: &Domain, grains: &Grains, touch: &Touch) -> Mirror {
     Mirror { image, factor: if unknown_conductor { 2.0 } else { 1.0 } }
 }
 
-/// What a field with the touched wall for a boundary makes of the grain's own image: 1 for a conductor, −1 for an insulator, 0 where
-/// the field does not know the wall.
+/// Sign of the E·n that the grain's own image makes where the touched wall bounds the field: 1 for a
+/// conductor, −1 for an insulator, 0 where the field does not know the wall.
 fn image_sign(domain: &Domain, grains: &Grains, touch: &Touch) -> f64 {
     if touch.bounds_field {
         return if touch.charging == WallCharging::Insulating { -1.0 } else { 1.0 };

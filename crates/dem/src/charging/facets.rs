@@ -1,8 +1,9 @@
-//! Charge of walls by facet: cells of a plane, or parts of a mesh's triangles, about as large as the largest grain.
+//! Charge of walls by facet: squares of a plane, or parts of a mesh's triangles, about as large as the
+//! largest grain.
 //!
-//! A facet exists once something has charged it. Those of insulating walls keep their charge, which acts as a point charge a
-//! little before the facet, towards the grains: a facet is as wide as a grain, and is seen from a radius away at least. Those of grounded
-//! walls book what flowed off there.
+//! A facet exists once something has charged it. Facets of insulating walls keep their charge, which acts as
+//! a point charge a little before the facet, towards the grains: a facet is as wide as a grain, and is seen
+//! from a radius away at least. Facets of grounded walls book what flowed off there.
 
 use super::inside;
 use crate::contacts::walls::Surface;
@@ -26,7 +27,7 @@ pub struct Facet {
     pub area_m2: f64,
     /// Charge that it holds, or that flowed off there [C].
     pub charge: f64,
-    /// Where its charge acts [m]; `None` where it has flowed off.
+    /// Place where its charge acts [m]; `None` where it has flowed off.
     pub(super) place: Option<Vector3<f64>>,
 }
 
@@ -86,7 +87,7 @@ impl Facets {
         number
     }
 
-    /// The same, if it has been charged.
+    /// The facet of a wall at a place on it [m], if it has been charged.
     pub(super) fn known(&self, wall: u32, surface: Surface, place: Vector3<f64>) -> Option<&Facet> {
         let (key, _) = self.parted(surface, place);
         self.numbers.get(&(wall, key)).map(|&number| self.get(number))

@@ -3,7 +3,7 @@
 use amberfield_core::{ChargeTransfer, Material};
 use amberfield_laws::{charge_transfer, contact_area, hertz_mindlin};
 
-/// Of one pair.
+/// Constants of one pair of materials.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct PairCharging {
     /// ε(W_i − W_j)/(δe) [C/m²].
@@ -12,7 +12,7 @@ pub(super) struct PairCharging {
     pub(super) area_factor: f64,
 }
 
-/// Of all pairs.
+/// Constants of all pairs.
 #[derive(Debug)]
 pub(super) struct ChargingTable {
     materials: usize,
@@ -20,7 +20,7 @@ pub(super) struct ChargingTable {
 }
 
 impl ChargingTable {
-    /// For a medium's permittivity [F/m].
+    /// Mixes the constants of all pairs in a medium of a permittivity [F/m].
     pub(super) fn new(materials: &[Material], settings: &ChargeTransfer, permittivity: f64) -> Self {
         let mix = |a: &Material, b: &Material| {
             let work_functions = [a, b].map(|material| material.work_function_ev.unwrap_or(0.0));
@@ -39,7 +39,7 @@ impl ChargingTable {
         Self { materials: materials.len(), pairs }
     }
 
-    /// Of materials `a` and `b`, in this order.
+    /// Constants of materials `a` and `b`, in this order.
     pub(super) fn get(&self, a: u16, b: u16) -> PairCharging {
         self.pairs[usize::from(a) * self.materials + usize::from(b)]
     }

@@ -1,14 +1,19 @@
 //! Charge traded at contacts that grow.
 //!
-//! Every step follows the contact areas. What they grow by moves charge a few steps later for pairs of grains, at once at walls: the
-//! exponential update is exact for any growth, so that several steps' growth in one update is the same charge. Contacts are taken one after another, each
-//! with the charges that the ones before it left; that is what keeps networks of contacts bounded. The order follows the lists, which depend on the grains
-//! alone, so that results do not depend on the number of threads: while contacts barely relax, halves of the grains trade side by side and then with each
-//! other; stiff contacts come after them, one by one, first to last and then last to first in turn.
+//! Every step follows the contact areas. Their growth moves charge a few steps later for pairs of grains, and
+//! at once at walls. The exponential update is exact for any growth, so that several steps' growth in one
+//! update is the same charge.
 //!
-//! The field of everything else at a contact, E_x, comes from the last evaluation of the field, see `contact_field`. Between two evaluations charges
-//! change: as long as no contact has relaxed by a few per cent since, that is left to the next evaluation, which is asked for when charges
-//! have changed by more than the tolerance allows; after that contacts see the present charges of the grains that touch theirs.
+//! Contacts are taken one after another, each with the charges that the ones before it left: that keeps
+//! networks of contacts bounded. The order follows the lists, which depend on the grains alone, so that
+//! results do not depend on the number of threads. While contacts barely relax, halves of the grains trade
+//! side by side and then with each other. Stiff contacts come after them, one by one, first to last and then
+//! last to first in turn.
+//!
+//! The field of everything else at a contact, E_x, comes from the last evaluation of the field, see
+//! `contact_field`. Between two evaluations charges change. As long as no contact has relaxed by a few per
+//! cent since, that is left to the next evaluation, which is asked for when charges have changed by more than
+//! the tolerance allows. After that contacts see the present charges of the grains that touch theirs.
 
 mod around;
 mod contact_field;
@@ -41,14 +46,16 @@ use serde::{Deserialize, Serialize};
 
 /// Steps whose growth moves charge together.
 const EVERY: u64 = 20;
-/// Σ of the largest αΔA of every update since the last evaluation of the field from which on contacts see the charges of
-/// the grains that touch theirs, and at which the field is due.
+/// Lag from which on contacts see the charges of the grains that touch theirs. The lag is the sum, over every
+/// update since the last evaluation of the field, of the largest αΔA.
 const LAG_SEEN: f64 = 0.02;
+/// Lag at which the field is due.
 const LAG_DUE: f64 = 0.1;
-/// Relative RMS change of the charges since the last evaluation at which the field is due, over the tolerance.
+/// Relative RMS change of the charges since the last evaluation at which the field is due, over the
+/// tolerance.
 const CHANGE_DUE: f64 = 2.0;
 
-/// What has moved.
+/// Account of the charge that has moved.
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
 pub struct Ledger {
     /// Σ of the sizes of all charges moved [C].
@@ -59,7 +66,7 @@ pub struct Ledger {
     pub walls: Vec<f64>,
 }
 
-/// What a trade reads.
+/// Things that a trade reads.
 #[derive(Clone, Copy)]
 pub(crate) struct Traders<'a> {
     pub(crate) domain: &'a Domain,
@@ -75,7 +82,7 @@ impl Traders<'_> {
     }
 }
 
-/// The stage.
+/// The stage that trades charge.
 #[derive(Debug)]
 pub(crate) struct Charging {
     settings: ChargeTransfer,
@@ -180,7 +187,7 @@ impl Charging {
         step.is_multiple_of(EVERY)
     }
 
-    /// How contact areas are followed in a step.
+    /// Rule by which contact areas are followed in a step.
     pub(crate) fn follow(&self, step: u64) -> Follow {
         Follow { moves: step > 0, beyond: self.settings.beyond_previous_maximum }
     }
@@ -201,7 +208,7 @@ impl Charging {
         self.facets.all()
     }
 
-    /// What is left of a transfer under the breakdown field, if there is one; `work` as in `PairCharging`.
+    /// Part of a transfer that the breakdown field allows, if there is one; `work` as in `PairCharging`.
     fn allowed(&self, drive: Drive, work: f64, transfer: f64) -> f64 {
         let Some(breakdown) = self.settings.breakdown_field_v_m else { return transfer };
         let normal_field = (drive.drive - work) / self.permittivity;

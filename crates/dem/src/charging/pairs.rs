@@ -1,4 +1,4 @@
-//! Grain with grain.
+//! Trade of grains with each other.
 
 use super::around::Toucher;
 use super::{Charging, LAG_SEEN, Traders};
@@ -20,7 +20,7 @@ impl ChunkList {
     }
 }
 
-/// What pairs moved.
+/// Sums over pairs that traded.
 #[derive(Clone, Copy, Debug, Default)]
 struct Traded {
     /// Σ of the sizes of the charges [C].
@@ -35,7 +35,7 @@ impl Traded {
     }
 }
 
-/// Charges [C] in sorted order, `None` for grains that take no part.
+/// Charge of a grain [C]; `None` where it takes no part.
 pub(super) type Held = Option<f64>;
 
 /// A pair about to trade.
@@ -86,8 +86,9 @@ impl Charging {
         self.ledger.moved += traded.moved;
     }
 
-    /// Pairs of chunks from `first` on that barely relax: what a half of the chunks knows both of in each half, side by side, then the
-    /// others. The halves depend on the number of chunks alone.
+    /// Trades the pairs of chunks from `first` on that barely relax: first those with both grains in the same
+    /// half of the chunks, the halves side by side, then the others. The halves depend on the number of
+    /// chunks alone. Pairs that relax more stay listed as grown.
     fn trade_mild(
         &self,
         traders: Traders<'_>,
@@ -132,8 +133,8 @@ impl Charging {
         traded
     }
 
-    /// All that is left, one after another, each with the present charges of the grains that touch its own; first to last and last to
-    /// first in turn.
+    /// Trades the pairs that are left, one after another, each with the present charges of the grains that
+    /// touch its own; first to last and last to first in turn.
     fn trade_stiff(
         &mut self,
         traders: Traders<'_>,
@@ -174,7 +175,8 @@ impl Charging {
         traded
     }
 
-    /// What drives charge through a pair with the field of the last evaluation; `None` if one of the two takes no part.
+    /// Drive of the charge through a pair with the field of the last evaluation; `None` if one of the two
+    /// takes no part.
     #[inline(always)]
     fn trading(
         &self,

@@ -6,7 +6,8 @@ use crate::field_stage::{Extras, FieldStage};
 use crate::motion::grains::Grains;
 use amberfield_core::{Domain, Vector3};
 
-/// Contacts are foreseen for so many times the field's present interval: it may be evaluated later than thought.
+/// Time for which contacts are foreseen, over the field's present interval: the field may be evaluated later
+/// than thought.
 const FORESIGHT: f64 = 2.0;
 
 /// Everything that a round of trade reads and changes.

@@ -1,4 +1,4 @@
-//! What charge transfer puts in a checkpoint.
+//! State of charge transfer, for checkpoints.
 
 use super::{Facets, Ledger};
 use crate::contacts::memory::PairGrowth;

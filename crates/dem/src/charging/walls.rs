@@ -1,6 +1,6 @@
-//! Grain with wall.
+//! Trade of a grain with a wall.
 
-use super::around::{NOBODY, Toucher};
+use super::around::{Toucher, WALL};
 use super::{Charging, LAG_SEEN, Traders};
 use crate::contacts::neighbours::Neighbours;
 use crate::contacts::walls::{Touch, Walls};
@@ -35,7 +35,7 @@ impl Charging {
         self.touches = grown;
     }
 
-    /// Returns αΔA.
+    /// Moves the charge that is due at one contact; returns αΔA, by how much the contact relaxed.
     fn trade_wall(&mut self, traders: Traders<'_>, walls: &Walls, touch: &Touch, charge: &mut [f64]) -> f64 {
         let grains = traders.grains;
         let Some(a) = traders.member(touch.grain) else { return 0.0 };
@@ -46,10 +46,10 @@ impl Charging {
         let mut field =
             touch.memory.foreseen.unwrap_or_else(|| self.unforeseen_at_wall(traders, touch, charge));
         if self.lag > LAG_SEEN {
-            let nobody = Toucher { grain: NOBODY, offset: Vector3::zeros() };
+            let wall_itself = Toucher { grain: WALL, offset: Vector3::zeros() };
             let charges = |grain| charge[grains.original[grain] as usize];
             let gained =
-                self.gained_beside(grains, touch.grain, &nobody, touch.normal, touch.distance, charges);
+                self.gained_beside(grains, touch.grain, &wall_itself, touch.normal, touch.distance, charges);
             field += gained * if touch.charging == WallCharging::Grounded { 2.0 } else { 1.0 };
         }
         let grain = Grain { charge: charge[a], radius: grains.centre[touch.grain][3] };

@@ -1,5 +1,5 @@
-//! Contacts of grains side by side: the law of `crate::contacts::law` on vectors of numbers, so that no contact waits for the roots
-//! of another.
+//! Contacts of grains side by side: the law of `crate::contacts::law` on vectors of numbers, so that no
+//! contact waits for the roots of another.
 
 use crate::contacts::law::{Contact, History, respond};
 use crate::contacts::material_pairs::PairConstants;
@@ -45,7 +45,7 @@ impl Vectors {
 /// The two grains of every contact, its history, and what it does.
 #[derive(Clone, Debug)]
 pub(crate) struct Batch {
-    /// From the centre of i to that of j [m].
+    /// Offset from the centre of i to that of j [m].
     pub(crate) offset: Vectors,
     /// v_i − v_j of the centres [m/s].
     pub(crate) velocity: Vectors,

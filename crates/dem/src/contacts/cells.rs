@@ -116,14 +116,15 @@ impl Cells {
         }
     }
 
-    /// Appends every partner whose gap is below the skin and which this grain's list holds: larger indices of its own level
-    /// and everything of coarser levels.
+    /// Appends every partner whose gap is below the skin and which this grain's list holds: larger indices of
+    /// its own level and everything of coarser levels.
     #[inline]
     pub(crate) fn partners(&self, index: u32, level: u8, centre: &[f64; 4], found: &mut Vec<u32>) {
         for (depth, cells) in self.levels.iter().enumerate().skip(level as usize) {
             let coarser = depth != level as usize;
             cells.visit(centre, |others, entries| {
-                // Every item is written, and overwritten by the next unless it counts: no branch to guess wrong.
+                // Every item is written, and overwritten by the next unless it counts: no branch to guess
+                // wrong.
                 let mut end = found.len();
                 found.resize(end + entries.len(), 0);
                 for (other, &entry) in others.iter().zip(entries) {

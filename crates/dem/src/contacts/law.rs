@@ -2,10 +2,10 @@
 //!
 //! The tangential spring is kept as a force, advanced by −S_t v_t Δt with the slip v_t at the end of the step
 //! (first order: a damping of ½ S_t Δt, which vanishes with the step), and turned with the contact. While the
-//! contact unloads it shrinks with the contact radius √(R*δ), so that no energy is made by stretching a spring
-//! at high load and releasing it at low load (Thornton, Cummins & Cleary, Powder Technol. 233, 30 (2013)). The
-//! normal damping is kept to the end of the contact (δ = 0), where it pulls slightly: that is what makes the
-//! coefficient of restitution exact; friction sees no negative load.
+//! contact unloads it shrinks with the contact radius √(R*δ), so that no energy is made by stretching a
+//! spring at high load and releasing it at low load (Thornton, Cummins & Cleary, Powder Technol. 233, 30
+//! (2013)). The normal damping is kept to the end of the contact (δ = 0), where it pulls slightly: that is
+//! what makes the coefficient of restitution exact; friction sees no negative load.
 //!
 //! Numbers are one contact's, or those of several side by side: there is no branch in the law.
 
@@ -32,7 +32,7 @@ pub(crate) struct Contact<T> {
     pub(crate) inverse_moment: T,
 }
 
-/// What a contact remembers.
+/// Memory of a contact.
 pub(crate) struct History<T> {
     /// Tangential force of the spring [N].
     pub(crate) spring: Vector3<T>,
@@ -43,13 +43,13 @@ pub(crate) struct History<T> {
 }
 
 impl History<f64> {
-    /// From how histories are stored: spring and contact radius, rolling spring.
+    /// Reads a history as it is stored: spring and contact radius, rolling spring.
     #[inline(always)]
     pub(crate) fn stored([x, y, z, contact_radius]: [f64; 4], rolling: [f64; 3]) -> Self {
         Self { spring: Vector3::new(x, y, z), contact_radius, rolling: rolling.into() }
     }
 
-    /// As it is stored.
+    /// History as it is stored: spring and contact radius, rolling spring.
     #[inline(always)]
     pub(crate) fn to_store(&self) -> ([f64; 4], [f64; 3]) {
         let spring = self.spring;
@@ -57,7 +57,7 @@ impl History<f64> {
     }
 }
 
-/// What the contact does.
+/// Forces and torques of a contact.
 pub(crate) struct Response<T> {
     /// Force on i; −force on j.
     pub(crate) force: Vector3<T>,

@@ -26,7 +26,7 @@ pub(crate) struct PairConstants<T> {
 }
 
 impl<T> PairConstants<T> {
-    /// The same of every number.
+    /// Applies a function to every number.
     #[inline(always)]
     pub(crate) fn map<U>(self, each: impl Fn(T) -> U) -> PairConstants<U> {
         PairConstants {
@@ -101,7 +101,7 @@ impl PairTable {
         (0..self.materials).map(|b| self.get(material.0, b as u16).normal / 2.0).fold(0.0, f64::max)
     }
 
-    /// Which contact terms any pair needs.
+    /// Contact terms that any pair needs.
     pub(crate) fn features(&self) -> Features {
         Features {
             friction: self.constants.iter().any(|c| c.friction > 0.0),

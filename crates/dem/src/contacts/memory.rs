@@ -3,7 +3,7 @@
 use amberfield_core::Vector3;
 use serde::{Deserialize, Serialize};
 
-/// How contact areas are followed in a step.
+/// Rule by which contact areas are followed in a step.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Follow {
     /// Whether it is a step: what touches at the start has its area from before the run.
@@ -12,8 +12,10 @@ pub(crate) struct Follow {
     pub(crate) beyond: bool,
 }
 
-/// Contact area and what of its growth has not moved charge yet. Every step reads and writes those of all contacts: single precision
-/// halves that, and its rounding does not add up, since differences of close areas are exact.
+/// Contact area, and the part of its growth that has not moved charge yet.
+///
+/// Every step reads and writes those of all contacts. Single precision halves that, and its rounding does not
+/// add up, since differences of close areas are exact.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
 pub(crate) struct Growth {
     /// Area at the last step at which it touched, or the largest since first touch [m²].
@@ -23,8 +25,8 @@ pub(crate) struct Growth {
 }
 
 impl Growth {
-    /// Takes the area [m²] at a step, the one before which it `touched` or not; whether the contact begins. Without branches, which would keep
-    /// the next contacts waiting.
+    /// Takes the area [m²] at a step; `touched` says whether the contact touched a step before. Returns
+    /// whether it begins. There are no branches, which would keep the next contacts waiting.
     #[inline(always)]
     pub(crate) fn follow(&mut self, area: f64, touched: bool, Follow { moves, beyond }: Follow) -> bool {
         #[expect(clippy::cast_possible_truncation, reason = "single precision is meant")]
@@ -41,7 +43,7 @@ impl Growth {
         self.due.into()
     }
 
-    /// Nothing is due any more.
+    /// Forgets the growth that was due: it has moved its charge.
     pub(crate) fn settle(&mut self) {
         self.due = 0.0;
     }
@@ -89,7 +91,7 @@ pub(crate) struct WallHistory {
     pub(crate) normal: [f64; 3],
     /// Overlap [m].
     pub(crate) overlap: f64,
-    /// Of a mesh, where it is touched.
+    /// Triangle of a mesh that is touched.
     pub(crate) triangle: u32,
     /// Tangential force [N] and contact radius [m].
     pub(crate) spring: [f64; 4],
@@ -98,7 +100,7 @@ pub(crate) struct WallHistory {
     pub(crate) charging: Memory,
 }
 
-/// What contacts put in a checkpoint.
+/// State of all contacts, for checkpoints.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub(crate) struct ContactsState {
     /// Centres for which the lists were built [m].

@@ -31,7 +31,8 @@ pub(crate) struct ChunkList {
     pub(crate) rolling: Vec<[f64; 3]>,
     /// Charging of the entries; empty without charge transfer.
     pub(crate) growth: Vec<Growth>,
-    /// E_x·n of the entries at the last evaluation of the field [V/m], of those that were foreseen there; empty likewise.
+    /// E_x·n of the entries at the last evaluation of the field [V/m], `None` of those that were not foreseen
+    /// there; empty without charge transfer.
     pub(crate) foreseen: Vec<Option<f64>>,
     /// Entries whose growth is due, in the making of a trade.
     pub(crate) grown: Vec<Grown>,
@@ -39,9 +40,9 @@ pub(crate) struct ChunkList {
     pub(crate) begun: u64,
     /// Scratch of the step.
     pub(crate) hits: Vec<Hit>,
-    /// What this chunk does to other chunks.
+    /// Pushes of this chunk on grains of others.
     pub(crate) outbox: Vec<Push>,
-    /// Which of the outbox's slots hold something in this step.
+    /// Marks of the outbox's slots that hold something in this step.
     pub(crate) filled: Vec<bool>,
     /// Touching pairs of the last evaluation.
     pub(crate) contacts: usize,
@@ -60,7 +61,7 @@ pub(crate) struct Listed {
 }
 
 impl Listed {
-    /// From the centre of i to that of j, or to its image [m].
+    /// Offset from the centre of i to that of j, or to its image [m].
     pub(crate) fn offset(&self, grains: &Grains, shifts: &[[f64; 3]; 32]) -> Vector3<f64> {
         let shift = Vector3::from(shifts[(self.code >> INDEX_BITS) as usize]);
         grains.position(self.j) - grains.position(self.i) + shift
@@ -70,12 +71,12 @@ impl Listed {
     pub(crate) fn distance(&self, grains: &Grains, shifts: &[[f64; 3]; 32]) -> f64 {
         let shift = shifts[(self.code >> INDEX_BITS) as usize];
         let (a, b) = (&grains.centre[self.i], &grains.centre[self.j]);
-        // The shift is added before the other centre is subtracted, as where the lists inherit: the same bits.
+        // The shift is added before the other centre is subtracted, as where the lists inherit.
         (0..3).map(|x| (b[x] + shift[x] - a[x]).powi(2)).sum::<f64>().sqrt()
     }
 }
 
-/// Where a grain finds what another chunk does to it.
+/// Place in which a grain finds another chunk's push on it.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Inbound {
     pub(crate) chunk: u32,
@@ -166,7 +167,7 @@ impl Neighbours {
         }
     }
 
-    /// What other chunks do to chunk `k` in this step: index in the chunk, and push.
+    /// Pushes of other chunks on chunk `k` in this step: index in the chunk, and push.
     #[inline]
     pub(crate) fn pushes(&self, k: usize) -> impl Iterator<Item = (usize, &Push)> {
         self.inbox[k].iter().filter_map(|inbound| {

@@ -9,7 +9,7 @@ use crate::motion::chunks::{CHUNK, Push, chunk_count, for_each_chunk, is_paralle
 use crate::motion::grains::Grains;
 use amberfield_core::Vector3;
 
-/// What every chunk reads.
+/// Data that every chunk reads.
 struct Scene<'a> {
     grains: &'a Grains,
     shifts: &'a [[f64; 3]; 32],
@@ -19,8 +19,8 @@ struct Scene<'a> {
 }
 
 /// Computes the forces and torques that chunks make on their own grains into `force` and `torque`
-/// (overwritten), and on others into the outboxes. `step` [s] advances the springs; contact areas are followed if anyone
-/// wants to know them.
+/// (overwritten), and on others into the outboxes. `step` [s] advances the springs. Contact areas are
+/// followed if anyone wants to know them.
 pub(crate) fn pair_forces(
     grains: &Grains,
     neighbours: &mut Neighbours,
@@ -113,7 +113,7 @@ fn find_hits<const PERIODIC: bool>(scene: &Scene<'_>, first: usize, list: &mut C
     found
 }
 
-/// From the centre `a` to the centre `b`, or to its image.
+/// Offset from the centre `a` to the centre `b`, or to its image [m].
 #[inline(always)]
 fn offset_of<const PERIODIC: bool>(scene: &Scene<'_>, a: &[f64; 4], b: &[f64; 4], code: u32) -> Vector3<f64> {
     let d = Vector3::new(b[0] - a[0], b[1] - a[1], b[2] - a[2]);

@@ -16,9 +16,9 @@ use serde::{Deserialize, Serialize};
 pub(crate) struct Forecast {
     /// E at the last evaluation [V/m].
     e: Vec<Vector3<f64>>,
-    /// Its change per step [V/m].
+    /// Change of E per step [V/m].
     slope: Vec<Vector3<f64>>,
-    /// [C].
+    /// Charge [C].
     charge: Vec<f64>,
     /// Memory of the next reordering.
     #[serde(skip)]
@@ -60,9 +60,9 @@ impl Forecast {
         }
     }
 
-    /// Takes a fresh E of the members, whose sorted indices among `count` grains are `index`, `age` steps after
-    /// the last evaluation. The difference from what was forecast, over `scale` [V/m]; `None` the first time
-    /// and when no step was taken.
+    /// Takes a fresh E of the members, whose sorted indices among `count` grains are `index`, `age` steps
+    /// after the last evaluation. The difference from what was forecast, over `scale` [V/m]; `None` the first
+    /// time and when no step was taken.
     pub(crate) fn renew(
         &mut self,
         members: &Members,
@@ -95,9 +95,9 @@ impl Forecast {
 /// The electric energy between two evaluations, on the line through the last two.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
 pub(crate) struct EnergyForecast {
-    /// At the last evaluation [J].
+    /// Energy at the last evaluation [J].
     last: f64,
-    /// Its change per step [J].
+    /// Change of the energy per step [J].
     slope: f64,
     evaluated: bool,
 }

@@ -1,14 +1,14 @@
-//! How many steps lie between two evaluations of the field.
+//! Choice of the steps between two evaluations of the field.
 //!
-//! Every evaluation checks the forecast that it replaces: δ, the RMS over the members of the difference between
-//! the fresh E and the forecast, over the scale of E, is the error that the forecast had reached. It grows
-//! about as the square of the time since the evaluation, so that
+//! Every evaluation checks the forecast that it replaces: δ, the RMS over the members of the difference
+//! between the fresh E and the forecast, over the scale of E, is the error that the forecast had reached. It
+//! grows about as the square of the time since the evaluation, so that
 //!
 //! next = present · √(aim/δ), within a quarter and twice the present interval,
 //!
-//! like the step of a solver of ordinary differential equations, except that no step is taken back. A forecast
-//! from two evaluations that are as far apart as the next one errs by δ s(s+1)/2 at the part s of its interval,
-//! 0.51 δ in RMS over the interval; a field that is held errs by δ s, 0.58 δ.
+//! like the step of a solver of ordinary differential equations, except that no step is taken back. A
+//! forecast from two evaluations that are as far apart as the next one errs by δ s(s+1)/2 at the part s of
+//! its interval, 0.51 δ in RMS over the interval; a field that is held errs by δ s, 0.58 δ.
 //!
 //! All depends on the grains only, never on a clock.
 
@@ -18,10 +18,10 @@ use serde::{Deserialize, Serialize};
 /// RMS over an interval of the error of an extrapolated field, over the error at the interval's end:
 /// √∫(s(s+1)/2)² ds from 0 to 1 = √(31/120).
 const EXTRAPOLATED: f64 = 0.508;
-/// The same of a field that is held: √(1/3).
+/// RMS over an interval of the error of a field that is held, over the error at its end: √(1/3).
 const HELD: f64 = 0.577;
-/// RMS error over an interval that is aimed at, over the tolerance. The tuned field leaves about as much to spare:
-/// the two together, whose squares add, meet the tolerance.
+/// RMS error over an interval that is aimed at, over the tolerance. The tuned field leaves about as much to
+/// spare: the two together, whose squares add, meet the tolerance.
 const AIM: f64 = 0.8;
 /// Largest difference of any grain that is aimed at, over the RMS difference that is: grains that few others
 /// resemble, such as a lone one that falls on a conductor, are held to this.
@@ -29,7 +29,7 @@ const WORST: f64 = 30.0;
 /// Most and least growth of the interval from one evaluation to the next.
 const GROWTH: (f64, f64) = (0.25, 2.0);
 
-/// How well a forecast did.
+/// Error of a forecast, found at the evaluation that replaced it.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub(crate) struct Check {
     /// RMS difference over the members between forecast and fresh E, over the scale of E.

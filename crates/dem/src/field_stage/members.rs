@@ -1,9 +1,10 @@
-//! Who makes and feels the field.
+//! Grains that make and feel the field, and other charges and places in an evaluation.
 
 use crate::motion::grains::Grains;
 use amberfield_core::{Domain, Particles, Vector3};
 
-/// Members of the field: sorted indices, positions inside the domain, charges; the last two go on with what is beside the grains.
+/// Members of the field: sorted indices, positions inside the domain, charges. The last two go on with what
+/// is beside the grains.
 #[derive(Debug, Default)]
 pub(crate) struct Members {
     pub(super) index: Vec<u32>,
@@ -13,7 +14,8 @@ pub(crate) struct Members {
     pub(super) count: usize,
 }
 
-/// What takes part in an evaluation beside the grains: charges of walls, and places without charge at which E is asked for.
+/// Charges of walls, and places without charge at which E is asked for: the part of an evaluation that is
+/// beside the grains.
 #[derive(Debug, Default)]
 pub(crate) struct Extras {
     position: Vec<Vector3<f64>>,

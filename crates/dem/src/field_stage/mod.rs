@@ -2,8 +2,8 @@
 //!
 //! `coupling_interval = "auto"`: E is evaluated anew
 //!
-//! * when the interval ends that keeps the error of the extrapolation, measured at every evaluation, at a share
-//!   of the tolerance ([`interval`]);
+//! * when the interval ends that keeps the error of the extrapolation, measured at every evaluation, at a
+//!   share of the tolerance ([`interval`]);
 //! * as soon as any grain may have moved by half the smallest member's radius since: what was measured says
 //!   little about grains that are elsewhere by now;
 //! * at the latest after 0.2/ω_p.
@@ -38,12 +38,13 @@ use source::Source;
 
 /// Largest travel of any grain between evaluations, over the smallest radius.
 const MOST_TRAVEL: f64 = 0.5;
-/// What a grain may gain in speed within a step, when it is guessed whether the field will be due.
+/// Gain in speed of a grain within a step that is allowed for where it is guessed whether the field will be
+/// due.
 const FASTER: f64 = 4.0;
 /// The potential costs little on top of E, and spares the energy an evaluation of its own.
 const WANTED: Wanted = Wanted { potential: true, components: false };
 
-/// What the force limit did.
+/// Account of the force limit.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
 pub struct Limited {
     /// Grains limited in the last step.
@@ -56,22 +57,22 @@ pub struct Limited {
     pub largest_force_n: f64,
 }
 
-/// What the force limiter finds in a chunk: grains limited, largest force before limiting [N].
+/// Findings of the force limiter in a chunk: grains limited, largest force before limiting [N].
 type ChunkLimited = (u64, f64);
 
 /// The field and the forces that it makes.
 #[derive(Debug)]
 pub(crate) struct FieldStage {
     pub(crate) source: Source,
-    /// Of a field solver, in its last solve for the motion.
+    /// Iterations of a field solver in its last solve for the motion.
     pub(crate) solver_iterations: u64,
     settings: FieldSettings,
-    /// By the set-up's order.
+    /// Membership by the set-up's order.
     pub(crate) member: Vec<bool>,
     smallest_radius: f64,
-    /// At the last evaluation.
+    /// Members at the last evaluation.
     members: Members,
-    /// At the last look at the energy.
+    /// Members at the last look at the energy.
     onlookers: Members,
     values: FieldValues,
     forecast: Forecast,
@@ -206,8 +207,8 @@ impl FieldStage {
         Ok(())
     }
 
-    /// What errors of E are relative to [V/m]: the RMS of E less the external field, or q_rms n^{2/3}/(4πε)
-    /// where symmetry makes E vanish.
+    /// Scale to which errors of E are relative [V/m]: the RMS of E less the external field, or q_rms
+    /// n^{2/3}/(4πε) where symmetry makes E vanish.
     fn scale(&self, domain: &Domain) -> f64 {
         let Members { index, charge, .. } = &self.members;
         let count = index.len().max(1) as f64;
@@ -313,13 +314,13 @@ impl FieldStage {
         Ok(self.energy_of(&self.onlookers, domain))
     }
 
-    /// The same, extrapolated from the last two evaluations.
+    /// ½ Σ q (V + V_external) [J], extrapolated from the last two evaluations.
     pub(crate) fn forecast_energy(&self) -> f64 {
         self.energy.at(self.control.age)
     }
 
-    /// ½ Σ q (V + V_external) [J] of the field's last values. The potential of the field contains the external
-    /// field's once, whose energy has no factor ½.
+    /// ½ Σ q (V + V_external) [J] of the field's last values. The potential of the field contains the
+    /// external field's once, whose energy has no factor ½.
     fn energy_of(&self, members: &Members, domain: &Domain) -> f64 {
         let Members { position, charge, .. } = members;
         let (external, centre) = (self.settings.external_field_v_m, domain.centre());

@@ -1,4 +1,5 @@
-//! Where E comes from: the internal grid, a field solver of another process, or the grid in place of a solver that was lost.
+//! Source of E: the internal grid, a field solver of another process, or the grid in place of a solver that
+//! was lost.
 
 use super::WANTED;
 use super::members::Members;
@@ -9,11 +10,12 @@ use amberfield_core::{Domain, FieldSettings, Tuning, Vector3};
 use amberfield_field::far::{FarSolver, FarState};
 use amberfield_field::{Choice, ElectricField, FieldError, FieldValues};
 
-/// Difference between the fields of a solver and of the grid, over E_rms and the tolerance, above which a run says that they
-/// have other boundaries.
+/// Difference between the fields of a solver and of the grid, over E_rms and the tolerance, above which a run
+/// says that they have other boundaries.
 const STRANGERS: f64 = 5.0;
 
-/// Evaluations after which the error is measured again, the first time and from then on; each time costs several evaluations.
+/// Evaluations after which the error is measured again, the first time and from then on; each time costs
+/// several evaluations.
 const RECHECK: [u64; 2] = [200, 1000];
 
 /// A field, and what takes its place.
@@ -25,8 +27,8 @@ pub(crate) struct Source {
 }
 
 impl Source {
-    /// Builds the field; it chooses its parameters for the members' positions [m] and charges [C], unless the set-up or a
-    /// state knows them.
+    /// Builds the field; it chooses its parameters for the members' positions [m] and charges [C], unless the
+    /// set-up or a state knows them.
     pub(super) fn new(
         domain: &Domain,
         setup: FieldStageSetup,
@@ -79,8 +81,9 @@ impl Source {
         Ok(self.field.evaluate(position, charge, WANTED, values)?)
     }
 
-    /// Measures the error on a sample of the grains now and then. Where it has left the tolerance, the internal grid chooses new parameters, by its model rather
-    /// than by a stopwatch: a resumed run chooses the same. A field solver's stay, with a warning.
+    /// Measures the error on a sample of the grains now and then. Where it has left the tolerance, the
+    /// internal grid chooses new parameters, by its model rather than by a stopwatch, so that a resumed run
+    /// chooses the same. A field solver's parameters stay, with a warning.
     pub(super) fn recheck(
         &mut self,
         domain: &Domain,
@@ -101,7 +104,8 @@ impl Source {
         }
         if self.field.far_solver().is_some() {
             tracing::warn!(
-                "error of the field on a sample: {error:.2e}, above the tolerance {tolerance:e}; a run that starts from here chooses new parameters"
+                "error of the field on a sample: {error:.2e}, above the tolerance {tolerance:e}; \
+                 a run that starts from here chooses new parameters"
             );
             return Ok(());
         }
@@ -110,19 +114,21 @@ impl Source {
             Ok(field) => {
                 self.field = field;
                 tracing::warn!(
-                    "error of the field on a sample: {error:.2e}, above the tolerance {tolerance:e}; new parameters: {:?}",
+                    "error of the field on a sample: {error:.2e}, above the tolerance {tolerance:e}; \
+                     new parameters: {:?}",
                     self.field.choice()
                 );
             }
             Err(reason) => tracing::warn!(
-                "error of the field on a sample: {error:.2e}, above the tolerance {tolerance:e}, and no better parameters: {reason}"
+                "error of the field on a sample: {error:.2e}, above the tolerance {tolerance:e}, \
+                 and no better parameters: {reason}"
             ),
         }
         Ok(())
     }
 
-    /// Evaluates E for onlookers: a field solver goes on from where the motion left it. `false` where it works beside
-    /// the steps and would be disturbed.
+    /// Evaluates E for onlookers: a field solver goes on from where the motion left it. `false` where it
+    /// works beside the steps and would be disturbed.
     pub(super) fn evaluate_aside(
         &mut self,
         domain: &Domain,
@@ -157,7 +163,8 @@ impl Source {
     }
 }
 
-/// Charges for which the field chooses its parameters where there are none yet: of both signs, none in all.
+/// Sets charges for which the field chooses its parameters where there are none yet: of both signs, zero in
+/// sum.
 pub(super) fn stand_in(charge: &mut [f64]) {
     for pair in charge.chunks_exact_mut(2) {
         pair.copy_from_slice(&[1e-15, -1e-15]);
@@ -182,12 +189,14 @@ fn provide(
     let difference = if all > 0.0 { (apart / all).sqrt() } else { 0.0 };
     if difference > STRANGERS * settings.tolerance {
         tracing::warn!(
-            "the internal grid, which takes over when the field solver is lost, differs from it by {difference:.2e}: \
+            "the internal grid, which takes over when the field solver is lost, differs from it by \
+             {difference:.2e}: \
              its boundaries, [domain.boundary], are not those of the case"
         );
     } else {
         tracing::info!(
-            "internal grid and field solver differ by {difference:.2e}; the grid takes over when the solver is lost"
+            "internal grid and field solver differ by {difference:.2e}; \
+             the grid takes over when the solver is lost"
         );
     }
     Ok(internal.choice().clone())

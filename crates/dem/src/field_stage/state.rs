@@ -1,4 +1,4 @@
-//! What the field stage puts in a checkpoint.
+//! State of the field stage, for checkpoints.
 
 use super::Limited;
 use super::forecast::{EnergyForecast, Forecast};
@@ -17,7 +17,7 @@ pub(crate) struct FieldState {
     pub(crate) has_solver: bool,
     /// Iterations of its last solve for the motion.
     pub(crate) solver_iterations: u64,
-    /// Of a field solver in another process.
+    /// State of a field solver in another process.
     pub(crate) far: FarState,
     pub(crate) forecast: Forecast,
     pub(crate) energy: EnergyForecast,

@@ -1,4 +1,4 @@
-//! A gas whose flow is computed by somebody else.
+//! A gas whose flow is computed by a solver of another process.
 
 use crate::error::DemError;
 use crate::motion::grains::Grains;

@@ -1,6 +1,7 @@
 //! Forces of a gas on the grains.
 //!
-//! [`UniformGas`]: the same everywhere, undisturbed. [`FlowingGas`]: its flow is computed by somebody else, and grains act on it too.
+//! [`UniformGas`] is the same everywhere and undisturbed. [`FlowingGas`] is computed by a flow solver of
+//! another process, and grains act on it too.
 
 mod flowing;
 mod uniform;
@@ -38,7 +39,7 @@ impl GasStage {
         Ok(Self::Flowing(Box::new(gas)))
     }
 
-    /// What the plan says of it.
+    /// Description for the plan.
     pub(crate) fn about(&self) -> String {
         match self {
             Self::Uniform(gas) => format!("drag ({}) and buoyancy of every grain alone", gas.drag()),
@@ -46,7 +47,7 @@ impl GasStage {
         }
     }
 
-    /// The one that is the same everywhere.
+    /// The gas that is the same everywhere, if it is one.
     pub(crate) fn uniform(&self) -> Option<UniformGas> {
         match self {
             Self::Uniform(gas) => Some(*gas),
@@ -54,7 +55,7 @@ impl GasStage {
         }
     }
 
-    /// The one whose flow is computed.
+    /// The gas whose flow is computed, if it is one.
     pub(crate) fn flowing(&self) -> Option<&FlowingGas> {
         match self {
             Self::Uniform(_) => None,

@@ -49,7 +49,8 @@ impl UniformGas {
         }
     }
 
-    /// Shortest time in which any grain's slip decays, at grains' speeds up to `speed` [m/s] (exact for grains of one density).
+    /// Shortest time in which any grain's slip decays [s], at grains' speeds up to `speed` [m/s]; exact for
+    /// grains of one density.
     pub(crate) fn limit(&self, speed: f64) -> f64 {
         let (diameter, density) = self.finest;
         let slip = speed + self.gas.velocity_m_s.norm();

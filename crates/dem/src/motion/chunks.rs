@@ -43,7 +43,9 @@ macro_rules! for_each_chunk {
     ($parallel:expr, $chunks:expr, ($($array:ident / $size:expr),+ $(,)?), $body:expr) => {{
         let body = $body;
         if $parallel {
-            use rayon::prelude::{IndexedParallelIterator, IntoParallelIterator, ParallelIterator, ParallelSliceMut};
+            use rayon::prelude::{
+                IndexedParallelIterator, IntoParallelIterator, ParallelIterator, ParallelSliceMut,
+            };
             ($($array.par_chunks_mut($size),)+)
                 .into_par_iter()
                 .enumerate()

@@ -29,7 +29,7 @@ pub(crate) struct Grains {
     pub(crate) spare: Spare,
 }
 
-/// What the grains put in a checkpoint, in the order of the last sort.
+/// State of the grains, for checkpoints, in the order of the last sort.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub(crate) struct GrainsState {
     /// Index in the set-up's order.

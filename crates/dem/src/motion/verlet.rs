@@ -13,7 +13,7 @@ use rayon::prelude::*;
 /// Moment of inertia of a solid sphere over m r².
 const SPHERE_INERTIA: f64 = 0.4;
 
-/// What the first pass finds in a chunk.
+/// Findings of the first pass in a chunk.
 #[derive(Clone, Copy, Debug, Default)]
 pub(crate) struct ChunkMotion {
     /// Largest squared speed of the drift [m²/s²].
@@ -22,7 +22,7 @@ pub(crate) struct ChunkMotion {
     outside: bool,
 }
 
-/// What the first pass finds.
+/// Findings of the first pass.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Motion {
     /// Largest speed of the drift [m/s].
@@ -65,7 +65,7 @@ impl Bounds {
     }
 }
 
-/// First pass.
+/// Moves the grains, in the first pass, and predicts their velocities to the end of the step.
 pub(crate) fn drift(
     grains: &mut Grains,
     gravity: Vector3<f64>,

@@ -142,7 +142,9 @@ pub(crate) fn check_periods(setup: &Setup, skin: f64) -> Result<(), DemError> {
         let needed = 2.0 * (2.0 * largest + skin);
         if setup.domain.is_periodic(axis) && length <= needed {
             return Err(bad(format!(
-                "the periodic axis {axis} is {length:e} m long; it must exceed {needed:e} m (two largest diameters and two skins), else a grain meets itself; enlarge the domain or reduce skin_m"
+                "the periodic axis {axis} is {length:e} m long; it must exceed {needed:e} m \
+                 (two largest diameters and two skins), else a grain meets itself; \
+                 enlarge the domain or reduce skin_m"
             )));
         }
     }

@@ -19,15 +19,15 @@ pub struct Energies {
     pub electric: Option<f64>,
 }
 
-/// How the electric energy is found.
+/// Way to find the electric energy.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum ElectricEnergy {
-    /// Not at all.
+    /// Left out.
     LeftOut,
     /// Extrapolated in time from the last two evaluations of the field: costs nothing, and is as good as the
     /// force. A grain that has left counts until the next evaluation.
     Forecast,
-    /// By one more evaluation of the field, at the present positions.
+    /// Evaluated once more, at the present positions.
     Evaluated,
 }
 

@@ -9,11 +9,12 @@ use amberfield_laws::{hertz_mindlin, time_step_limits};
 
 /// `step_s = "auto"` is this fraction of the tightest guard.
 pub(crate) const AUTO_FRACTION: f64 = 0.2;
-/// Fraction of the shortest elastic contact time that still resolves a collision: velocity Verlet is stable up
-/// to 2/π of the contact time of a linear spring; a quarter leaves four steps in a collision.
+/// Fraction of the shortest elastic contact time that still resolves a collision: velocity Verlet is stable
+/// up to 2/π of the contact time of a linear spring; a quarter leaves four steps in a collision.
 const CONTACT_TIME_FRACTION: f64 = 0.25;
 
-/// Name of the guard on the interval between exchanges with a gas: grains must not be held to one slip for longer than it lasts.
+/// Name of the guard on the interval between exchanges with a gas: grains must not be held to one slip for
+/// longer than it lasts.
 const GAS_INTERVAL: &str = "gas interval";
 
 /// A limit on the time step.
@@ -49,7 +50,8 @@ pub(crate) struct Limits {
 struct ElectricLimits {
     /// Pair of touching grains [s].
     pair: f64,
-    /// Grain that touches a conducting or insulating face of the domain: images of either sign are as stiff [s].
+    /// Grain that touches a conducting or insulating face of the domain [s]: images of either sign are as
+    /// stiff.
     wall_image: f64,
     /// Interval between field evaluations at which the cloud is unstable, over the interval's steps [s].
     plasma: f64,
@@ -188,7 +190,8 @@ pub(crate) fn electric_stiffness_bound(
     }
 }
 
-/// Stiffness limits of the grains as they are. Pairs: every member with its like, and the listed pairs, all at contact.
+/// Stiffness limits of the grains as they are. The pairs are every member with its like and the listed pairs,
+/// all at contact.
 pub(crate) fn electric_stiffness(
     domain: &Domain,
     grains: &Grains,

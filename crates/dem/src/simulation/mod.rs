@@ -31,8 +31,8 @@ const HALF_SKIN: f64 = 0.499_999;
 
 /// A run: the stages of a scene.
 ///
-/// A step ([`Self::step`]) runs them in this order; the equations are in `docs/equations.md`, the sections are
-/// named here:
+/// A step ([`Self::step`]) runs them in this order; the equations are in `docs/equations.md`, the sections
+/// are named here:
 ///
 /// 1. *Begin*: count the step; keep the state where another process may be lost in it.
 /// 2. *Drift*: first half of velocity Verlet ("Motion").
@@ -93,8 +93,8 @@ impl Simulation {
     /// Advances by one step.
     ///
     /// # Errors
-    /// A grain that leaves or whose position is not finite, a step that a guard no longer allows, a field that
-    /// fails.
+    /// A grain that leaves or whose position is not finite, a step that a guard no longer allows, a field
+    /// that fails.
     pub fn step(&mut self) -> Result<(), DemError> {
         let step_s = self.progress.step_s;
         self.begin_step();

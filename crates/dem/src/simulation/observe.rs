@@ -1,4 +1,4 @@
-//! What a run tells about itself.
+//! Facts that a run tells about itself.
 
 use super::Simulation;
 use super::energy::{self, ElectricEnergy, Energies};
@@ -18,12 +18,12 @@ pub struct Deepest {
     pub other: Option<u64>,
     /// Overlap [m].
     pub overlap_m: f64,
-    /// The same over the smaller radius.
+    /// Overlap over the smaller radius.
     pub share: f64,
 }
 
 impl Simulation {
-    /// What grains and a gas that flows give each other; `None` without one.
+    /// Exchange of grains with a gas that flows; `None` without one.
     #[must_use]
     pub fn gas_exchange(&self) -> Option<&amberfield_gas::Exchange> {
         self.gas.as_ref()?.flowing().map(crate::gas_stage::FlowingGas::known)
@@ -89,7 +89,8 @@ impl Simulation {
             .collect()
     }
 
-    /// Electric force on each grain in the last step [N], in the order of [`Self::particles`]; `None` without a field.
+    /// Electric force on each grain in the last step [N], in the order of [`Self::particles`]; `None` without
+    /// a field.
     #[must_use]
     pub fn electric_forces(&self) -> Option<Vec<Vector3<f64>>> {
         let field = self.field.as_ref()?;
@@ -175,7 +176,7 @@ impl Simulation {
         self.contacts.count()
     }
 
-    /// What the force limit did; `None` without a field.
+    /// Account of the force limit; `None` without a field.
     #[must_use]
     pub fn limited(&self) -> Option<Limited> {
         self.field.as_ref().map(|field| field.limited)

@@ -1,11 +1,11 @@
-//! Which stages a scene has, and why.
+//! Stages that a scene has, and why.
 
 use crate::contacts::material_pairs::Features;
 use crate::field_stage::FieldStage;
 use crate::gas_stage::GasStage;
 use amberfield_core::{ChargeTransfer, Plan};
 
-/// What decides which stages are built.
+/// Properties of a scene that decide which stages are built.
 pub(super) struct Planned<'a> {
     pub(super) features: Features,
     /// Whether an axis is periodic.

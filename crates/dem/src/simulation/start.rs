@@ -11,7 +11,7 @@ use crate::contacts::material_pairs::{Features, PairTable};
 use crate::contacts::neighbours::Neighbours;
 use crate::contacts::walls::Walls;
 use crate::error::DemError;
-use crate::field_stage::{FieldStage, FieldState};
+use crate::field_stage::FieldStage;
 use crate::gas_stage::GasStage;
 use crate::motion::grains::Grains;
 use crate::motion::verlet::Bounds;
@@ -26,7 +26,8 @@ impl Simulation {
     /// Checks a scene, builds its stages and computes the forces at the start.
     ///
     /// # Errors
-    /// Values that are impossible, overlaps, a step beyond a stability guard, a field that cannot be computed.
+    /// Values that are impossible, overlaps, a step beyond a stability guard, a field that cannot be
+    /// computed.
     pub fn new(setup: Setup) -> Result<Self, DemError> {
         checks::check(&setup)?;
         let skin = checks::skin(&setup);
@@ -109,9 +110,7 @@ impl Simulation {
         let charging = field.as_ref().zip(transfer).map(|(field, transfer)| {
             Charging::new(transfer, &field.settings, &materials, &particles, wall_count)
         });
-        let saved_field = state.map(|state| state.field.as_ref());
-        let field =
-            field.map(|field| field_stage(&domain, field, &particles, saved_field)).transpose()?.flatten();
+        let field = field.map(|field| field_stage(&domain, field, &particles, state)).transpose()?.flatten();
         let saved_gas = state.and_then(|state| state.gas.as_ref());
         let gas = gas.map(|gas| GasStage::new(gas, time.gravity_m_s2, &particles, saved_gas)).transpose()?;
         let bounds = bounds(&domain);
@@ -203,22 +202,22 @@ impl Simulation {
     }
 }
 
-/// The field of a scene that asks for one; `None` where every charge is zero and nothing makes one. `saved` is
-/// what a state holds of it, if the run goes on from one.
+/// Builds the field of a scene that asks for one, afresh or from a state; `None` where every charge is zero and
+/// nothing makes one.
 fn field_stage(
     domain: &Domain,
     setup: FieldStageSetup,
     particles: &Particles,
-    saved: Option<Option<&FieldState>>,
+    state: Option<&State>,
 ) -> Result<Option<FieldStage>, DemError> {
     if setup.transfer.is_none() && !is_charged(&setup, particles) {
         return Ok(None);
     }
-    let saved = match saved {
-        Some(None) => return Err(DemError::State("it holds no electric field".to_owned())),
-        saved => saved.flatten(),
-    };
-    Ok(Some(FieldStage::new(domain, setup, particles, saved)?))
+    let saved = state.map(|state| {
+        let field = state.field.as_ref();
+        field.ok_or_else(|| DemError::State("it holds no electric field".to_owned()))
+    });
+    Ok(Some(FieldStage::new(domain, setup, particles, saved.transpose()?)?))
 }
 
 /// Whether any member of a field is charged.

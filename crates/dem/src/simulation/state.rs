@@ -8,7 +8,7 @@ use amberfield_field::Choice;
 use amberfield_gas::ExchangeState;
 use serde::{Deserialize, Serialize};
 
-/// How far a run has come.
+/// Progress of a run through time and its lists.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 pub(crate) struct Progress {
     /// Steps done, or in progress within a step.

@@ -2,8 +2,8 @@
 //!
 //! Every triangle within reach gives its closest point. Going from the deepest to the shallowest, a point is
 //! a contact of its own unless one accepted before covers it: it lies on or behind that contact's tangent
-//! plane (the next triangle of a flat surface, a shared edge or vertex), or its direction differs by less than
-//! 15° (facets of a curved surface). A concave corner keeps both faces. So a ball that rolls over a
+//! plane (the next triangle of a flat surface, a shared edge or vertex), or its direction differs by less
+//! than 15° (facets of a curved surface). A concave corner keeps both faces. So a ball that rolls over a
 //! triangulated plane feels the plane's force, once, whatever it rolls over.
 
 use amberfield_core::{TriangleMesh, Vector3};
@@ -30,7 +30,7 @@ const SLIVER: f64 = 1e-10;
 pub(crate) struct Found {
     pub(crate) normal: Vector3<f64>,
     pub(crate) overlap: f64,
-    /// Of a mesh, where it is touched.
+    /// Triangle of a mesh that is touched.
     pub(crate) triangle: u32,
 }
 
@@ -59,8 +59,8 @@ fn plain(v: ParryVector) -> Vector3<f64> {
 }
 
 impl MeshWall {
-    /// Triangles without area, and slivers whose plane is round-off, are dropped: their neighbours' edges cover
-    /// them.
+    /// Triangles without area, and slivers whose plane is round-off, are dropped: their neighbours' edges
+    /// cover them.
     pub(crate) fn new(mesh: &TriangleMesh) -> Self {
         let (mut triangles, mut normals) = (Vec::new(), Vec::new());
         for indices in &mesh.triangles {

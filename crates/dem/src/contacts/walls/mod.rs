@@ -356,8 +356,8 @@ fn contact_of<const FRICTION: bool, const ROLLING: bool>(
     (contact, arm)
 }
 
-/// Replaces the contacts of the last step by those found now; springs go to the nearest direction. Which of the old contacts each
-/// one was.
+/// Replaces the contacts of the last step by those found now; springs go to the nearest direction. Returns
+/// which of the old contacts each one was.
 fn renew(kept: &mut [WallContact], old_count: usize, found: &[Found]) -> [Option<usize>; MOST_CONTACTS] {
     let mut old = [WallContact::default(); MOST_CONTACTS];
     old[..old_count].copy_from_slice(&kept[..old_count]);

@@ -1,4 +1,4 @@
-//! Which grains are near which walls, and the histories that they keep.
+//! Search for the grains near walls, and the histories that they keep.
 
 use super::{ChunkWalls, Entry, Shape, Solid, WallContact};
 use crate::contacts::cells::NO_SHIFT;

@@ -1,4 +1,4 @@
-//! Contacts with walls as charge transfer sees them.
+//! Touching contacts with walls, one by one, for those who follow and charge them.
 
 use super::{Shape, Walls};
 use crate::contacts::memory::{Follow, Memory};
@@ -20,7 +20,7 @@ pub(crate) struct Touch {
     pub(crate) charging: WallCharging,
     pub(crate) bounds_field: bool,
     triangle: u32,
-    /// From the grain to the wall.
+    /// Direction from the grain to the wall.
     pub(crate) normal: Vector3<f64>,
     /// Centre of the grain from the wall [m].
     pub(crate) distance: f64,
@@ -28,13 +28,13 @@ pub(crate) struct Touch {
 }
 
 impl Touch {
-    /// Where the wall is touched [m].
+    /// Place where the wall is touched [m].
     pub(crate) fn place(&self, grains: &Grains) -> Vector3<f64> {
         grains.position(self.grain) + self.normal * self.distance
     }
 }
 
-/// What is touched.
+/// Surface that is touched.
 #[derive(Clone, Copy, Debug)]
 pub(crate) enum Surface {
     Plane { point: Vector3<f64>, normal: Vector3<f64> },
@@ -88,12 +88,12 @@ impl Walls {
         })
     }
 
-    /// What a contact remembers of its charging.
+    /// Memory that a contact has of its charging.
     pub(crate) fn memory_mut(&mut self, [chunk, contact]: [u32; 2]) -> &mut Memory {
         &mut self.chunks[chunk as usize].charging[contact as usize]
     }
 
-    /// What a contact touches.
+    /// Surface that a contact touches.
     pub(crate) fn surface(&self, touch: &Touch) -> Surface {
         match &self.solids[touch.wall as usize].shape {
             Shape::Plane { point, normal } => Surface::Plane { point: *point, normal: *normal },

@@ -17,7 +17,8 @@ use std::f64::consts::PI;
 const RADIUS: f64 = 75e-6;
 /// Overlap of touching grains over the smaller radius.
 const OVERLAP: f64 = 1e-6;
-/// Steady driving terms of a network that cannot vanish together, and of sweeps that end at either side of it, over those at the start.
+/// Steady driving terms of a network that cannot vanish together, and of sweeps that end at either side of
+/// it, over those at the start.
 const PLATEAU: f64 = 0.05;
 
 fn packed(places: &[(Vector3<f64>, f64)], work_functions: &[f64], cutoff_m: f64) -> Simulation {
