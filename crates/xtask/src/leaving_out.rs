@@ -12,13 +12,16 @@ const MOST: f64 = 0.01;
 const WHOLE: &str = "plain_bed";
 /// Example that runs the same bed with the folders `motion` and `contacts` alone, which know no field.
 const BARE: &str = "bare_bed";
-/// Setting that keeps the C library from `rep stosb` and `rep movsb`, of which callgrind counts an instruction
-/// per byte: whether the compiler makes a loop or a call of zeroing an array is its own choice, another one in
-/// either program.
+/// Setting that keeps the C library from `rep stosb` and `rep movsb`, of which callgrind counts an
+/// instruction per byte.
+///
+/// Whether the compiler makes a loop or a call of zeroing an array is its own choice, another one in either
+/// program.
 const NO_REP: &str =
     "glibc.cpu.x86_rep_stosb_threshold=1000000000:glibc.cpu.x86_rep_movsb_threshold=1000000000";
 
-/// Builds both examples of `crates/dem/examples` and counts their instructions under callgrind; they must end with the same numbers.
+/// Builds both examples of `crates/dem/examples` and counts their instructions under callgrind. They must end
+/// with the same numbers.
 pub(crate) fn run(root: &Path) -> Result<()> {
     provide_valgrind()?;
     let whole = measure(root, WHOLE)?;

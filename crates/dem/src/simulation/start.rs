@@ -202,8 +202,8 @@ impl Simulation {
     }
 }
 
-/// Builds the field of a scene that asks for one, afresh or from a state; `None` where every charge is zero and
-/// nothing makes one.
+/// Builds the field of a scene that asks for one, afresh or from a state; `None` where every charge is zero
+/// and nothing makes one.
 fn field_stage(
     domain: &Domain,
     setup: FieldStageSetup,

@@ -23,9 +23,6 @@ const LONG_FILES: [(&str, usize, &str); 0] = [];
 /// Functions that read as a list although they nest deeper: path, name, reason.
 const LISTS: [(&str, &str, &str); 0] = [];
 
-/// Files whose tests are still to be moved into a file of their own.
-const STILL_OPEN: [&str; 1] = ["crates/dem/src/simulation/charge.rs"];
-
 pub(super) fn problems(tree: &Tree) -> Vec<Problem> {
     let mut problems = too_long(tree, &LONG_FILES);
     for (path, text) in tree.rust_files() {
@@ -38,7 +35,7 @@ pub(super) fn problems(tree: &Tree) -> Vec<Problem> {
             }
         }
         let long_tests = test_modules(text).into_iter().filter(|(first, last)| last + 1 - first > TEST_LINES);
-        for (line, last) in long_tests.filter(|_| !STILL_OPEN.contains(&path)) {
+        for (line, last) in long_tests {
             let lines = last + 1 - line;
             let message =
                 format!("tests of {lines} lines, limit {TEST_LINES}; move them to tests.rs beside the file");
