@@ -46,8 +46,8 @@ cargo xtask sanitize
 cargo xtask header
     writes the C library's header
 cargo xtask leaving-out
-    counts what a plain scene pays for the field: instructions with and without the field crate under
-    callgrind; installs valgrind where it is missing";
+    counts what a plain scene pays for all that it does not use: instructions of a run over those of a
+    program of motion and contacts alone, under callgrind; installs valgrind where it is missing";
 
 fn main() -> ExitCode {
     match run() {
