@@ -65,7 +65,8 @@ pub(crate) fn write(store: &Store) -> Result<()> {
         charging::report(store)?,
         gas::report(store)?,
     ];
-    let mut page = "# How fast it is\n\nThis page is written by `cargo xtask bench`; its rows are in [data](data). Machines differ: only ratios \
+    let mut page = "# How fast it is\n\nThis page is written by `cargo xtask bench`; its rows are in \
+        [data](data). Machines differ: only ratios \
                     of the same run mean something.\n\n"
         .to_owned();
     if let Some((date, machines)) = store.newest::<Machine>("machine")? {

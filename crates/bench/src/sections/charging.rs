@@ -128,8 +128,10 @@ pub(crate) fn report(store: &Store) -> Result<Option<String>> {
         ]);
     }
     Ok(Some(format!(
-        "## Charge transfer\n\nMeasured {date}, `cargo xtask bench charging`: {} grains of two work functions in a periodic box at a fraction of {FRACTION}, the field \
-         evaluated every {INTERVAL} steps and its time left out; both runs take turns, medians of {ROUNDS}.\n\n{table}\n* At most {:.0} % more per step: {} ({} %).\n",
+        "## Charge transfer\n\nMeasured {date}, `cargo xtask bench charging`: {} grains of two work \
+         functions in a periodic box at a fraction of {FRACTION}, the field \
+         evaluated every {INTERVAL} steps and its time left out; both runs take turns, medians of \
+         {ROUNDS}.\n\n{table}\n* At most {:.0} % more per step: {} ({} %).\n",
         rows[0].grains,
         100.0 * GOAL,
         verdict(Some(worst <= GOAL)),

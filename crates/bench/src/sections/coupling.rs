@@ -333,13 +333,17 @@ pub(crate) fn report(store: &Store) -> Result<Option<String>> {
     let socket = over("the same bytes through a Unix socket", "exchange");
     let step = over("far-field step", "bare Poisson solve");
     Ok(Some(format!(
-        "## Coupling\n\nMeasured {date}, `cargo xtask bench coupling`: {} grains, {} cells, tolerance 1e-2, two processes on this machine. An exchange is charges and boundary data written, \
+        "## Coupling\n\nMeasured {date}, `cargo xtask bench coupling`: {} grains, {} cells, tolerance 1e-2, \
+         two processes on this machine. An exchange is charges and boundary data written, \
          fields read, with an answer at once.\n\n{table}\n\
-         * An exchange takes under {:.0} % of a field evaluation without payload: {} ({} %); under {:.0} % with it: {} ({} %).\n\
+         * An exchange takes under {:.0} % of a field evaluation without payload: {} ({} %); under {:.0} % \
+         with it: {} ({} %).\n\
          * A Unix socket takes {} times as long for the same bytes.\n\
-         * With `overlap` a step of 100 000 grains at a fraction of 0.1, the field anew every ten steps, takes {} of the time that it takes when the solver is waited for.\n\
+         * With `overlap` a step of 100 000 grains at a fraction of 0.1, the field anew every ten steps, \
+         takes {} of the time that it takes when the solver is waited for.\n\
          * Mapping: {} million grains a second on a core, goal {:.0}: {}.\n\
-         * The far-field step (density, solve, gradient, both ways) takes {} times the bare solve, goal {STEP}: {}; on two ranks {} times, with kolehmainen {} times.\n",
+         * The far-field step (density, solve, gradient, both ways) takes {} times the bare solve, goal \
+         {STEP}: {}; on two ranks {} times, with kolehmainen {} times.\n",
         rows[0].grains,
         rows[0].cells,
         100.0 * GOALS[0],

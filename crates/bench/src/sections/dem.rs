@@ -158,9 +158,12 @@ pub(crate) fn report(store: &Store) -> Result<Option<String>> {
         ]);
     }
     Ok(Some(format!(
-        "## DEM step\n\nMeasured {date}, `cargo xtask bench --peers dem`. Hertz contacts with tangential history in a periodic box; both programs start \
-         from the same positions and velocities with the same step; the peer has its best skin of four, and as many ranks as we have \
-         threads. Times of the stages are summed over all threads' wall clock.\n\n{table}\n* As fast as LAMMPS everywhere: {} (least ratio {}).\n",
+        "## DEM step\n\nMeasured {date}, `cargo xtask bench --peers dem`. Hertz contacts with tangential \
+         history in a periodic box; both programs start \
+         from the same positions and velocities with the same step; the peer has its best skin of four, and \
+         as many ranks as we have \
+         threads. Times of the stages are summed over all threads' wall clock.\n\n{table}\n* As fast as \
+         LAMMPS everywhere: {} (least ratio {}).\n",
         verdict(least.is_finite().then_some(least >= 1.0)),
         figure(least.is_finite().then_some(least), 2),
     )))

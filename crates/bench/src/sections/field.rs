@@ -269,10 +269,14 @@ pub(crate) fn report(store: &Store) -> Result<Option<String>> {
     let goal = least.is_finite().then_some(least > 1.0);
     let twice = least.is_finite().then_some(least > 2.0);
     Ok(Some(format!(
-        "## Field in a periodic box\n\nMeasured {date}, one core, `cargo xtask bench --peers field`. ±q at random on spheres of a relaxed bed. Our time \
-         includes sorting the grains, every time. The peer is the fastest of a sweep over cut-off, order, asked accuracy and way of differentiation whose measured \
-         error is at most the tolerance; its time stands once with the neighbour list kept, which a run can do for some steps, and once with the \
-         list built anew.\n\n{table}\n![cost against error](pictures/field.svg)\n\n* Faster than pppm at every error, its list kept: {} (least ratio {}); list built anew: {} (least ratio {}).\n\
+        "## Field in a periodic box\n\nMeasured {date}, one core, `cargo xtask bench --peers field`. ±q at \
+         random on spheres of a relaxed bed. Our time \
+         includes sorting the grains, every time. The peer is the fastest of a sweep over cut-off, order, \
+         asked accuracy and way of differentiation whose measured \
+         error is at most the tolerance; its time stands once with the neighbour list kept, which a run can \
+         do for some steps, and once with the \
+         list built anew.\n\n{table}\n![cost against error](pictures/field.svg)\n\n* Faster than pppm at \
+         every error, its list kept: {} (least ratio {}); list built anew: {} (least ratio {}).\n\
          * Twice as fast, its list kept: {}.\n{faces}",
         verdict(goal),
         figure(least.is_finite().then_some(least), 2),
@@ -297,8 +301,12 @@ fn faces_line(rows: &[Row]) -> String {
         .max_by(|a, b| a.0.total_cmp(&b.0));
     worst.map_or_else(String::new, |(ratio, row)| {
         format!(
-            "* Closed boxes at most {FACES_GOAL} times the periodic one: {} (worst: {} box, {} grains, tolerance {:e}: {ratio:.2}).\n",
-            verdict(Some(ratio <= FACES_GOAL)), row.faces, row.grains, row.tolerance
+            "* Closed boxes at most {FACES_GOAL} times the periodic one: {} (worst: {} box, {} grains, \
+             tolerance {:e}: {ratio:.2}).\n",
+            verdict(Some(ratio <= FACES_GOAL)),
+            row.faces,
+            row.grains,
+            row.tolerance
         )
     })
 }

@@ -277,11 +277,16 @@ pub(crate) fn report(store: &Store) -> Result<Option<String>> {
         |program| of(program).map(|row| row.pressure_pa).sum::<f64>() / of(program).count().max(1) as f64;
     let percent = |part: fn(&Row) -> Option<f64>| figure(share(part).map(|share| 100.0 * share), 1);
     Ok(Some(format!(
-        "## Gas\n\nMeasured {date}, `cargo xtask bench gas`: Goldschmidt's bed, 24 750 grains, 5400 cells, from the lattice of grains of OpenFOAM's example for DPMFoam, two threads and one process of amberPimpleFoam for ours, one process for DPMFoam. \
-         DPMFoam's step is its example's, 2e-5 s; its contacts are a soft spring, ours Hertz's with the same modulus.\n\n{table}\n\
+        "## Gas\n\nMeasured {date}, `cargo xtask bench gas`: Goldschmidt's bed, 24 750 grains, 5400 cells, \
+         from the lattice of grains of OpenFOAM's example for DPMFoam, two threads and one process of \
+         amberPimpleFoam for ours, one process for DPMFoam. \
+         DPMFoam's step is its example's, 2e-5 s; its contacts are a soft spring, ours Hertz's with the \
+         same modulus.\n\n{table}\n\
          * DPMFoam takes {} times as long for a simulated second (its processor time over our wall clock).\n\
-         * Mean heights differ by {:.1} % at most. Pressure drops, mean of the table: {:.0} Pa, DPMFoam {:.0} Pa; DPMFoam's jumps, a grain's volume being all in the cell of its centre there.\n\
-         * Of our time grains take {} %, the flow {} %, mapping {} %, the way there and back {} %, goal {:.0}: {}.\n",
+         * Mean heights differ by {:.1} % at most. Pressure drops, mean of the table: {:.0} Pa, DPMFoam \
+         {:.0} Pa; DPMFoam's jumps, a grain's volume being all in the cell of its centre there.\n\
+         * Of our time grains take {} %, the flow {} %, mapping {} %, the way there and back {} %, goal \
+         {:.0}: {}.\n",
         figure(ratio, 1),
         100.0 * apart,
         mean("amberfield"),

@@ -114,8 +114,10 @@ pub(crate) fn report(store: &Store) -> Result<Option<String>> {
     let peak = |index: usize| peaks.get(index).map(|row| row.rate);
     let direct = sums.first().map(|row| row.rate * DIRECT_FLOPS);
     Ok(Some(format!(
-        "## Kernels\n\nMeasured {date}, one core, `cargo xtask bench kernel`, {} grains. Pairs of the near level are those within the cut-off: the kernel looks \
-         at more. Independent fused multiply-adds reach {} GFLOP/s in double and {} in single precision here; the direct sum, {DIRECT_FLOPS} \
+        "## Kernels\n\nMeasured {date}, one core, `cargo xtask bench kernel`, {} grains. Pairs of the near \
+         level are those within the cut-off: the kernel looks \
+         at more. Independent fused multiply-adds reach {} GFLOP/s in double and {} in single precision \
+         here; the direct sum, {DIRECT_FLOPS} \
          operations a pair, does {} GFLOP/s.\n\n{table}\n",
         sums.first().map_or(0, |row| row.grains),
         figure(peak(0), 1),

@@ -126,9 +126,12 @@ pub(crate) fn report(store: &Store) -> Result<Option<String>> {
     let direct =
         if slower_than_direct.is_empty() { "none".to_owned() } else { slower_than_direct.join(", ") };
     Ok(Some(format!(
-        "## Field in open space\n\nMeasured {date}, one core, `cargo xtask bench --peers open`. The same clouds at a volume fraction of {FRACTION} without \
-         walls. FMM3D's precision is not its error of E: the peer is its fastest run whose measured error is at most the tolerance.\n\n{table}\n\
-         ![cost against error in open space](pictures/open.svg)\n\n* {GOAL} times as fast as FMM3D: {} (least ratio {}).\n\
+        "## Field in open space\n\nMeasured {date}, one core, `cargo xtask bench --peers open`. The same \
+         clouds at a volume fraction of {FRACTION} without \
+         walls. FMM3D's precision is not its error of E: the peer is its fastest run whose measured error \
+         is at most the tolerance.\n\n{table}\n\
+         ![cost against error in open space](pictures/open.svg)\n\n* {GOAL} times as fast as FMM3D: {} \
+         (least ratio {}).\n\
          * More than a tenth slower than our direct sum: {direct}.\n",
         verdict(least.is_finite().then_some(least >= GOAL)),
         figure(least.is_finite().then_some(least), 1),

@@ -79,8 +79,10 @@ pub(crate) fn report(store: &Store) -> Result<Option<String>> {
     let ratio = seconds("charged").zip(seconds("uncharged")).map(|(a, b)| a / b);
     let charged = |quantity| rows.get(bed::STUDY, "charged", quantity);
     let mut page = format!(
-        "## Several rates\n\nMeasured {date}, one core, `cargo xtask bench rates`. `cases/settling-charged-bed` at tolerance 1e-2 with and without its charges: {} s \
-         and {} s, ratio {}. The field was evaluated {} times in {} steps; the stage took {} s; the error of the forecasts in between was \
+        "## Several rates\n\nMeasured {date}, one core, `cargo xtask bench rates`. \
+         `cases/settling-charged-bed` at tolerance 1e-2 with and without its charges: {} s \
+         and {} s, ratio {}. The field was evaluated {} times in {} steps; the stage took {} s; the error \
+         of the forecasts in between was \
          measured as {:.1e} of E.\n\n* At most {COST_GOAL} times the bed without charge: {}.\n\n",
         figure(seconds("charged"), 1),
         figure(seconds("uncharged"), 1),
@@ -126,9 +128,12 @@ fn trajectory_part(store: &Store, rows: &Rows) -> Result<String> {
     crate::page::plot(store, "rates", "The bed while it lands", axes, &all)?;
     let growth = get("1e-12 perturbation", "growth").unwrap_or(f64::NAN);
     Ok(format!(
-        "Error against interval while the bed lands, over {} steps in which a perturbation of 1e-12 radii grows {growth:.1} times. The reference is \
-         evaluated at every step with tolerance {:e}. The error of the velocities is their RMS deviation from it over that of the \
-         uncharged bed, which is the whole effect of the charge.\n\n{table}\n![error against interval](pictures/rates.svg)\n\n",
+        "Error against interval while the bed lands, over {} steps in which a perturbation of 1e-12 radii \
+         grows {growth:.1} times. The reference is \
+         evaluated at every step with tolerance {:e}. The error of the velocities is their RMS deviation \
+         from it over that of the \
+         uncharged bed, which is the whole effect of the charge.\n\n{table}\n![error against \
+         interval](pictures/rates.svg)\n\n",
         figure(get("1e-12 perturbation", "steps"), 0),
         trajectories::REFERENCE_TOLERANCE,
     ))
@@ -147,7 +152,8 @@ fn gas_part(rows: &Rows) -> String {
         ]);
     }
     format!(
-        "Energy of a frictionless elastic gas of {} charged grains, kinetic and electric energy alike in size:\n\n{table}\n",
+        "Energy of a frictionless elastic gas of {} charged grains, kinetic and electric energy alike in \
+         size:\n\n{table}\n",
         gas::GRAINS
     )
 }
@@ -165,7 +171,8 @@ fn replica_part(rows: &Rows) -> String {
         table.row(&[quantity.to_owned(), format!("{every:.4e}"), format!("{auto:.4e}"), format!("{z:.2}")]);
     }
     format!(
-        "Statistics of small beds at rest, means of {} seeds, field at every step with tolerance {:e} against `auto` at 1e-2:\n\n{table}\n\
+        "Statistics of small beds at rest, means of {} seeds, field at every step with tolerance {:e} \
+         against `auto` at 1e-2:\n\n{table}\n\
          * Within the spread of replicas (no difference above 3 standard errors): {}.\n",
         replicas::SEEDS,
         replicas::REFERENCE_TOLERANCE,

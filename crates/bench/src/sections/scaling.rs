@@ -137,8 +137,10 @@ pub(crate) fn report(store: &Store) -> Result<Option<String>> {
     ];
     crate::page::plot(store, "scaling", "Time per grain", ["grains", "time per grain [ns]"], &all)?;
     Ok(Some(format!(
-        "## Scaling\n\nMeasured {date}, `cargo xtask bench scaling`. Field at tolerance {TOLERANCE:e} and plain DEM step, volume fraction 0.1, parameters from \
-         the cost model.\n\n{table}\n![time per grain](pictures/scaling.svg)\n\n* Slope of log time over log grains on one thread: field {:.2}, \
+        "## Scaling\n\nMeasured {date}, `cargo xtask bench scaling`. Field at tolerance {TOLERANCE:e} and \
+         plain DEM step, volume fraction 0.1, parameters from \
+         the cost model.\n\n{table}\n![time per grain](pictures/scaling.svg)\n\n* Slope of log time over \
+         log grains on one thread: field {:.2}, \
          DEM step {:.2}.\n* The same bits for one thread and two: {}.\n",
         slope(&points(1, &field)),
         slope(&points(1, &dem)),

@@ -292,7 +292,8 @@ impl Study {
         let points = !self.problems.is_empty() && !self.methods.is_empty();
         if !points && self.motions.is_empty() && self.extremes.is_empty() {
             return Err(
-                "a study needs [[problems]] and [[methods]], or [[motions]], or [[extremes]]; add at least one of each"
+                "a study needs [[problems]] and [[methods]], or [[motions]], or [[extremes]]; add at least \
+                 one of each"
                     .to_owned(),
             );
         }
@@ -320,7 +321,8 @@ impl Study {
         };
         if let Some(goal) = self.goals.iter().find(vague) {
             return Err(format!(
-                "goal {:?}: give one of times_less, times_as_fast, at_most, the last with price = [\"dear\", \"cheap\"]",
+                "goal {:?}: give one of times_less, times_as_fast, at_most, the last with price = \
+                 [\"dear\", \"cheap\"]",
                 goal.text
             ));
         }

