@@ -15,11 +15,11 @@ mod bed;
 
 use amberfield_core::{Domain, Vector3};
 use contacts::Contacts;
-use contacts::cells::{Cells, levels_of, shifts};
+use contacts::cells::{LinkedCells, levels_of, shifts};
 use contacts::material_pairs::PairTable;
 use contacts::neighbours::Neighbours;
 use motion::chunks::chunk_count;
-use motion::grains::Grains;
+use motion::grains::{Grains, SortKey};
 use motion::verlet::{Bounds, ChunkMotion, drift, kick};
 
 /// Margin of the displacement test against round-off, as in a run.
@@ -29,7 +29,7 @@ struct Bed {
     domain: Domain,
     grains: Grains,
     contacts: Contacts,
-    keys: Vec<(u64, u32, u32)>,
+    keys: Vec<SortKey>,
     order: Vec<u32>,
     force: Vec<Vector3<f64>>,
     torque: Vec<Vector3<f64>>,
@@ -44,7 +44,8 @@ impl Bed {
         let table = PairTable::new(&bed::materials());
         let features = table.features();
         let (level, level_radius) = levels_of(particles.radius.iter().copied());
-        let neighbours = Neighbours::new(Cells::new(level_radius, bed::SKIN_M), shifts(&domain), features);
+        let neighbours =
+            Neighbours::new(LinkedCells::new(level_radius, bed::SKIN_M), shifts(&domain), features);
         let count = particles.len();
         let mut bed = Self {
             domain,

@@ -13,7 +13,7 @@ use super::around::Toucher;
 use super::{Charging, Traders, inside};
 use crate::contacts::Contacts;
 use crate::contacts::neighbours::{Listed, Neighbours};
-use crate::contacts::walls::{Touch, Walls};
+use crate::contacts::walls::{ContactWalls, Touch, WallSlot};
 use crate::field_stage::Extras;
 use crate::motion::grains::Grains;
 use amberfield_core::{Axis, Domain, Side, Vector3, WallCharging};
@@ -37,7 +37,7 @@ pub(super) struct Probe {
 #[derive(Clone, Copy, Debug)]
 enum Slot {
     Pair { chunk: usize, entry: usize },
-    Wall([u32; 2]),
+    Wall(WallSlot),
 }
 
 impl Charging {
@@ -68,7 +68,7 @@ impl Charging {
         let mut probes = std::mem::take(&mut self.probes);
         probes.clear();
         let k = self.coulomb;
-        let of = |grain: usize| charge[grains.original[grain] as usize];
+        let of = |grain: usize| charge[grains.original[grain].index()];
         Self::pairs_within(traders, neighbours, margin, |pair, offset| {
             let distance = offset.norm();
             let normal = offset / distance;
@@ -106,7 +106,7 @@ impl Charging {
     fn facet_of(
         &self,
         traders: Traders<'_>,
-        walls: Option<&Walls>,
+        walls: Option<&ContactWalls>,
         touch: &Touch,
     ) -> Option<(Vector3<f64>, f64)> {
         let facet = self.facets.known(touch.wall, walls?.surface(touch), touch.place(traders.grains))?;
@@ -118,7 +118,7 @@ impl Charging {
         &mut self,
         e: &[Vector3<f64>],
         neighbours: &mut Neighbours,
-        mut walls: Option<&mut Walls>,
+        mut walls: Option<&mut ContactWalls>,
         charge: &[f64],
     ) {
         let sources = e.len() - self.probes.len();
@@ -151,7 +151,7 @@ impl Charging {
     /// E_x·n of a contact with a wall that was not foreseen [V/m].
     pub(super) fn unforeseen_at_wall(&self, traders: Traders<'_>, touch: &Touch, charge: &[f64]) -> f64 {
         let field = traders.field.at(touch.grain).dot(&touch.normal);
-        let own = charge[traders.grains.original[touch.grain] as usize];
+        let own = charge[traders.grains.original[touch.grain].index()];
         let Mirror { image, factor } = mirror(traders.domain, traders.grains, touch);
         factor * (field - image * self.coulomb * own / (4.0 * touch.distance * touch.distance))
     }
@@ -170,7 +170,7 @@ impl Charging {
         let mut sum = 0.0;
         self.around.beside(i, partner, |grain, offset| {
             let from = normal * reach - offset;
-            let original = grains.original[grain] as usize;
+            let original = grains.original[grain].index();
             let gained = charge(grain) - self.evaluated[original];
             sum += gained * from.dot(&normal) / from.norm().powi(3);
         });

@@ -41,7 +41,7 @@ use amberfield_laws::dielectric_breakdown;
 use around::Around;
 use contact_field::Probe;
 use materials::ChargingTable;
-use pairs::Held;
+use pairs::MemberCharge;
 use serde::{Deserialize, Serialize};
 
 /// Steps whose growth moves charge together.
@@ -77,7 +77,7 @@ pub(crate) struct Traders<'a> {
 impl Traders<'_> {
     /// Index in the set-up's order, if the grain takes part.
     fn member(&self, grain: usize) -> Option<usize> {
-        let original = self.grains.original[grain] as usize;
+        let original = self.grains.original[grain].index();
         self.field.member[original].then_some(original)
     }
 }
@@ -100,7 +100,7 @@ pub(crate) struct Charging {
     probes: Vec<Probe>,
     around: Around,
     /// Charges in the making of a trade.
-    held: Vec<Held>,
+    held: Vec<MemberCharge>,
     /// Contacts with walls in the making of a trade.
     touches: Vec<Touch>,
     /// Sorted indices of the grains that traded with walls last.
@@ -141,7 +141,8 @@ impl Charging {
         for (k, list) in neighbours.lists.iter().enumerate() {
             let all = list.growth.iter().zip(&list.foreseen).enumerate();
             let all = all.map(|(entry, (&growth, &foreseen))| PairGrowth {
-                slot: [k as u32, entry as u32],
+                chunk: k as u32,
+                entry: entry as u32,
                 memory: Memory { growth, foreseen },
             });
             pairs.extend(all.filter(|pair| pair.memory != Memory::default()));
@@ -164,10 +165,11 @@ impl Charging {
         neighbours: &mut Neighbours,
     ) -> Result<(), String> {
         for pair in &state.pairs {
-            let list = neighbours.lists.get_mut(pair.slot[0] as usize);
-            let entry = pair.slot[1] as usize;
+            let list = neighbours.lists.get_mut(pair.chunk as usize);
+            let entry = pair.entry as usize;
             let list = list.filter(|list| entry < list.growth.len());
-            let list = list.ok_or_else(|| format!("charging of unknown contact {:?}", pair.slot))?;
+            let list =
+                list.ok_or_else(|| format!("charging of unknown contact {:?}", [pair.chunk, pair.entry]))?;
             (list.growth[entry], list.foreseen[entry]) = (pair.memory.growth, pair.memory.foreseen);
         }
         if state.ledger.walls.len() != self.ledger.walls.len()

@@ -36,7 +36,7 @@ impl Traded {
 }
 
 /// Charge of a grain [C]; `None` where it takes no part.
-pub(super) type Held = Option<f64>;
+pub(super) type MemberCharge = Option<f64>;
 
 /// A pair about to trade.
 struct Trading {
@@ -77,7 +77,7 @@ impl Charging {
         traded = traded.and(self.trade_stiff(traders, neighbours, &mut held));
         for (held, &original) in held.iter().zip(original) {
             if let Some(held) = held {
-                charge[original as usize] = *held;
+                charge[original.index()] = *held;
             }
         }
         self.held = held;
@@ -95,7 +95,7 @@ impl Charging {
         shifts: &[[f64; 3]; 32],
         first: usize,
         lists: &mut [ChunkList],
-        held: &mut [Held],
+        held: &mut [MemberCharge],
     ) -> Traded {
         let mut traded = Traded::default();
         if lists.len() > 1 {
@@ -139,7 +139,7 @@ impl Charging {
         &mut self,
         traders: Traders<'_>,
         neighbours: &mut Neighbours,
-        held: &mut [Held],
+        held: &mut [MemberCharge],
     ) -> Traded {
         let mut traded = Traded::default();
         if neighbours.lists.iter().all(|list| list.grown.is_empty()) {
@@ -184,7 +184,7 @@ impl Charging {
         shifts: &[[f64; 3]; 32],
         pair: Listed,
         list: &ChunkList,
-        held: [Held; 2],
+        held: [MemberCharge; 2],
     ) -> Option<Trading> {
         let [Some(of_i), Some(of_j)] = held else { return None };
         let Listed { i, j, .. } = pair;
@@ -204,7 +204,7 @@ impl Charging {
 
     /// Moves charge from i to j.
     #[inline(always)]
-    fn carry_out(&self, trading: &Trading, held: &mut [Held], i: usize, j: usize) -> Traded {
+    fn carry_out(&self, trading: &Trading, held: &mut [MemberCharge], i: usize, j: usize) -> Traded {
         let moved = self.allowed(trading.drive, trading.work, trading.drive.transfer(trading.growth));
         held[i] = held[i].map(|charge| charge - moved);
         held[j] = held[j].map(|charge| charge + moved);

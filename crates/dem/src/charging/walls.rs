@@ -3,7 +3,7 @@
 use super::around::{Toucher, WALL};
 use super::{Charging, LAG_SEEN, Traders};
 use crate::contacts::neighbours::Neighbours;
-use crate::contacts::walls::{Touch, Walls};
+use crate::contacts::walls::{ContactWalls, Touch};
 use amberfield_core::{Vector3, WallCharging};
 use amberfield_laws::charge_transfer::{Grain, with_grounded_wall, with_insulating_facet};
 
@@ -13,7 +13,7 @@ impl Charging {
         &mut self,
         traders: Traders<'_>,
         neighbours: &Neighbours,
-        walls: &mut Walls,
+        walls: &mut ContactWalls,
         charge: &mut [f64],
     ) {
         let mut grown = std::mem::take(&mut self.touches);
@@ -36,7 +36,13 @@ impl Charging {
     }
 
     /// Moves the charge that is due at one contact; returns αΔA, by how much the contact relaxed.
-    fn trade_wall(&mut self, traders: Traders<'_>, walls: &Walls, touch: &Touch, charge: &mut [f64]) -> f64 {
+    fn trade_wall(
+        &mut self,
+        traders: Traders<'_>,
+        walls: &ContactWalls,
+        touch: &Touch,
+        charge: &mut [f64],
+    ) -> f64 {
         let grains = traders.grains;
         let Some(a) = traders.member(touch.grain) else { return 0.0 };
         let materials = self.table.get(grains.material[touch.grain], touch.material);
@@ -47,7 +53,7 @@ impl Charging {
             touch.memory.foreseen.unwrap_or_else(|| self.unforeseen_at_wall(traders, touch, charge));
         if self.lag > LAG_SEEN {
             let wall_itself = Toucher { grain: WALL, offset: Vector3::zeros() };
-            let charges = |grain| charge[grains.original[grain] as usize];
+            let charges = |grain: usize| charge[grains.original[grain].index()];
             let gained =
                 self.gained_beside(grains, touch.grain, &wall_itself, touch.normal, touch.distance, charges);
             field += gained * if touch.charging == WallCharging::Grounded { 2.0 } else { 1.0 };

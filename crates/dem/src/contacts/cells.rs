@@ -60,9 +60,9 @@ pub(crate) fn levels_of(radii: impl Iterator<Item = f64> + Clone) -> (Vec<u8>, V
     (radii.map(|r| level_of_class[class(r)]).collect(), level_radius)
 }
 
-/// Cells of one level.
+/// Linked cells of one level.
 #[derive(Debug, Default)]
-struct Level {
+struct CellLevel {
     origin: Vector3<f64>,
     inverse_size: f64,
     cells: [i64; 3],
@@ -76,17 +76,17 @@ struct Level {
     cell_of: Vec<u32>,
 }
 
-/// Cells of all levels.
+/// Linked cells of all levels.
 #[derive(Debug)]
-pub(crate) struct Cells {
-    levels: Vec<Level>,
+pub(crate) struct LinkedCells {
+    levels: Vec<CellLevel>,
     level_radius: Vec<f64>,
     skin: f64,
 }
 
-impl Cells {
+impl LinkedCells {
     pub(crate) fn new(level_radius: Vec<f64>, skin: f64) -> Self {
-        let levels = level_radius.iter().map(|_| Level::default()).collect();
+        let levels = level_radius.iter().map(|_| CellLevel::default()).collect();
         Self { levels, level_radius, skin }
     }
 
@@ -181,7 +181,7 @@ fn push_with_images(
     }
 }
 
-impl Level {
+impl CellLevel {
     fn sort(&mut self, smallest_cell: f64) {
         let mut min = Vector3::repeat(f64::INFINITY);
         let mut max = Vector3::repeat(f64::NEG_INFINITY);
@@ -305,7 +305,7 @@ mod tests {
                 .collect();
             let skin = 0.01;
             let (level, radii) = levels_of(centre.iter().map(|c| c[3]));
-            let mut cells = Cells::new(radii, skin);
+            let mut cells = LinkedCells::new(radii, skin);
             assert!(cells.level_count() > 2);
             cells.fill(&domain, &shifts(&domain), &centre, |k| level[k]);
             let mut pairs = Vec::new();

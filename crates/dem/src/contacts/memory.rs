@@ -1,5 +1,6 @@
 //! Memory of contacts: springs, area and what of its growth is still to move charge.
 
+use crate::motion::grains::Original;
 use amberfield_core::Vector3;
 use serde::{Deserialize, Serialize};
 
@@ -72,8 +73,8 @@ pub(crate) struct PairHistory {
     pub(crate) i: u32,
     /// Entry in that list.
     pub(crate) entry: u32,
-    /// Partner, in the set-up's order.
-    pub(crate) partner: u32,
+    /// Partner.
+    pub(crate) partner: Original,
     /// Tangential force [N] and contact radius [m].
     pub(crate) spring: [f64; 4],
     /// Rolling torque [N·m].
@@ -83,8 +84,8 @@ pub(crate) struct PairHistory {
 /// History of a contact with a wall.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 pub(crate) struct WallHistory {
-    /// Grain, in the set-up's order.
-    pub(crate) grain: u32,
+    /// Grain.
+    pub(crate) grain: Original,
     /// Wall.
     pub(crate) wall: u32,
     /// Direction from the grain to the wall.
@@ -114,8 +115,10 @@ pub(crate) struct ContactsState {
 /// Charging of a listed pair.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 pub(crate) struct PairGrowth {
-    /// Chunk whose list holds the pair, and entry in it.
-    pub(crate) slot: [u32; 2],
+    /// Chunk whose list holds the pair.
+    pub(crate) chunk: u32,
+    /// Entry in that list.
+    pub(crate) entry: u32,
     pub(crate) memory: Memory,
 }
 

@@ -18,7 +18,7 @@ use material_pairs::{Features, PairTable};
 use memory::{ContactsState, Follow, WallHistory};
 use neighbours::Neighbours;
 use pairs::pair_forces;
-use walls::Walls;
+use walls::ContactWalls;
 
 /// All contacts of a scene.
 #[derive(Debug)]
@@ -30,7 +30,7 @@ pub(crate) struct Contacts {
     /// Pairs of grains that are near each other.
     pub(crate) neighbours: Neighbours,
     /// Walls and the grains near them; `None` without walls.
-    pub(crate) walls: Option<Walls>,
+    pub(crate) walls: Option<ContactWalls>,
 }
 
 impl Contacts {
@@ -49,7 +49,7 @@ impl Contacts {
 
     /// Number of touching contacts, of grains and with walls, at the last evaluation.
     pub(crate) fn count(&self) -> usize {
-        self.neighbours.contacts() + self.walls.as_ref().map_or(0, Walls::contacts)
+        self.neighbours.contacts() + self.walls.as_ref().map_or(0, ContactWalls::contacts)
     }
 
     /// Histories of the contacts with walls; they find their grains again in any order.

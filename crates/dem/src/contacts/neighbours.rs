@@ -1,6 +1,6 @@
 //! Verlet lists by chunk, and the contact histories that live in them.
 
-use crate::contacts::cells::{Cells, INDEX_BITS, INDEX_MASK};
+use crate::contacts::cells::{INDEX_BITS, INDEX_MASK, LinkedCells};
 use crate::contacts::material_pairs::Features;
 use crate::contacts::memory::{Follow, Grown, Growth, PairHistory};
 use crate::motion::chunks::{CHUNK, NO_PUSH, Push, chunk_count, for_each_chunk, is_parallel};
@@ -87,7 +87,7 @@ pub(crate) struct Inbound {
 /// All lists.
 #[derive(Debug)]
 pub(crate) struct Neighbours {
-    cells: Cells,
+    cells: LinkedCells,
     pub(crate) shifts: [[f64; 3]; 32],
     pub(crate) features: Features,
     pub(crate) lists: Vec<ChunkList>,
@@ -98,7 +98,7 @@ pub(crate) struct Neighbours {
 }
 
 impl Neighbours {
-    pub(crate) fn new(cells: Cells, shifts: [[f64; 3]; 32], features: Features) -> Self {
+    pub(crate) fn new(cells: LinkedCells, shifts: [[f64; 3]; 32], features: Features) -> Self {
         Self {
             cells,
             shifts,
@@ -253,7 +253,7 @@ impl ChunkList {
         self.begun += u64::from(begins);
     }
 
-    fn fill(&mut self, k: usize, cells: &Cells, grains: &Grains, features: Features) {
+    fn fill(&mut self, k: usize, cells: &LinkedCells, grains: &Grains, features: Features) {
         self.start.clear();
         self.partner.clear();
         let (first, last) = (k * CHUNK, grains.len().min((k + 1) * CHUNK));

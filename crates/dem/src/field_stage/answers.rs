@@ -1,6 +1,7 @@
 //! Answers of the field stage to charge transfer and the guards, and what they tell it.
 
 use super::FieldStage;
+use crate::motion::grains::Original;
 use amberfield_core::constants::VACUUM_PERMITTIVITY;
 use amberfield_core::{CouplingInterval, Vector3};
 
@@ -21,9 +22,14 @@ impl FieldStage {
     }
 
     /// Takes the new charges of grains; `charge` is by the set-up's order [C].
-    pub(crate) fn recharge(&mut self, grains: impl Iterator<Item = usize>, original: &[u32], charge: &[f64]) {
+    pub(crate) fn recharge(
+        &mut self,
+        grains: impl Iterator<Item = usize>,
+        original: &[Original],
+        charge: &[f64],
+    ) {
         for grain in grains {
-            let of = original[grain] as usize;
+            let of = original[grain].index();
             if self.member[of] {
                 self.forecast.recharge(grain, charge[of]);
             }

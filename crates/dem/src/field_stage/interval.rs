@@ -26,8 +26,10 @@ const AIM: f64 = 0.8;
 /// Largest difference of any grain that is aimed at, over the RMS difference that is: grains that few others
 /// resemble, such as a lone one that falls on a conductor, are held to this.
 const WORST: f64 = 30.0;
-/// Most and least growth of the interval from one evaluation to the next.
-const GROWTH: (f64, f64) = (0.25, 2.0);
+/// Least growth of the interval from one evaluation to the next.
+const LEAST_GROWTH: f64 = 0.25;
+/// Most growth of the interval from one evaluation to the next.
+const MOST_GROWTH: f64 = 2.0;
 
 /// Error of a forecast, found at the evaluation that replaced it.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
@@ -109,7 +111,7 @@ impl IntervalControl {
             CouplingInterval::Steps(steps) => u64::from(steps.max(1)),
             CouplingInterval::Auto => {
                 let error = error.max(over_interval * check.largest / WORST);
-                let growth = (AIM * tolerance / error).sqrt().clamp(GROWTH.0, GROWTH.1);
+                let growth = (AIM * tolerance / error).sqrt().clamp(LEAST_GROWTH, MOST_GROWTH);
                 ((age as f64 * growth) as u64).clamp(1, most.max(1))
             }
         };

@@ -49,10 +49,10 @@ impl Members {
         self.charge.clear();
         self.count = grains.len();
         for (i, &original) in grains.original.iter().enumerate() {
-            if member[original as usize] {
+            if member[original.index()] {
                 self.index.push(i as u32);
                 self.position.push(domain.wrap(grains.position(i)));
-                self.charge.push(particles.charge[original as usize]);
+                self.charge.push(particles.charge[original.index()]);
             }
         }
         self.position.extend(&extras.position);

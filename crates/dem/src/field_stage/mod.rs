@@ -57,8 +57,14 @@ pub struct Limited {
     pub largest_force_n: f64,
 }
 
-/// Findings of the force limiter in a chunk: grains limited, largest force before limiting [N].
-type ChunkLimited = (u64, f64);
+/// Findings of the force limiter in a chunk.
+#[derive(Clone, Copy, Debug, Default)]
+struct ChunkLimited {
+    /// Grains limited.
+    grains: u64,
+    /// Largest force before limiting [N].
+    largest: f64,
+}
 
 /// The field and the forces that it makes.
 #[derive(Debug)]
@@ -226,7 +232,7 @@ impl FieldStage {
     pub(crate) fn add_forces(&mut self, grains: &Grains, skin: f64, step: f64, total: &mut [Vector3<f64>]) {
         let count = grains.len();
         self.found.clear();
-        self.found.resize(chunk_count(count), (0, 0.0));
+        self.found.resize(chunk_count(count), ChunkLimited::default());
         let mut found = std::mem::take(&mut self.found);
         let (forecast, age) = (&self.forecast, self.control.age as f64);
         let largest = largest_force(self.settings.force_limit, grains, skin, step);
@@ -244,15 +250,15 @@ impl FieldStage {
                 Some(largest) => grains.for_each(|(i, total)| {
                     let force = forecast.force(i, age);
                     let (limited, cut) = force_limit::limited(force, largest(i));
-                    found[0].0 += u64::from(cut);
-                    found[0].1 = found[0].1.max(force.norm());
+                    found[0].grains += u64::from(cut);
+                    found[0].largest = found[0].largest.max(force.norm());
                     *total += limited;
                 }),
             }
         });
-        self.limited.grains = found.iter().map(|found| found.0).sum();
+        self.limited.grains = found.iter().map(|found| found.grains).sum();
         self.limited.largest_force_n =
-            found.iter().map(|found| found.1).fold(self.limited.largest_force_n, f64::max);
+            found.iter().map(|found| found.largest).fold(self.limited.largest_force_n, f64::max);
         self.found = found;
     }
 

@@ -13,14 +13,21 @@ use std::f64::consts::PI;
 pub(crate) struct UniformGas {
     gas: Gas,
     gravity: Vector3<f64>,
-    /// Smallest diameter [m] and lowest density [kg/m³] of the grains.
-    finest: (f64, f64),
+    /// Smallest diameter of the grains [m].
+    least_diameter: f64,
+    /// Lowest density of the grains [kg/m³].
+    least_density: f64,
 }
 
 impl UniformGas {
     pub(crate) fn new(gas: Gas, gravity: Vector3<f64>, particles: &Particles) -> Self {
         let least = |values: &[f64]| values.iter().copied().fold(f64::INFINITY, f64::min);
-        Self { gas, gravity, finest: (2.0 * least(&particles.radius), least(&particles.density)) }
+        Self {
+            gas,
+            gravity,
+            least_diameter: 2.0 * least(&particles.radius),
+            least_density: least(&particles.density),
+        }
     }
 
     /// Name of the drag law.
@@ -52,7 +59,7 @@ impl UniformGas {
     /// Shortest time in which any grain's slip decays [s], at grains' speeds up to `speed` [m/s]; exact for
     /// grains of one density.
     pub(crate) fn limit(&self, speed: f64) -> f64 {
-        let (diameter, density) = self.finest;
+        let (diameter, density) = (self.least_diameter, self.least_density);
         let slip = speed + self.gas.velocity_m_s.norm();
         density * PI / 6.0 * diameter.powi(3) / self.coefficient(diameter, slip)
     }

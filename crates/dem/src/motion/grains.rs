@@ -3,12 +3,26 @@
 use amberfield_core::{Domain, Particles, Vector3};
 use serde::{Deserialize, Serialize};
 
+/// Index of a grain in the set-up's order, by which everything constant is found.
+///
+/// A plain index of a grain is one in the order of the last sort.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Serialize, Deserialize)]
+pub(crate) struct Original(u32);
+
+impl Original {
+    /// Index into arrays of the set-up.
+    #[inline(always)]
+    pub(crate) fn index(self) -> usize {
+        self.0 as usize
+    }
+}
+
 /// Moving grains in the order of the last sort; everything constant stays with the set-up's particles and is
 /// found through `original`.
 #[derive(Debug, Default)]
 pub(crate) struct Grains {
     /// Index in the set-up's order.
-    pub(crate) original: Vec<u32>,
+    pub(crate) original: Vec<Original>,
     /// Centre and radius [m]; periodic coordinates are wrapped at rebuilds only.
     pub(crate) centre: Vec<[f64; 4]>,
     /// Velocity [m/s]; during a step predicted to its end.
@@ -33,7 +47,7 @@ pub(crate) struct Grains {
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub(crate) struct GrainsState {
     /// Index in the set-up's order.
-    pub(crate) original: Vec<u32>,
+    pub(crate) original: Vec<Original>,
     /// Centre [m].
     pub(crate) centre: Vec<Vector3<f64>>,
     /// Velocity [m/s].
@@ -52,7 +66,7 @@ pub(crate) struct Spare {
     pub(crate) vectors: Vec<Vector3<f64>>,
     quads: Vec<[f64; 4]>,
     reals: Vec<f64>,
-    indices: Vec<u32>,
+    originals: Vec<Original>,
     materials: Vec<u16>,
     levels: Vec<u8>,
 }
@@ -61,7 +75,7 @@ impl Grains {
     pub(crate) fn new(particles: &Particles, level: Vec<u8>, rotation: bool) -> Self {
         let count = particles.len();
         Self {
-            original: (0..count as u32).collect(),
+            original: (0..count as u32).map(Original).collect(),
             centre: (0..count)
                 .map(|i| {
                     let x = particles.position[i];
@@ -129,10 +143,16 @@ impl Grains {
         self.centre[index].iter().all(|x| x.is_finite())
     }
 
+    /// Takes the order of a state, from that of the set-up; grains that the state does not name are dropped.
+    pub(crate) fn take_order(&mut self, original: &[Original]) {
+        let order: Vec<u32> = original.iter().map(|original| original.0).collect();
+        self.reorder(&order);
+    }
+
     /// Reorders to `order[new] = old`; grains that are not named are dropped.
     pub(crate) fn reorder(&mut self, order: &[u32]) {
         let spare = &mut self.spare;
-        pick(&mut self.original, order, &mut spare.indices);
+        pick(&mut self.original, order, &mut spare.originals);
         pick(&mut self.centre, order, &mut spare.quads);
         pick(&mut self.velocity, order, &mut spare.vectors);
         pick(&mut self.angular, order, &mut spare.vectors);
@@ -146,7 +166,7 @@ impl Grains {
     }
 
     /// Order along a Morton curve, equal keys by original index: it depends on positions only.
-    pub(crate) fn spatial_order(&self, keys: &mut Vec<(u64, u32, u32)>, order: &mut Vec<u32>) {
+    pub(crate) fn spatial_order(&self, keys: &mut Vec<SortKey>, order: &mut Vec<u32>) {
         let mut min = Vector3::repeat(f64::INFINITY);
         let mut max = Vector3::repeat(f64::NEG_INFINITY);
         for i in 0..self.len() {
@@ -159,13 +179,23 @@ impl Grains {
         keys.clear();
         keys.extend((0..self.len()).map(|i| {
             let cell = (self.position(i) - min) * scale;
-            let key = spread(cell.x as u64) | spread(cell.y as u64) << 1 | spread(cell.z as u64) << 2;
-            (key, self.original[i], i as u32)
+            let curve = spread(cell.x as u64) | spread(cell.y as u64) << 1 | spread(cell.z as u64) << 2;
+            SortKey { curve, original: self.original[i], index: i as u32 }
         }));
         keys.sort_unstable();
         order.clear();
-        order.extend(keys.iter().map(|key| key.2));
+        order.extend(keys.iter().map(|key| key.index));
     }
+}
+
+/// Key of the sort in space; what comes first in it decides first.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
+pub(crate) struct SortKey {
+    /// Place along the Morton curve.
+    curve: u64,
+    original: Original,
+    /// Index before the sort.
+    index: u32,
 }
 
 /// Bits per axis of the Morton key.

@@ -7,7 +7,7 @@
 
 use crate::motion::chunks::{CHUNK, Push, chunk_count, for_each_chunk, is_parallel};
 use crate::motion::grains::Grains;
-use amberfield_core::Vector3;
+use amberfield_core::{Side, Vector3};
 use rayon::prelude::*;
 
 /// Moment of inertia of a solid sphere over m r².
@@ -38,19 +38,26 @@ pub(crate) struct Bounds {
     pub(crate) max: [f64; 3],
 }
 
+/// Face of the box that a grain is beyond.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Beyond {
+    pub(crate) axis: usize,
+    /// Side of the axis; `None` for a coordinate that is not a number.
+    pub(crate) side: Option<Side>,
+}
+
 impl Bounds {
-    /// The axis and side (0 or 1) of the face that a position is beyond; `None` when inside. NaN is outside
-    /// too, of an axis but beyond no side.
-    pub(crate) fn beyond(&self, centre: &[f64; 4]) -> Option<(usize, Option<usize>)> {
+    /// The face that a position is beyond; `None` when inside. NaN is outside too.
+    pub(crate) fn beyond(&self, centre: &[f64; 4]) -> Option<Beyond> {
         (0..3).find(|&a| !self.holds(a, centre[a])).map(|a| {
             let side = if centre[a] < self.min[a] {
-                Some(0)
+                Some(Side::Min)
             } else if centre[a] > self.max[a] {
-                Some(1)
+                Some(Side::Max)
             } else {
                 None
             };
-            (a, side)
+            Beyond { axis: a, side }
         })
     }
 

@@ -158,7 +158,7 @@ pub(crate) fn check_overlaps(
     particles: &Particles,
     allow_overlap: bool,
 ) -> Result<(), DemError> {
-    let id = |i: usize| particles.id[grains.original[i] as usize];
+    let id = |i: usize| particles.id[grains.original[i].index()];
     for pair in contacts.neighbours.pairs() {
         let distance = pair.distance(grains, &contacts.neighbours.shifts);
         let (a, b) = (grains.centre[pair.i][3], grains.centre[pair.j][3]);
@@ -184,7 +184,7 @@ pub(crate) fn check_wall_overlaps(
     let walls = contacts.walls.as_ref().filter(|_| !allow_overlap);
     let Some(deep) = walls.and_then(|walls| walls.too_deep(grains)) else { return Ok(()) };
     Err(DemError::WallOverlap {
-        id: particles.id[grains.original[deep.grain] as usize],
+        id: particles.id[grains.original[deep.grain].index()],
         wall: deep.wall,
         overlap_m: deep.overlap,
         limit_m: deep.limit,
@@ -199,9 +199,10 @@ pub(crate) fn check_state(setup: &Setup, state: &State) -> Result<(), DemError> 
     let total = setup.particles.len();
     let mut seen = vec![false; total];
     for &original in &grains.original {
-        let slot = seen.get_mut(original as usize);
+        let slot = seen.get_mut(original.index());
         if slot.is_none_or(|seen| std::mem::replace(seen, true)) {
-            return Err(DemError::State(format!("grain {original} of {total} is unknown or named twice")));
+            let text = format!("grain {} of {total} is unknown or named twice", original.index());
+            return Err(DemError::State(text));
         }
     }
     let transfers = setup.field.as_ref().is_some_and(|field| field.transfer.is_some());

@@ -2,6 +2,7 @@
 
 use crate::contacts::Contacts;
 use crate::contacts::material_pairs::{Features, PairConstants};
+use crate::contacts::walls::ContactWalls;
 use crate::motion::grains::Grains;
 use amberfield_core::Vector3;
 use amberfield_laws::rolling_friction;
@@ -65,12 +66,14 @@ pub(crate) fn contact(grains: &Grains, contacts: &Contacts) -> f64 {
         let rolling = list.rolling.get(touching.entry).copied().unwrap_or_default();
         sum += springs.energy(&spring, &rolling);
     }
-    if let Some(walls) = walls {
-        walls.each_contact(|i, material, overlap, spring, rolling| {
-            let pair = table.get(grains.material[i], material);
-            let springs = Springs { pair, features: *features, radius: grains.centre[i][3], overlap };
-            sum += springs.energy(spring, rolling);
-        });
+    for touching in walls.iter().flat_map(ContactWalls::touching) {
+        let springs = Springs {
+            pair: table.get(grains.material[touching.grain], touching.material),
+            features: *features,
+            radius: grains.centre[touching.grain][3],
+            overlap: touching.overlap,
+        };
+        sum += springs.energy(&touching.spring, &touching.rolling);
     }
     sum
 }

@@ -2,7 +2,8 @@
 
 use super::Simulation;
 use crate::error::DemError;
-use amberfield_core::OnExit;
+use crate::motion::verlet::Beyond;
+use amberfield_core::{OnExit, Side};
 
 impl Simulation {
     /// Ends the run or removes the grains outside the box, as the scene says; whether any was removed.
@@ -10,7 +11,7 @@ impl Simulation {
         let outside: Vec<usize> = (0..self.grains.len())
             .filter(|&i| self.bounds.beyond(&self.grains.centre[i]).is_some())
             .collect();
-        let id = |i: usize| self.particles.id[self.grains.original[i] as usize];
+        let id = |i: usize| self.particles.id[self.grains.original[i].index()];
         let time_s = self.progress.time_s();
         // The smallest id is named: which grain comes first in the sorted order means nothing to a reader.
         let first = |those: &dyn Fn(usize) -> bool| {
@@ -22,8 +23,10 @@ impl Simulation {
         if self.time.on_exit == OnExit::Stop
             && let Some(i) = first(&|_| true)
         {
-            let (axis, side) = self.bounds.beyond(&self.grains.centre[i]).expect("listed as outside");
-            let face = format!("{}_{}", ["x", "y", "z"][axis], ["min", "max"][side.unwrap_or(0)]);
+            let Beyond { axis, side } =
+                self.bounds.beyond(&self.grains.centre[i]).expect("listed as outside");
+            let side = if side == Some(Side::Max) { "max" } else { "min" };
+            let face = format!("{}_{side}", ["x", "y", "z"][axis]);
             return Err(DemError::Left { id: id(i), position_m: self.grains.position(i), face, time_s });
         }
         for &i in &outside {

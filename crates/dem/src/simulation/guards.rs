@@ -175,8 +175,8 @@ pub(crate) fn electric_stiffness_bound(
 ) -> Stiffness {
     let (mut charge, mut inverse_mass, mut radius) = (0.0_f64, 0.0_f64, f64::INFINITY);
     for (i, &original) in grains.original.iter().enumerate() {
-        if member[original as usize] {
-            charge = charge.max(particles.charge[original as usize].abs());
+        if member[original.index()] {
+            charge = charge.max(particles.charge[original.index()].abs());
             inverse_mass = inverse_mass.max(grains.inverse_mass[i]);
             radius = radius.min(grains.centre[i][3]);
         }
@@ -202,7 +202,7 @@ pub(crate) fn electric_stiffness(
 ) -> Stiffness {
     let mirror = domain.faces().iter().flatten().any(|face| face.is_conductor() || face.is_insulating());
     let charge = |i: usize| {
-        let original = grains.original[i] as usize;
+        let original = grains.original[i].index();
         if member[original] { particles.charge[original] } else { 0.0 }
     };
     let limit = |i: usize, j: usize| {

@@ -19,12 +19,12 @@ use crate::error::DemError;
 use crate::field_stage::{Extras, FieldStage};
 use crate::gas_stage::GasStage;
 use crate::motion::chunks::chunk_count;
-use crate::motion::grains::Grains;
+use crate::motion::grains::{Grains, SortKey};
 use crate::motion::verlet::{Bounds, ChunkMotion, drift, kick};
 use amberfield_core::{Domain, Particles, Plan, TimeSettings, Vector3};
 use guards::Limits;
 use state::{Progress, State};
-use timing::{Stage, Stopwatch};
+use timing::{Stage, StageClock};
 
 /// Margin of the displacement test against round-off.
 const HALF_SKIN: f64 = 0.499_999;
@@ -69,7 +69,7 @@ pub struct Simulation {
     scratch: Scratch,
     /// State before a step in which another process may be lost.
     rescued: Option<State>,
-    watch: Stopwatch,
+    watch: StageClock,
 }
 
 /// Memory in which a step works; nothing in it is state.
@@ -82,7 +82,7 @@ struct Scratch {
     /// Findings of the drift, by chunk.
     motion: Vec<ChunkMotion>,
     /// Keys of the sort.
-    keys: Vec<(u64, u32, u32)>,
+    keys: Vec<SortKey>,
     /// Order of the sort.
     order: Vec<u32>,
     /// Charges of walls and contacts that take part in an evaluation of the field.

@@ -4,6 +4,7 @@ use super::Simulation;
 use super::energy::{self, ElectricEnergy, Energies};
 use super::guards::Guard;
 use super::timing::STAGE_NAMES;
+use crate::contacts::walls::ContactWalls;
 use crate::error::DemError;
 use crate::field_stage::{FieldStage, Intervals, Limited};
 use amberfield_core::{Particles, Plan, Vector3};
@@ -80,7 +81,7 @@ impl Simulation {
             .into_iter()
             .map(|i| {
                 let i = i as usize;
-                let mut grain = self.particles.grain(self.grains.original[i] as usize);
+                let mut grain = self.particles.grain(self.grains.original[i].index());
                 grain.position = self.domain.wrap(self.grains.position(i));
                 grain.velocity = self.grains.velocity[i];
                 grain.angular_velocity = self.grains.angular[i];
@@ -128,7 +129,7 @@ impl Simulation {
     #[must_use]
     pub fn deepest(&self) -> Option<Deepest> {
         let grains = &self.grains;
-        let id = |i: usize| self.particles.id[grains.original[i] as usize];
+        let id = |i: usize| self.particles.id[grains.original[i].index()];
         let mut deepest: Option<Deepest> = None;
         let mut look = |found: Deepest| {
             if deepest.is_none_or(|known| found.share > known.share) {
@@ -141,10 +142,9 @@ impl Simulation {
             let (id, other) = (id(pair.i), Some(id(pair.j)));
             look(Deepest { id, other, overlap_m, share: overlap_m / a.min(b) });
         }
-        if let Some(walls) = &self.contacts.walls {
-            walls.each_contact(|i, _, overlap_m, _, _| {
-                look(Deepest { id: id(i), other: None, overlap_m, share: overlap_m / grains.centre[i][3] });
-            });
+        for touching in self.contacts.walls.iter().flat_map(ContactWalls::touching) {
+            let (i, overlap_m) = (touching.grain, touching.overlap);
+            look(Deepest { id: id(i), other: None, overlap_m, share: overlap_m / grains.centre[i][3] });
         }
         deepest
     }
@@ -154,7 +154,7 @@ impl Simulation {
     pub fn fastest(&self) -> Option<(u64, f64)> {
         let speeds = self.grains.velocity.iter().map(|velocity| velocity.norm());
         let (i, speed) = speeds.enumerate().max_by(|a, b| a.1.total_cmp(&b.1))?;
-        Some((self.particles.id[self.grains.original[i] as usize], speed))
+        Some((self.particles.id[self.grains.original[i].index()], speed))
     }
 
     /// Id of a grain whose position or velocity is not finite.
@@ -166,7 +166,7 @@ impl Simulation {
         };
         let ids = (0..self.grains.len())
             .filter(not_finite)
-            .map(|i| self.particles.id[self.grains.original[i] as usize]);
+            .map(|i| self.particles.id[self.grains.original[i].index()]);
         ids.min()
     }
 

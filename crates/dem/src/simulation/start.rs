@@ -2,14 +2,14 @@
 
 use super::guards::Limits;
 use super::state::{Progress, State};
-use super::timing::Stopwatch;
+use super::timing::StageClock;
 use super::{Scratch, Simulation, checks};
 use crate::charging::Charging;
 use crate::contacts::Contacts;
-use crate::contacts::cells::{Cells, levels_of, shifts};
+use crate::contacts::cells::{LinkedCells, levels_of, shifts};
 use crate::contacts::material_pairs::{Features, PairTable};
 use crate::contacts::neighbours::Neighbours;
-use crate::contacts::walls::Walls;
+use crate::contacts::walls::ContactWalls;
 use crate::error::DemError;
 use crate::field_stage::FieldStage;
 use crate::gas_stage::GasStage;
@@ -54,7 +54,7 @@ impl Simulation {
         }
         let skin = state.progress.skin_m;
         let mut run = Self::assemble(setup, skin, Some(&state))?;
-        run.grains.reorder(&state.grains.original);
+        run.grains.take_order(&state.grains.original);
         // Lists are built from the centres from which they were built before.
         run.grains.place(&state.contacts.reference);
         run.contacts.restore(&run.domain, &run.grains, skin, &state.contacts).map_err(DemError::State)?;
@@ -103,9 +103,9 @@ impl Simulation {
         let (wall_count, field_asked) = (walls.len(), field.is_some());
         let walls = match wall_count {
             0 => None,
-            _ => Some(Walls::new(&walls, shifts, features.charging).map_err(DemError::Setup)?),
+            _ => Some(ContactWalls::new(&walls, shifts, features.charging).map_err(DemError::Setup)?),
         };
-        let neighbours = Neighbours::new(Cells::new(level_radius, skin_m), shifts, features);
+        let neighbours = Neighbours::new(LinkedCells::new(level_radius, skin_m), shifts, features);
         let contacts = Contacts { table, features, neighbours, walls };
         let charging = field.as_ref().zip(transfer).map(|(field, transfer)| {
             Charging::new(transfer, &field.settings, &materials, &particles, wall_count)
@@ -146,7 +146,7 @@ impl Simulation {
             field,
             scratch: Scratch::default(),
             rescued: None,
-            watch: Stopwatch::default(),
+            watch: StageClock::default(),
         };
         run.resize_scratch();
         Ok(run)

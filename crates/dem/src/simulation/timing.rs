@@ -20,12 +20,12 @@ pub(crate) const STAGE_NAMES: [&str; 7] =
 
 /// A stopwatch that results never depend on.
 #[derive(Debug, Default)]
-pub(crate) struct Stopwatch {
+pub(crate) struct StageClock {
     pub(crate) seconds: [f64; 7],
     last: Option<Instant>,
 }
 
-impl Stopwatch {
+impl StageClock {
     /// Starts the clock.
     pub(crate) fn start(&mut self) {
         self.last = Some(Instant::now());

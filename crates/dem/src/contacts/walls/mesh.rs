@@ -36,7 +36,7 @@ pub(crate) struct Found {
 
 /// A closest point.
 #[derive(Clone, Copy, Debug)]
-pub(crate) struct Candidate {
+pub(crate) struct ClosestPoint {
     distance: f64,
     triangle: u32,
     direction: Vector3<f64>,
@@ -123,14 +123,14 @@ impl MeshWall {
         &self,
         radius: f64,
         triangles: impl Iterator<Item = (u32, Vector3<f64>)>,
-        scratch: &mut Vec<Candidate>,
+        scratch: &mut Vec<ClosestPoint>,
         found: &mut [Found; MOST_CONTACTS],
     ) -> usize {
         scratch.clear();
         for (triangle, centre) in triangles {
             let (distance, direction) = self.closest(triangle, centre, radius);
             if distance < radius {
-                scratch.push(Candidate { distance, triangle, direction });
+                scratch.push(ClosestPoint { distance, triangle, direction });
             }
         }
         scratch.sort_unstable_by(|a, b| a.distance.total_cmp(&b.distance).then(a.triangle.cmp(&b.triangle)));

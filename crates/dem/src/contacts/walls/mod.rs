@@ -1,29 +1,28 @@
 //! Contacts with plane and mesh walls.
 
+mod forces;
 pub(crate) mod mesh;
 mod near;
 mod touches;
 
-pub(crate) use touches::{Surface, Touch};
+pub(crate) use touches::{Surface, Touch, WallSlot};
 
-use crate::contacts::law::{Contact, History, respond};
 use crate::contacts::material_pairs::{Features, PairTable};
 use crate::contacts::memory::{Memory, WallHistory};
-use crate::contacts::walls::mesh::{Candidate, Found, MOST_CONTACTS, MeshWall};
+use crate::contacts::walls::mesh::{ClosestPoint, Found, MOST_CONTACTS, MeshWall};
 use crate::motion::chunks::{CHUNK, chunk_count, for_each_chunk, is_parallel};
 use crate::motion::grains::Grains;
 use amberfield_core::{Domain, Vector3, Wall, WallCharging, WallShape};
 use std::ops::Range;
 
-/// Cosine of the largest turn between two steps for which a contact is still the same (60°).
-const SAME_CONTACT: f64 = 0.5;
-
+/// Shape of a wall.
 #[derive(Debug)]
 enum Shape {
     Plane { point: Vector3<f64>, normal: Vector3<f64> },
     Mesh(Box<MeshWall>),
 }
 
+/// A wall that grains touch.
 #[derive(Debug)]
 struct Solid {
     name: String,
@@ -46,6 +45,21 @@ pub(crate) struct TooDeep {
     pub(crate) limit: f64,
 }
 
+/// A touching contact with a wall, for those who look on.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct TouchingWall {
+    /// Sorted index of the grain.
+    pub(crate) grain: usize,
+    /// Material of the wall.
+    pub(crate) material: u16,
+    /// Overlap [m].
+    pub(crate) overlap: f64,
+    /// Tangential force [N] and contact radius [m].
+    pub(crate) spring: [f64; 4],
+    /// Rolling torque [N·m].
+    pub(crate) rolling: [f64; 3],
+}
+
 /// A contact with its history.
 #[derive(Clone, Copy, Debug, Default)]
 struct WallContact {
@@ -56,9 +70,10 @@ struct WallContact {
     rolling: [f64; 3],
 }
 
-/// A grain near a wall.
+/// A grain near a wall, and its contacts with it.
 #[derive(Clone, Debug)]
 struct Entry {
+    /// Grain in the chunk.
     local: u32,
     wall: u32,
     /// Triangles near the grain, with shift codes.
@@ -69,20 +84,28 @@ struct Entry {
     count: u32,
 }
 
+/// A triangle near a grain, or near its periodic image.
+#[derive(Clone, Copy, Debug)]
+struct NearTriangle {
+    triangle: u32,
+    /// Code of the image's shift.
+    shift: u32,
+}
+
 /// Grains of one chunk that are near walls.
 #[derive(Debug, Default)]
 pub(crate) struct ChunkWalls {
     entries: Vec<Entry>,
-    triangles: Vec<(u32, u32)>,
+    triangles: Vec<NearTriangle>,
     contacts: Vec<WallContact>,
     /// Charging of the contacts; empty without charge transfer.
     charging: Vec<Memory>,
-    scratch: Vec<Candidate>,
+    scratch: Vec<ClosestPoint>,
 }
 
 /// All walls and what is near them.
 #[derive(Debug)]
-pub(crate) struct Walls {
+pub(crate) struct ContactWalls {
     solids: Vec<Solid>,
     shifts: [[f64; 3]; 32],
     /// Whether contacts move charge.
@@ -90,7 +113,7 @@ pub(crate) struct Walls {
     chunks: Vec<ChunkWalls>,
 }
 
-impl Walls {
+impl ContactWalls {
     pub(crate) fn new(walls: &[Wall], shifts: [[f64; 3]; 32], charge: bool) -> Result<Self, String> {
         let mut solids = Vec::new();
         for wall in walls {
@@ -136,14 +159,15 @@ impl Walls {
     pub(crate) fn build(&mut self, domain: &Domain, grains: &Grains, skin: f64, histories: &[WallHistory]) {
         let chunks = chunk_count(grains.len());
         self.chunks.resize_with(chunks, ChunkWalls::default);
-        let (solids, shifts, charge, near) = (&self.solids, &self.shifts, self.charge, &mut self.chunks);
+        let Self { solids, shifts, charge, chunks: near } = self;
+        let search = near::Search { solids, charge: *charge, shifts, domain, grains, skin, histories };
         let mut marks = vec![(); chunks];
         for_each_chunk!(is_parallel(grains.len()), chunks, (near / 1, marks / 1), |k: usize,
                                                                                    (near, _): (
             &mut [ChunkWalls],
             &mut [()]
         )| {
-            near[0].fill(k, (solids, charge), shifts, domain, grains, skin, histories);
+            near[0].fill(k, &search);
         });
     }
 
@@ -235,17 +259,20 @@ impl Walls {
         self.chunks.iter().flat_map(|c| &c.entries).map(|e| e.count as usize).sum()
     }
 
-    /// Calls `each(grain index, wall material, overlap, spring, rolling)` for every touching contact.
-    pub(crate) fn each_contact(&self, mut each: impl FnMut(usize, u16, f64, &[f64; 4], &[f64; 3])) {
-        for (k, chunk) in self.chunks.iter().enumerate() {
-            for entry in &chunk.entries {
+    /// Every touching contact, in order.
+    pub(crate) fn touching(&self) -> impl Iterator<Item = TouchingWall> + '_ {
+        self.chunks.iter().enumerate().flat_map(move |(k, chunk)| {
+            chunk.entries.iter().flat_map(move |entry| {
                 let first = entry.contacts as usize;
-                for c in &chunk.contacts[first..first + entry.count as usize] {
-                    let material = self.solids[entry.wall as usize].material;
-                    each(k * CHUNK + entry.local as usize, material, c.overlap, &c.spring, &c.rolling);
-                }
-            }
-        }
+                chunk.contacts[first..first + entry.count as usize].iter().map(move |contact| TouchingWall {
+                    grain: k * CHUNK + entry.local as usize,
+                    material: self.solids[entry.wall as usize].material,
+                    overlap: contact.overlap,
+                    spring: contact.spring,
+                    rolling: contact.rolling,
+                })
+            })
+        })
     }
 
     /// The first grain that overlaps a wall by more than half its radius.
@@ -276,114 +303,4 @@ impl Solid {
             }
         }
     }
-}
-
-impl ChunkWalls {
-    #[expect(clippy::too_many_arguments, reason = "the arrays of one chunk, split for the borrow checker")]
-    fn forces<const FRICTION: bool, const ROLLING: bool, const DAMPING: bool>(
-        &mut self,
-        k: usize,
-        solids: &[Solid],
-        shifts: &[[f64; 3]; 32],
-        grains: &Grains,
-        table: &PairTable,
-        step: f64,
-        force: &mut [Vector3<f64>],
-        torque: &mut [Vector3<f64>],
-    ) {
-        let Self { entries, triangles, contacts, charging: memory, scratch } = self;
-        for entry in entries {
-            let local = entry.local as usize;
-            let i = k * CHUNK + local;
-            let (centre, radius) = (grains.position(i), grains.centre[i][3]);
-            let solid = &solids[entry.wall as usize];
-            let mut found = [Found::default(); MOST_CONTACTS];
-            let count = match &solid.shape {
-                Shape::Plane { point, normal } => {
-                    let overlap = radius - (centre - point).dot(normal);
-                    found[0] = Found { normal: -normal, overlap, triangle: 0 };
-                    usize::from(overlap > 0.0)
-                }
-                Shape::Mesh(mesh) => {
-                    let range = entry.triangles.start as usize..entry.triangles.end as usize;
-                    let pairs = triangles[range]
-                        .iter()
-                        .map(|&(t, code)| (t, centre + Vector3::from(shifts[code as usize])));
-                    mesh.contacts(radius, pairs, scratch, &mut found)
-                }
-            };
-            let kept = &mut contacts[entry.contacts as usize..];
-            let from = renew(kept, entry.count as usize, &found[..count]);
-            if !memory.is_empty() {
-                touches::renew(&mut memory[entry.contacts as usize..], &from[..count]);
-            }
-            entry.count = count as u32;
-            let pair = table.get(grains.material[i], solid.material);
-            for wall_contact in &mut kept[..count] {
-                let (contact, arm) = contact_of::<FRICTION, ROLLING>(grains, i, wall_contact);
-                let mut history = History::stored(wall_contact.spring, wall_contact.rolling);
-                let response = respond::<_, FRICTION, ROLLING, DAMPING>(&contact, pair, step, &mut history);
-                (wall_contact.spring, wall_contact.rolling) = history.to_store();
-                force[local] += response.force;
-                if FRICTION || ROLLING {
-                    torque[local] += response.twist * arm + response.rolling;
-                }
-            }
-        }
-    }
-}
-
-/// Geometry and motion of a grain's contact with a wall at rest, and the centre's distance from it.
-#[inline(always)]
-fn contact_of<const FRICTION: bool, const ROLLING: bool>(
-    grains: &Grains,
-    i: usize,
-    found: &WallContact,
-) -> (Contact<f64>, f64) {
-    let (radius, inverse_mass) = (grains.centre[i][3], grains.inverse_mass[i]);
-    let arm = radius - found.overlap;
-    let turning = if FRICTION || ROLLING { grains.angular[i] } else { Vector3::zeros() };
-    let contact = Contact {
-        overlap: found.overlap,
-        normal: found.normal,
-        velocity: grains.velocity[i],
-        spin: turning * arm,
-        turning,
-        radius,
-        inverse_mass,
-        inverse_moment: inverse_mass / (radius * radius),
-    };
-    (contact, arm)
-}
-
-/// Replaces the contacts of the last step by those found now; springs go to the nearest direction. Returns
-/// which of the old contacts each one was.
-fn renew(kept: &mut [WallContact], old_count: usize, found: &[Found]) -> [Option<usize>; MOST_CONTACTS] {
-    let mut old = [WallContact::default(); MOST_CONTACTS];
-    old[..old_count].copy_from_slice(&kept[..old_count]);
-    let mut unused = [true; MOST_CONTACTS];
-    let mut from = [None; MOST_CONTACTS];
-    for ((kept, found), from) in kept.iter_mut().zip(found).zip(&mut from) {
-        let Found { normal, overlap, triangle } = *found;
-        *kept = WallContact { normal, overlap, triangle, ..WallContact::default() };
-        *from = best_match(&old[..old_count], &unused, &normal);
-        if let Some(m) = *from {
-            unused[m] = false;
-            (kept.spring, kept.rolling) = (old[m].spring, old[m].rolling);
-        }
-    }
-    from
-}
-
-/// The unused old contact whose direction is nearest.
-fn best_match(old: &[WallContact], unused: &[bool; MOST_CONTACTS], normal: &Vector3<f64>) -> Option<usize> {
-    let mut best = None;
-    let mut cosine = SAME_CONTACT;
-    for (m, contact) in old.iter().enumerate() {
-        let c = contact.normal.dot(normal);
-        if unused[m] && c > cosine {
-            (best, cosine) = (Some(m), c);
-        }
-    }
-    best
 }

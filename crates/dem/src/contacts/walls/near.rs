@@ -1,6 +1,6 @@
 //! Search for the grains near walls, and the histories that they keep.
 
-use super::{ChunkWalls, Entry, Shape, Solid, WallContact};
+use super::{ChunkWalls, Entry, NearTriangle, Shape, Solid, WallContact};
 use crate::contacts::cells::NO_SHIFT;
 use crate::contacts::memory::{Memory, WallHistory};
 use crate::contacts::walls::mesh::MOST_CONTACTS;
@@ -8,18 +8,24 @@ use crate::motion::chunks::CHUNK;
 use crate::motion::grains::Grains;
 use amberfield_core::{Axis, Domain, Vector3};
 
+/// Everything that a search for grains near walls reads.
+pub(super) struct Search<'a> {
+    pub(super) solids: &'a [Solid],
+    /// Whether contacts move charge.
+    pub(super) charge: bool,
+    pub(super) shifts: &'a [[f64; 3]; 32],
+    pub(super) domain: &'a Domain,
+    pub(super) grains: &'a Grains,
+    /// Distance from a wall within which a grain is near it [m].
+    pub(super) skin: f64,
+    /// Histories of the contacts before, sorted by grain and wall.
+    pub(super) histories: &'a [WallHistory],
+}
+
 impl ChunkWalls {
-    #[expect(clippy::too_many_arguments, reason = "plain data of one scan, used once")]
-    pub(super) fn fill(
-        &mut self,
-        k: usize,
-        (solids, charge): (&[Solid], bool),
-        shifts: &[[f64; 3]; 32],
-        domain: &Domain,
-        grains: &Grains,
-        skin: f64,
-        histories: &[WallHistory],
-    ) {
+    /// Finds the walls near the grains of chunk `k`, and gives contacts the histories that they had.
+    pub(super) fn fill(&mut self, k: usize, search: &Search<'_>) {
+        let &Search { solids, charge, shifts, domain, grains, skin, histories } = search;
         self.entries.clear();
         self.triangles.clear();
         self.contacts.clear();
@@ -36,7 +42,8 @@ impl ChunkWalls {
                         for (code, image) in images(domain, shifts, centre, reach) {
                             near.clear();
                             mesh.within(image, reach, &mut near);
-                            self.triangles.extend(near.iter().map(|&t| (t, code)));
+                            let found = near.iter().map(|&triangle| NearTriangle { triangle, shift: code });
+                            self.triangles.extend(found);
                         }
                         if self.triangles.len() > first { MOST_CONTACTS } else { 0 }
                     }

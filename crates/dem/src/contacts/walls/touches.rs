@@ -1,6 +1,6 @@
 //! Touching contacts with walls, one by one, for those who follow and charge them.
 
-use super::{Shape, Walls};
+use super::{ContactWalls, Shape};
 use crate::contacts::memory::{Follow, Memory};
 use crate::contacts::walls::mesh::MOST_CONTACTS;
 use crate::motion::chunks::CHUNK;
@@ -8,11 +8,19 @@ use crate::motion::grains::Grains;
 use amberfield_core::{Vector3, WallCharging};
 use amberfield_laws::contact_area;
 
+/// Place of a contact with a wall.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct WallSlot {
+    chunk: u32,
+    /// Contact in the chunk.
+    contact: u32,
+}
+
 /// A touching contact of a grain with a wall that trades charge.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Touch {
-    /// Chunk, and contact in it.
-    pub(crate) slot: [u32; 2],
+    /// Place of its memory.
+    pub(crate) slot: WallSlot,
     /// Sorted index.
     pub(crate) grain: usize,
     pub(crate) wall: u32,
@@ -41,7 +49,7 @@ pub(crate) enum Surface {
     Triangle { number: u32, corners: [Vector3<f64>; 3] },
 }
 
-impl Walls {
+impl ContactWalls {
     /// Follows the areas of all contacts; how many begin.
     pub(crate) fn follow(&mut self, grains: &Grains, follow: Follow) -> u64 {
         let mut begun = 0;
@@ -72,7 +80,7 @@ impl Walls {
                     let contact = &chunk.contacts[number as usize];
                     let grain = k * CHUNK + entry.local as usize;
                     Touch {
-                        slot: [k as u32, number],
+                        slot: WallSlot { chunk: k as u32, contact: number },
                         grain,
                         wall: entry.wall,
                         material: solid.material,
@@ -89,7 +97,7 @@ impl Walls {
     }
 
     /// Memory that a contact has of its charging.
-    pub(crate) fn memory_mut(&mut self, [chunk, contact]: [u32; 2]) -> &mut Memory {
+    pub(crate) fn memory_mut(&mut self, WallSlot { chunk, contact }: WallSlot) -> &mut Memory {
         &mut self.chunks[chunk as usize].charging[contact as usize]
     }
 

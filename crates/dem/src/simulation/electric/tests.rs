@@ -113,7 +113,7 @@ fn touching(run: &Simulation) -> Vec<(usize, Grown, usize, usize)> {
 }
 
 fn grain_of(run: &Simulation, i: usize) -> charge_transfer::Grain {
-    let original = run.grains.original[i] as usize;
+    let original = run.grains.original[i].index();
     charge_transfer::Grain { charge: run.particles.charge[original], radius: run.particles.radius[original] }
 }
 
@@ -173,7 +173,7 @@ fn charges_of_touching_grains_are_seen_before_the_next_evaluation() {
     let pairs = touching(&run);
     // One grain is charged by hand: a contact of a neighbour of its sees it once contacts relax.
     let (_, _, charged, beside) = pairs[0];
-    run.particles.charge[run.grains.original[charged] as usize] = 1e-13;
+    run.particles.charge[run.grains.original[charged].index()] = 1e-13;
     let sees = |i: usize, j: usize| {
         ![i, j].contains(&charged)
             && seen(&run, charged, i, j).abs() > 1e-2 * coulomb_constant(1.0) / (RADIUS * RADIUS)
@@ -294,8 +294,8 @@ fn explicit_update_of_all_at_once_runs_away_where_ours_does_not() {
             })
             .collect();
         for (&(_, _, i, j), moved) in pairs.iter().zip(drives) {
-            run.particles.charge[run.grains.original[i] as usize] -= moved;
-            run.particles.charge[run.grains.original[j] as usize] += moved;
+            run.particles.charge[run.grains.original[i].index()] -= moved;
+            run.particles.charge[run.grains.original[j].index()] += moved;
         }
         run.evaluate_field().expect("a good scene");
     }

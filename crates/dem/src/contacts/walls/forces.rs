@@ -1,0 +1,124 @@
+//! Forces of walls on the grains of a chunk, and contacts that are the same from step to step.
+
+use super::{ChunkWalls, Shape, Solid, WallContact, touches};
+use crate::contacts::law::{Contact, History, respond};
+use crate::contacts::material_pairs::PairTable;
+use crate::contacts::walls::mesh::{Found, MOST_CONTACTS};
+use crate::motion::chunks::CHUNK;
+use crate::motion::grains::Grains;
+use amberfield_core::Vector3;
+
+/// Cosine of the largest turn between two steps for which a contact is still the same (60°).
+const SAME_CONTACT: f64 = 0.5;
+
+impl ChunkWalls {
+    #[expect(clippy::too_many_arguments, reason = "the arrays of one chunk, split for the borrow checker")]
+    /// Adds the forces [N] and torques [N·m] of walls on the grains of chunk `k`, for springs that advance by
+    /// `step` [s].
+    pub(super) fn forces<const FRICTION: bool, const ROLLING: bool, const DAMPING: bool>(
+        &mut self,
+        k: usize,
+        solids: &[Solid],
+        shifts: &[[f64; 3]; 32],
+        grains: &Grains,
+        table: &PairTable,
+        step: f64,
+        force: &mut [Vector3<f64>],
+        torque: &mut [Vector3<f64>],
+    ) {
+        let Self { entries, triangles, contacts, charging: memory, scratch } = self;
+        for entry in entries {
+            let local = entry.local as usize;
+            let i = k * CHUNK + local;
+            let (centre, radius) = (grains.position(i), grains.centre[i][3]);
+            let solid = &solids[entry.wall as usize];
+            let mut found = [Found::default(); MOST_CONTACTS];
+            let count = match &solid.shape {
+                Shape::Plane { point, normal } => {
+                    let overlap = radius - (centre - point).dot(normal);
+                    found[0] = Found { normal: -normal, overlap, triangle: 0 };
+                    usize::from(overlap > 0.0)
+                }
+                Shape::Mesh(mesh) => {
+                    let range = entry.triangles.start as usize..entry.triangles.end as usize;
+                    let pairs = triangles[range]
+                        .iter()
+                        .map(|near| (near.triangle, centre + Vector3::from(shifts[near.shift as usize])));
+                    mesh.contacts(radius, pairs, scratch, &mut found)
+                }
+            };
+            let kept = &mut contacts[entry.contacts as usize..];
+            let from = renew(kept, entry.count as usize, &found[..count]);
+            if !memory.is_empty() {
+                touches::renew(&mut memory[entry.contacts as usize..], &from[..count]);
+            }
+            entry.count = count as u32;
+            let pair = table.get(grains.material[i], solid.material);
+            for wall_contact in &mut kept[..count] {
+                let (contact, arm) = contact_of::<FRICTION, ROLLING>(grains, i, wall_contact);
+                let mut history = History::stored(wall_contact.spring, wall_contact.rolling);
+                let response = respond::<_, FRICTION, ROLLING, DAMPING>(&contact, pair, step, &mut history);
+                (wall_contact.spring, wall_contact.rolling) = history.to_store();
+                force[local] += response.force;
+                if FRICTION || ROLLING {
+                    torque[local] += response.twist * arm + response.rolling;
+                }
+            }
+        }
+    }
+}
+
+/// Geometry and motion of a grain's contact with a wall at rest, and the centre's distance from it.
+#[inline(always)]
+fn contact_of<const FRICTION: bool, const ROLLING: bool>(
+    grains: &Grains,
+    i: usize,
+    found: &WallContact,
+) -> (Contact<f64>, f64) {
+    let (radius, inverse_mass) = (grains.centre[i][3], grains.inverse_mass[i]);
+    let arm = radius - found.overlap;
+    let turning = if FRICTION || ROLLING { grains.angular[i] } else { Vector3::zeros() };
+    let contact = Contact {
+        overlap: found.overlap,
+        normal: found.normal,
+        velocity: grains.velocity[i],
+        spin: turning * arm,
+        turning,
+        radius,
+        inverse_mass,
+        inverse_moment: inverse_mass / (radius * radius),
+    };
+    (contact, arm)
+}
+
+/// Replaces the contacts of the last step by those found now; springs go to the nearest direction. Returns
+/// which of the old contacts each one was.
+fn renew(kept: &mut [WallContact], old_count: usize, found: &[Found]) -> [Option<usize>; MOST_CONTACTS] {
+    let mut old = [WallContact::default(); MOST_CONTACTS];
+    old[..old_count].copy_from_slice(&kept[..old_count]);
+    let mut unused = [true; MOST_CONTACTS];
+    let mut from = [None; MOST_CONTACTS];
+    for ((kept, found), from) in kept.iter_mut().zip(found).zip(&mut from) {
+        let Found { normal, overlap, triangle } = *found;
+        *kept = WallContact { normal, overlap, triangle, ..WallContact::default() };
+        *from = best_match(&old[..old_count], &unused, &normal);
+        if let Some(m) = *from {
+            unused[m] = false;
+            (kept.spring, kept.rolling) = (old[m].spring, old[m].rolling);
+        }
+    }
+    from
+}
+
+/// The unused old contact whose direction is nearest.
+fn best_match(old: &[WallContact], unused: &[bool; MOST_CONTACTS], normal: &Vector3<f64>) -> Option<usize> {
+    let mut best = None;
+    let mut cosine = SAME_CONTACT;
+    for (m, contact) in old.iter().enumerate() {
+        let c = contact.normal.dot(normal);
+        if unused[m] && c > cosine {
+            (best, cosine) = (Some(m), c);
+        }
+    }
+    best
+}
