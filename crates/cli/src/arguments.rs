@@ -4,10 +4,10 @@ use amberfield_core::Method;
 use clap::{ArgAction, Args, Parser, Subcommand, ValueEnum};
 use std::path::PathBuf;
 
-/// Simulates charged grains: the electric field that they feel, with an error that you choose and that the
-/// program measures, the charge that they trade where they touch, and their motion.
+/// Simulates charged grains: their motion, the charge that they trade where they touch,
+/// and the electric field that they feel. You choose the error of the field; the program measures it.
 #[derive(Debug, Parser)]
-#[command(name = "amberfield", version, about, propagate_version = true)]
+#[command(name = "amberfield", version, propagate_version = true, verbatim_doc_comment)]
 pub(crate) struct Arguments {
     #[command(flatten)]
     pub(crate) common: Common,
