@@ -25,7 +25,7 @@ const CORNER: f64 = 2.0;
 
 /// A cell that may have a share: its index, and the number of the shift with which its centre is seen.
 #[derive(Clone, Copy, Debug, PartialEq)]
-struct Candidate {
+struct NearCell {
     cell: u32,
     shift: u32,
 }
@@ -36,9 +36,9 @@ pub struct Mapping {
     radius: f64,
     centres: Vec<Vector3<f64>>,
     volumes: Vec<f64>,
-    /// Number of the first candidate of each cell: a cell's candidates are those of any point in it.
+    /// Number of the first of each cell's near cells, which are those of any point in it.
     first: Vec<usize>,
-    candidates: Vec<Candidate>,
+    near_cells: Vec<NearCell>,
     shifts: Vec<Vector3<f64>>,
 }
 
@@ -90,7 +90,7 @@ impl Mapping {
             centres: mesh.centres().to_vec(),
             volumes: mesh.volumes().to_vec(),
             first: vec![0],
-            candidates: Vec::new(),
+            near_cells: Vec::new(),
             shifts: vec![Vector3::zeros()],
         };
         let around: Vec<Vec<(u32, Vector3<f64>)>> = (0..mesh.cell_count())
@@ -106,9 +106,9 @@ impl Mapping {
                     mapping.shifts.push(shift);
                     mapping.shifts.len() - 1
                 });
-                mapping.candidates.push(Candidate { cell, shift: place as u32 });
+                mapping.near_cells.push(NearCell { cell, shift: place as u32 });
             }
-            mapping.first.push(mapping.candidates.len());
+            mapping.first.push(mapping.near_cells.len());
         }
         Ok(mapping)
     }
@@ -149,13 +149,13 @@ impl Mapping {
         let begin = shares.len();
         let mut sum = 0.0;
         let per_square = 1.0 / (self.radius * self.radius);
-        for candidate in &self.candidates[self.first[cell as usize]..self.first[cell as usize + 1]] {
-            let centre = self.centres[candidate.cell as usize] + self.shifts[candidate.shift as usize];
+        for near_cell in &self.near_cells[self.first[cell as usize]..self.first[cell as usize + 1]] {
+            let centre = self.centres[near_cell.cell as usize] + self.shifts[near_cell.shift as usize];
             let rest = 1.0 - (point - centre).norm_squared() * per_square;
             if rest > 0.0 {
-                let weight = self.volumes[candidate.cell as usize] * rest * rest * rest;
+                let weight = self.volumes[near_cell.cell as usize] * rest * rest * rest;
                 sum += weight;
-                shares.push(Share { cell: candidate.cell, weight });
+                shares.push(Share { cell: near_cell.cell, weight });
             }
         }
         if sum > 0.0 {

@@ -73,6 +73,7 @@ impl Charging {
             let distance = offset.norm();
             let normal = offset / distance;
             let (a, b) = (grains.centre[pair.i][3], grains.centre[pair.j][3]);
+            // The contact lies in the middle of the overlap.
             let to_i = a - 0.5 * (a + b - distance);
             let to_j = distance - to_i;
             let own = k * (of(pair.i) / (to_i * to_i) - of(pair.j) / (to_j * to_j));

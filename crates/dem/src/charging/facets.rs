@@ -31,6 +31,19 @@ pub struct Facet {
     pub(super) place: Option<Vector3<f64>>,
 }
 
+/// Place on a wall at which charge moves.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Spot {
+    /// Wall, by its number.
+    pub(super) wall: u32,
+    pub(super) charging: WallCharging,
+    pub(super) surface: Surface,
+    /// Place on the surface [m].
+    pub(super) place: Vector3<f64>,
+    /// Direction from the wall to the grain.
+    pub(super) inward: Vector3<f64>,
+}
+
 /// All facets.
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
 pub(crate) struct Facets {
@@ -57,15 +70,9 @@ impl Facets {
         &mut self.facets[number as usize]
     }
 
-    /// The facet of a wall at a place on it [m]; `inward` points from the wall to the grain.
-    pub(super) fn at(
-        &mut self,
-        domain: &Domain,
-        (wall, charging): (u32, WallCharging),
-        surface: Surface,
-        place: Vector3<f64>,
-        inward: Vector3<f64>,
-    ) -> u32 {
+    /// Number of the facet at a place on a wall; it begins to exist where it did not.
+    pub(super) fn at(&mut self, domain: &Domain, spot: Spot) -> u32 {
+        let Spot { wall, charging, surface, place, inward } = spot;
         let (key, corners) = self.parted(surface, place);
         if let Some(&known) = self.numbers.get(&(wall, key)) {
             return known;
@@ -74,7 +81,8 @@ impl Facets {
         let area = 0.5 * ((b - a).cross(&(c - a)).norm() + (c - a).cross(&(d - a)).norm());
         let centre = if c == d { (a + b + c) / 3.0 } else { 0.25 * (a + b + c + d) };
         let acts = inside(domain, centre + inward * (BEFORE * area.sqrt()));
-        // A cell that crosses a period is one with its image.
+        // A cell of a plane that reaches across a periodic face is met again as its image on the other side,
+        // under another key.
         let same = |facet: &Facet| facet.place.is_some_and(|place| (place - acts).norm() < SAME * self.width);
         if let Some(known) = self.facets.iter().position(|facet| facet.wall == wall && same(facet)) {
             self.numbers.insert((wall, key), known as u32);
@@ -155,13 +163,19 @@ mod tests {
             Domain::new(Vector3::repeat(-9.0), Vector3::repeat(9.0), [[Boundary::Open; 2]; 3]).unwrap();
         let corners = [Vector3::zeros(), Vector3::new(4.0, 0.0, 0.0), Vector3::new(1.0, 3.0, 0.0)];
         let mut facets = Facets::new(0.5);
-        let insulating = (0, WallCharging::Insulating);
+        let at = |surface: Surface, place: Vector3<f64>| Spot {
+            wall: 0,
+            charging: WallCharging::Insulating,
+            surface,
+            place,
+            inward: Vector3::z(),
+        };
         for s in 0..40 {
             for t in 0..40 - s {
                 let share = |x: i32| (f64::from(x) + 0.31) / 41.0;
                 let place = corners[1] * share(s) + corners[2] * share(t);
                 let surface = Surface::Triangle { number: 7, corners };
-                let number = facets.at(&domain, insulating, surface, place, Vector3::z());
+                let number = facets.at(&domain, at(surface, place));
                 let [a, b, c, _] = facets.all()[number as usize].corners;
                 let area =
                     |p: Vector3<f64>, q: Vector3<f64>, r: Vector3<f64>| 0.5 * (q - p).cross(&(r - p)).norm();
@@ -184,7 +198,8 @@ mod tests {
         let surface = Surface::Plane { point: Vector3::zeros(), normal: Vector3::z() };
         let mut at = |x: f64| {
             let place = Vector3::new(x, 0.7, 0.0);
-            facets.at(&domain, (0, WallCharging::Insulating), surface, place, Vector3::z())
+            let charging = WallCharging::Insulating;
+            facets.at(&domain, Spot { wall: 0, charging, surface, place, inward: Vector3::z() })
         };
         // Cells from −2 to −1 and from 1 to 2 are the same.
         assert_eq!(at(1.4), at(-1.4));
@@ -199,7 +214,8 @@ mod tests {
         let surface = Surface::Plane { point: Vector3::zeros(), normal: Vector3::z() };
         let mut at = |x: f64, y: f64| {
             let place = Vector3::new(x, y, 0.0);
-            facets.at(&domain, (1, WallCharging::Grounded), surface, place, Vector3::z())
+            let charging = WallCharging::Grounded;
+            facets.at(&domain, Spot { wall: 1, charging, surface, place, inward: Vector3::z() })
         };
         assert_eq!(at(0.2, 0.2), at(0.8, 0.9));
         assert_ne!(at(0.2, 0.2), at(-0.2, 0.2));

@@ -114,6 +114,7 @@ impl Charging {
             grown.retain(|&Grown { entry, local }| {
                 let pair = list.listed(k, local, entry);
                 let (i, j) = (pair.i - from, pair.j.wrapping_sub(from));
+                // The partner is outside this part of the chunks: the pair waits for a larger part.
                 if j >= held.len() {
                     return true;
                 }
@@ -158,10 +159,12 @@ impl Charging {
                 let Listed { i, j, .. } = pair;
                 let list = &mut neighbours.lists[k];
                 let trading = self.trading(traders, &neighbours.shifts, pair, list, [held[i], held[j]]);
+                // A pair of which one grain takes no part does not trade, and is settled too.
                 list.growth[pair.entry].settle();
                 let Some(mut trading) = trading else { continue };
                 let offset = pair.offset(grains, &neighbours.shifts);
                 let [one, other] = [i, j].map(|grain| grains.centre[grain][3]);
+                // The contact lies in the middle of the overlap.
                 let reach = one - 0.5 * (one + other - offset.norm());
                 let partner = Toucher { grain: j, offset };
                 let charges = |grain: usize| held[grain].unwrap_or(0.0);

@@ -1,6 +1,7 @@
 //! Trade of a grain with a wall.
 
 use super::around::{Toucher, WALL};
+use super::facets::Spot;
 use super::{Charging, LAG_SEEN, Traders};
 use crate::contacts::neighbours::Neighbours;
 use crate::contacts::walls::{ContactWalls, Touch};
@@ -46,9 +47,14 @@ impl Charging {
         let grains = traders.grains;
         let Some(a) = traders.member(touch.grain) else { return 0.0 };
         let materials = self.table.get(grains.material[touch.grain], touch.material);
-        let wall = (touch.wall, touch.charging);
-        let (surface, place) = (walls.surface(touch), touch.place(grains));
-        let number = self.facets.at(traders.domain, wall, surface, place, -touch.normal);
+        let spot = Spot {
+            wall: touch.wall,
+            charging: touch.charging,
+            surface: walls.surface(touch),
+            place: touch.place(grains),
+            inward: -touch.normal,
+        };
+        let number = self.facets.at(traders.domain, spot);
         let mut field =
             touch.memory.foreseen.unwrap_or_else(|| self.unforeseen_at_wall(traders, touch, charge));
         if self.lag > LAG_SEEN {
@@ -56,6 +62,7 @@ impl Charging {
             let charges = |grain: usize| charge[grains.original[grain].index()];
             let gained =
                 self.gained_beside(grains, touch.grain, &wall_itself, touch.normal, touch.distance, charges);
+            // A grounded wall mirrors the charges around, and doubles their normal field at its surface.
             field += gained * if touch.charging == WallCharging::Grounded { 2.0 } else { 1.0 };
         }
         let grain = Grain { charge: charge[a], radius: grains.centre[touch.grain][3] };
@@ -69,6 +76,7 @@ impl Charging {
         };
         let growth = touch.memory.growth.due() * materials.area_factor;
         let moved = self.allowed(drive, work, drive.transfer(growth));
+        // Positive is from the grain to the wall.
         charge[a] -= moved;
         self.facets.get_mut(number).charge += moved;
         self.ledger.walls[touch.wall as usize] += moved;

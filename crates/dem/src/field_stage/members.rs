@@ -14,6 +14,15 @@ pub(crate) struct Members {
     pub(super) count: usize,
 }
 
+/// Charges for which a field chooses its parameters.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Charges<'a> {
+    /// Positions inside the domain [m].
+    pub(super) position: &'a [Vector3<f64>],
+    /// Charges [C].
+    pub(super) charge: &'a [f64],
+}
+
 /// Charges of walls, and places without charge at which E is asked for: the part of an evaluation that is
 /// beside the grains.
 #[derive(Debug, Default)]

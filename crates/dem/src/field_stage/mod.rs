@@ -32,7 +32,7 @@ use amberfield_field::{FieldValues, Wanted};
 use amberfield_laws::{force_limit, time_step_limits};
 use forecast::{EnergyForecast, Forecast};
 use interval::IntervalControl;
-use members::Members;
+use members::{Charges, Members};
 use serde::{Deserialize, Serialize};
 use source::Source;
 
@@ -110,7 +110,8 @@ impl FieldStage {
         if charge.iter().all(|charge| *charge == 0.0) {
             source::stand_in(&mut charge);
         }
-        let source = Source::new(domain, setup, (&position, &charge), state)?;
+        let charges = Charges { position: &position, charge: &charge };
+        let source = Source::new(domain, setup, charges, state)?;
         let mut stage = Self {
             source,
             solver_iterations: 0,

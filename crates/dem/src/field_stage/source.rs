@@ -2,7 +2,7 @@
 //! was lost.
 
 use super::WANTED;
-use super::members::Members;
+use super::members::{Charges, Members};
 use super::state::FieldState;
 use crate::error::DemError;
 use crate::setup::FieldStageSetup;
@@ -32,10 +32,11 @@ impl Source {
     pub(super) fn new(
         domain: &Domain,
         setup: FieldStageSetup,
-        (position, charge): (&[Vector3<f64>], &[f64]),
+        charges: Charges<'_>,
         state: Option<&FieldState>,
     ) -> Result<Self, DemError> {
         let FieldStageSetup { settings, choice, solver, fallback, .. } = setup;
+        let Charges { position, charge } = charges;
         let known = state.map(|s| &s.choice).or(choice.as_ref());
         let solver = solver.filter(|_| state.is_none_or(|state| state.has_solver));
         let has_solver = solver.is_some();
@@ -54,9 +55,7 @@ impl Source {
                 }
                 state.fallback.clone()
             }
-            None if fallback && has_solver => {
-                Some(provide(domain, &settings, (position, charge), &mut field)?)
-            }
+            None if fallback && has_solver => Some(provide(domain, &settings, charges, &mut field)?),
             None => None,
         };
         Ok(Self { field, fallback })
@@ -175,7 +174,7 @@ pub(super) fn stand_in(charge: &mut [f64]) {
 fn provide(
     domain: &Domain,
     settings: &FieldSettings,
-    (position, charge): (&[Vector3<f64>], &[f64]),
+    Charges { position, charge }: Charges<'_>,
     field: &mut ElectricField,
 ) -> Result<Choice, FieldError> {
     let mut internal = ElectricField::new(domain, settings, position, charge)?;
@@ -220,7 +219,7 @@ mod tests {
             charge: (0..300).map(|i| if i % 2 == 0 { 1e-12 } else { -1e-12 }).collect(),
             count: 300,
         };
-        let charges = (&members.position[..], &members.charge[..]);
+        let charges = Charges { position: &members.position, charge: &members.charge };
         let of =
             |tolerance: f64| FieldSettings { tolerance, tuning: Tuning::Model, ..FieldSettings::default() };
         let built = |choice: Option<Choice>, tolerance: f64| {
