@@ -1,4 +1,4 @@
-//! How calls of the C library end.
+//! Outcome of the calls of the C library.
 
 /// Outcome of a call.
 #[repr(C)]
@@ -8,6 +8,6 @@ pub enum AmberfieldStatus {
     Ok = 0,
     /// The run is over: close and leave.
     Over = 1,
-    /// It failed: amberfield_field_error says why.
+    /// Failure: amberfield_field_error or amberfield_host_error says why.
     Failed = 2,
 }

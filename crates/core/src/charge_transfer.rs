@@ -1,4 +1,4 @@
-//! What a scene asks of charge transfer on contact.
+//! Settings of charge transfer on contact.
 
 use serde::{Deserialize, Serialize};
 

@@ -4,7 +4,7 @@ use nalgebra::Vector3;
 use serde::{Deserialize, Serialize};
 use std::fmt;
 
-/// What a face of the domain does to the electric field.
+/// Condition of the electric field on a face of the domain.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 #[non_exhaustive]
 pub enum Boundary {
@@ -85,7 +85,7 @@ pub enum Side {
     Max = 1,
 }
 
-/// Why a box is not a domain.
+/// Reason why a box is not a domain.
 #[derive(Clone, Debug, PartialEq)]
 #[non_exhaustive]
 pub enum DomainError {
@@ -109,8 +109,8 @@ impl fmt::Display for DomainError {
         match self {
             Self::Extent { axis, min_m, max_m } => write!(
                 f,
-                "domain extent along {axis} must be positive and finite, got {min_m} to {max_m} m; give max_m \
-                 above min_m"
+                "domain extent along {axis} must be positive and finite, got {min_m} to {max_m} m; \
+                 give max_m above min_m"
             ),
             Self::HalfPeriodic(axis) => {
                 write!(f, "only one face of axis {axis} is periodic; make both faces periodic or neither")

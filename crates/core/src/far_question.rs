@@ -29,8 +29,8 @@ impl SourceCloud {
 
 /// Scalars of the question for the far part of a field.
 ///
-/// The question is for the solution of div(grad(potential)) = -density/permittivity, where the density is that
-/// of the clouds. Charges, their positions and the values on the boundary are arrays beside it.
+/// The question is for the solution of div(grad(potential)) = -density/permittivity, where the density is
+/// that of the clouds. Charges, their positions and the values on the boundary are arrays beside it.
 #[repr(C)]
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct FarQuestion {

@@ -1,11 +1,11 @@
-//! What a scene asks of the electric field.
+//! Settings of the electric field.
 
 use nalgebra::Vector3;
 use serde::{Deserialize, Serialize};
 use std::fmt;
 use std::str::FromStr;
 
-/// How the electric field at the particles is computed.
+/// Method by which the electric field at the particles is computed.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash, Serialize, Deserialize)]
 #[serde(rename_all = "snake_case")]
 #[non_exhaustive]
@@ -54,7 +54,7 @@ impl FromStr for Method {
     }
 }
 
-/// How parameters that meet the tolerance are chosen among candidates.
+/// Way of choosing among candidates of parameters that meet the tolerance.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(rename_all = "snake_case")]
 pub enum Tuning {
@@ -65,7 +65,7 @@ pub enum Tuning {
     Model,
 }
 
-/// How often the field is evaluated anew.
+/// Interval after which the field is evaluated anew.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(rename_all = "snake_case")]
 pub enum CouplingInterval {
@@ -83,7 +83,7 @@ pub struct ForceLimit {
     pub factor: f64,
 }
 
-/// What a scene asks of the electric field.
+/// Settings of the electric field of a scene.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct FieldSettings {
     /// Method.
@@ -100,9 +100,9 @@ pub struct FieldSettings {
     pub neutralising_background: bool,
     /// Cells of the internal grid per axis, when the scene fixes them.
     pub grid_cells: Option<[usize; 3]>,
-    /// How parameters are chosen.
+    /// Way of choosing parameters.
     pub tuning: Tuning,
-    /// How often the field is evaluated.
+    /// Interval after which the field is evaluated anew.
     pub coupling_interval: CouplingInterval,
     /// Whether a field solver of another process works beside the steps: its part of the field is then
     /// forecast from its last two answers.

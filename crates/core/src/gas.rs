@@ -1,4 +1,4 @@
-//! What a scene says of the gas around the grains.
+//! Settings of the gas around the grains.
 
 use nalgebra::Vector3;
 use serde::{Deserialize, Serialize};
@@ -38,7 +38,7 @@ impl DragLaw {
     }
 }
 
-/// How grains and a flow act on each other (Zhou, Kuang, Chu & Yu, J. Fluid Mech. 661, 482 (2010)).
+/// Model of how grains and a flow act on each other (Zhou, Kuang, Chu & Yu, J. Fluid Mech. 661, 482 (2010)).
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
 pub enum GasModel {
     /// The pressure acts on gas and grains, each by its share of the volume (set II).

@@ -1,4 +1,4 @@
-//! What will run, what is left out, and why.
+//! Stages that will run and stages that are left out, with the reasons.
 
 use serde::{Deserialize, Serialize};
 

@@ -1,4 +1,4 @@
-//! How a scene moves in time.
+//! Settings of the motion in time.
 
 use nalgebra::Vector3;
 use serde::{Deserialize, Serialize};
@@ -23,7 +23,7 @@ pub enum Skin {
     Metres(f64),
 }
 
-/// What happens to a grain that leaves through a face that is not periodic.
+/// Fate of a grain that leaves through a face that is not periodic.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(rename_all = "snake_case")]
 pub enum OnExit {
@@ -34,7 +34,7 @@ pub enum OnExit {
     Delete,
 }
 
-/// How a scene moves in time.
+/// Settings of a scene's motion in time.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct TimeSettings {
     /// Time step.
@@ -47,7 +47,7 @@ pub struct TimeSettings {
     pub skin: Skin,
     /// Whether a step beyond a stability guard is a warning instead of an error.
     pub allow_unstable: bool,
-    /// What happens to grains that leave.
+    /// Fate of grains that leave.
     pub on_exit: OnExit,
     /// Whether overlaps above half the smaller radius are accepted at the start.
     pub allow_overlap: bool,

@@ -28,7 +28,7 @@ pub enum WallShape {
     Mesh(TriangleMesh),
 }
 
-/// What a wall does with charge.
+/// Treatment of charge by a wall.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(rename_all = "snake_case")]
 pub enum WallCharging {
@@ -50,7 +50,7 @@ pub struct Wall {
     pub shape: WallShape,
     /// Material.
     pub material: MaterialId,
-    /// What the wall does with charge.
+    /// Treatment of charge.
     pub charging: WallCharging,
     /// Whether it is a boundary of the electric field too: a patch of a field solver's mesh. Faces of the
     /// domain are known by their place.

@@ -1,4 +1,4 @@
-//! Why two processes do not come together, or part.
+//! Failures between the two processes.
 
 use amberfield_field::FieldError;
 use amberfield_wire::WireError;

@@ -1,5 +1,5 @@
-//! Who waits for whom: the far field and the flow of a gas in another process, or a stand-in for the field in
-//! this one.
+//! Exchanges with the process that solves for the far field and the flow of a gas: who waits for whom. A
+//! stand-in solves for the field in this process.
 //!
 //! The only code that opens iceoryx2 (`meeting/link.rs`). The DEM side owns the run's folder in shared memory
 //! and creates everything in it; the field side opens what it finds.

@@ -5,13 +5,13 @@ use amberfield_coupling::BoxSolver;
 use amberfield_field::{ElectricField, FieldValues, Wanted};
 use rand::{RngExt as _, SeedableRng as _};
 
-/// What near level and middle grid are asked for: they leave little to be seen beside the mesh's own error.
+/// Tolerance of near level and middle grid: they leave little to be seen beside the mesh's own error.
 const TOLERANCE: f64 = 2e-3;
 /// RMS error of E of grains of both signs: finite volumes and interpolation on a mesh of cells as large as
 /// some five grains across (0.2 to 0.3 % seen).
 const BOTH_SIGNS: f64 = 5e-3;
-/// The same of grains of one sign, whose field is smooth and large: walls in steps of a cell (0.5 to 0.8 %
-/// seen).
+/// RMS error of E of grains of one sign, whose field is smooth and large: walls in steps of a cell (0.5 to
+/// 0.8 % seen).
 const ONE_SIGN: f64 = 1e-2;
 /// RMS error of the potential, relative to its RMS.
 const POTENTIAL: f64 = 3e-2;

@@ -1,4 +1,4 @@
-//! Why a message is not understood.
+//! Faults of messages.
 
 use crate::section::Section;
 
@@ -22,7 +22,7 @@ pub enum WireError {
     Run {
         /// Run in the message.
         theirs: u64,
-        /// This run.
+        /// Run that the message is expected of.
         ours: u64,
     },
     /// A kind of message that this version does not know.

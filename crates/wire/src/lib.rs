@@ -1,4 +1,4 @@
-//! What travels between the DEM process and the field process, with its layout asserted on both sides.
+//! Messages between the DEM process and the field process, with their layout asserted on both sides.
 //!
 //! A message is a [`Header`] and a payload of [`Block64`]s. The header says what kind of message it is and
 //! where its [`Section`]s lie: flat arrays of numbers, of vectors or of the structures in [`payloads`], each

@@ -1,4 +1,4 @@
-//! What a scene says of its field solver.
+//! Settings of the field solver.
 
 use std::path::PathBuf;
 use std::time::Duration;

@@ -11,7 +11,7 @@ use std::sync::{Mutex, MutexGuard, PoisonError};
 /// Question that is being answered while the grains move on.
 #[derive(Debug)]
 pub(super) struct Pending<Known, Answer> {
-    /// What must be known of the open question when its answer comes.
+    /// Facts of the open question that its answer needs.
     pub(super) asked: Option<Known>,
     /// Answer that came early, because the other level asked next.
     pub(super) answer: Option<Answer>,

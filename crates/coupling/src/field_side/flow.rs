@@ -21,7 +21,7 @@ pub struct FlowReply<'a> {
     pub answer: FlowAnswer,
 }
 
-/// What the grains do to the gas in a rank's cells.
+/// Effect of the grains on the gas in a rank's cells.
 #[derive(Clone, Copy, Debug)]
 pub struct GrainsInCells<'a> {
     /// Void fraction.

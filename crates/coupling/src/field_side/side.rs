@@ -190,12 +190,12 @@ impl FieldSide {
         self.asked.as_ref().map_or(0, |message| message.header().solve)
     }
 
-    /// This rank's number.
+    /// Number of this rank.
     pub(super) fn rank(&self) -> u32 {
         self.rank
     }
 
-    /// This rank's cells among all.
+    /// Numbers of this rank's cells among all.
     pub(super) fn own_cells(&self) -> Range<usize> {
         self.first_cell..self.first_cell + self.mesh.as_ref().map_or(0, FarMesh::cell_count)
     }

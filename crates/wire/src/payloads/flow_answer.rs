@@ -9,7 +9,7 @@ use std::mem::{offset_of, size_of};
 pub struct FlowAnswer {
     /// Iterations of the linear solver for the pressure.
     pub iterations: u64,
-    /// What continuity misses: RMS over the cells of d(void fraction)/dt + div(void fraction * velocity),
+    /// Error of continuity: RMS over the cells of d(void fraction)/dt + div(void fraction * velocity),
     /// times the interval.
     pub residual: f64,
     /// Time that the solver took [s].
