@@ -1,14 +1,14 @@
 //! The evaluator: one scene's field, with the parameters chosen for it.
 
-use crate::cutoff::Cutoff;
-use crate::direct::Direct;
-use crate::far::{FarField, FarLevel, FarSolver};
-use crate::images::{Geometry, ImageLattice};
-use crate::inputs::{check_charges_in_box, check_finite};
-use crate::kolehmainen::Kolehmainen;
-use crate::outside::Outside;
-use crate::p3m::{P3m, P3mParameters};
-use crate::tuning::Tuner;
+use crate::choosing::tuner::Tuner;
+use crate::geometry::images::{Geometry, ImageLattice};
+use crate::geometry::inputs::{check_charges_in_box, check_finite};
+use crate::levels::far::{FarField, FarLevel, FarSolver};
+use crate::levels::outside::Outside;
+use crate::methods::cutoff::Cutoff;
+use crate::methods::direct::Direct;
+use crate::methods::kolehmainen::Kolehmainen;
+use crate::methods::p3m::{P3m, P3mParameters};
 use crate::{FieldError, FieldMethod, FieldValues, Wanted};
 use amberfield_core::constants::VACUUM_PERMITTIVITY;
 use amberfield_core::{Domain, FieldSettings, Method, Plan};

@@ -1,0 +1,6 @@
+//! How the parameters of p3m are chosen: from a tolerance and the charges, by an error model, timing and a measurement.
+
+pub(crate) mod candidates;
+pub(crate) mod charge_statistics;
+pub(crate) mod error_model;
+pub(crate) mod tuner;

@@ -1,0 +1,392 @@
+//! From a tolerance and a cloud of charges to the parameters of p3m: error model, candidates, timing, check.
+
+use crate::choosing::charge_statistics::Cloud;
+use crate::choosing::error_model::{error_squared, smooth_error_squared};
+use crate::levels::grid::level::{grid_sizes, widest_spacing};
+use crate::levels::grid::shapes::{self, ORDERS, Shapes, cutoff_over_spacing_for};
+use crate::methods::p3m::{P3m, P3mParameters};
+use crate::{Candidate, Choice, FieldError, FieldMethod, FieldValues, Measured, Wanted};
+use amberfield_core::constants::coulomb_constant;
+use amberfield_core::{Domain, FieldSettings, Tuning};
+use nalgebra::Vector3;
+use std::time::Instant;
+
+/// Share of the tolerance that the model aims at: a sample knows the true error to some ten per cent only.
+const AIM: f64 = 0.75;
+/// The same over a field solver's mesh: what the far level adds is not in the model; up to 1.4 times the estimate were measured
+/// (docs/reports/error-vs-runtime.md).
+const AIM_OVER_MESH: f64 = 0.69;
+/// Share of the tolerance that a measured error may reach.
+const ACCEPT: f64 = 0.9;
+/// Grains in the sample on which the error is measured.
+const SAMPLE: usize = 600;
+/// The second splitting's cut-off over the first: some ten times more exact on the same nodes.
+const SECOND_CUTOFF: f64 = 1.5;
+/// Rounds of tightening before a tolerance counts as out of reach.
+const ROUNDS: usize = 6;
+/// Nodes of the largest grid considered: 5 GiB.
+const MOST_NODES: f64 = 2e8;
+/// A time is the shortest of as many evaluations as this many particles need, three at most.
+const TIMED_PARTICLES: usize = 200_000;
+const MOST_EVALUATIONS: usize = 3;
+/// Candidates that are timed.
+const TIMED: usize = 4;
+/// Tolerance of the first look at E_rms.
+const FIRST_LOOK: f64 = 0.05;
+/// Cost of the pieces, in nanoseconds on a reference machine; only ratios matter.
+mod cost {
+    /// A pair within the cut-off in single and in double precision, the neighbours beyond it that are looked at
+    /// included.
+    pub(super) const PAIR: [f64; 2] = [1.5, 2.8];
+    /// A pair of the direct sum.
+    pub(super) const ALL_PAIRS: f64 = 0.9;
+    /// Spreading and gathering, per node of a window.
+    pub(super) const NODE: f64 = 0.2;
+    /// Transforms there and back, per padded node and factor log₂(nodes).
+    pub(super) const TRANSFORM: f64 = 0.9;
+    /// Sorting, looking for partners, polynomials of the window and summing, per particle.
+    pub(super) const PARTICLE: f64 = 160.0;
+}
+
+/// Parameters with the shapes that suit them.
+fn with_best_shapes(order: usize, cutoff_m: f64, spacing_m: f64, kernel_accuracy: f64) -> P3mParameters {
+    let Shapes { cloud, window } = shapes::best(order, cutoff_m / spacing_m);
+    P3mParameters { cutoff_m, cloud_shape: cloud, spacing_m, order, window_shape: window, kernel_accuracy }
+}
+
+/// What the tuner settled on.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Chosen {
+    pub(crate) parameters: P3mParameters,
+    /// Error by the model.
+    pub(crate) estimated: Option<f64>,
+    /// Error on a sample; `None` while no grain is charged.
+    pub(crate) measured: Option<Measured>,
+}
+
+/// Fields that errors are compared with [V/m].
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Scale {
+    /// What errors are relative to: the larger of E_rms and q_rms n^{2/3}/(4πε).
+    pub(crate) all: f64,
+    /// RMS of the grid's part of E.
+    smooth: f64,
+}
+
+/// The tuner of one scene.
+pub(crate) struct Tuner<'a> {
+    domain: &'a Domain,
+    settings: &'a FieldSettings,
+    positions: &'a [Vector3<f64>],
+    charges: &'a [f64],
+    cloud: Cloud,
+    /// Largest cut-off radius [m].
+    longest: f64,
+}
+
+impl<'a> Tuner<'a> {
+    pub(crate) fn new(
+        domain: &'a Domain,
+        settings: &'a FieldSettings,
+        positions: &'a [Vector3<f64>],
+        charges: &'a [f64],
+    ) -> Self {
+        let cloud = Cloud::new(domain, settings.relative_permittivity, positions, charges);
+        Self { domain, settings, positions, charges, cloud, longest: f64::INFINITY }
+    }
+
+    /// Share of the tolerance that the model aims at.
+    fn aim(&self) -> f64 {
+        if self.longest.is_finite() { AIM_OVER_MESH } else { AIM }
+    }
+
+    /// Parameters that meet the tolerance, with their measured error.
+    pub(crate) fn choose(&self) -> Result<Chosen, FieldError> {
+        if self.cloud.charge == 0.0 {
+            // No charge yet: what a unit charge per grain would need.
+            let cloud = Cloud {
+                charge: 1.0,
+                density: self.cloud.count.max(1.0) / self.domain.volume(),
+                ..self.cloud
+            };
+            let scale = coulomb_constant(self.settings.relative_permittivity) * cloud.density.powf(2.0 / 3.0);
+            let bound = self.aim() * self.settings.tolerance * scale;
+            let parameters = self.best_by_model(&cloud, bound, 0.0)?;
+            return Ok(Chosen { parameters, estimated: None, measured: None });
+        }
+        let scale = self.scale()?;
+        let asked = self.settings.tolerance;
+        let mut aim = self.aim() * asked;
+        let mut best: Option<f64> = None;
+        for _ in 0..ROUNDS {
+            let candidates = self.candidates(&self.cloud, aim * scale.all, scale.smooth);
+            if candidates.is_empty() {
+                break;
+            }
+            let timed = self.fastest(&candidates, aim * scale.all, scale.smooth)?;
+            let measured = self.measure(timed, scale);
+            tracing::debug!(?timed, aim, measured = measured.relative_rms, "p3m candidate");
+            if measured.relative_rms <= ACCEPT * asked {
+                let estimated = Some(self.estimate(&timed, scale));
+                return Ok(Chosen { parameters: timed, estimated, measured: Some(measured) });
+            }
+            best = Some(best.unwrap_or(f64::INFINITY).min(measured.relative_rms));
+            aim *= (self.aim() * asked / measured.relative_rms).clamp(0.05, 0.8);
+        }
+        Err(match best {
+            Some(reached) => FieldError::Tolerance {
+                asked,
+                reached,
+                advice: format!(
+                    "raise electric_field.tolerance{}, or use method = \"direct\"",
+                    self.fixed_keys()
+                ),
+            },
+            None => self.no_parameters(aim * scale.all),
+        })
+    }
+
+    /// The best of each order, cheapest by the cost model first, with errors and times.
+    pub(crate) fn table(&self) -> Result<Vec<Candidate>, FieldError> {
+        let charged = self.cloud.charge > 0.0;
+        let scale = if charged { self.scale()? } else { Scale { all: self.cloud.floor, smooth: 0.0 } };
+        let error = self.aim() * self.settings.tolerance * scale.all;
+        let one = |(_, parameters): &(f64, P3mParameters)| {
+            Ok(Candidate {
+                choice: Choice::P3m(*parameters),
+                estimated: charged.then(|| self.estimate(parameters, scale)),
+                measured: charged.then(|| self.measure(*parameters, scale)),
+                seconds: self.time(parameters)?,
+            })
+        };
+        self.candidates(&self.cloud, error, scale.smooth).iter().map(one).collect()
+    }
+
+    /// A first look at the field.
+    pub(crate) fn scale(&self) -> Result<Scale, FieldError> {
+        let first = self.best_by_model(&self.cloud, FIRST_LOOK * self.cloud.floor, 0.0)?;
+        let mut field = FieldValues::default();
+        let mut p3m = P3m::new(self.domain, self.settings, first);
+        let wanted = Wanted { components: true, ..Wanted::default() };
+        p3m.evaluate(self.positions, self.charges, wanted, &mut field)?;
+        let rms =
+            |e: &[Vector3<f64>]| (e.iter().map(Vector3::norm_squared).sum::<f64>() / self.cloud.count).sqrt();
+        // Over a field solver's mesh the grid carries what lies between two clouds, and no mean field.
+        let smooth = if self.longest.is_finite() { 0.0 } else { rms(&field.components.far) };
+        Ok(Scale { all: rms(&field.e).max(self.cloud.floor), smooth })
+    }
+
+    /// Measures the error of parameters against a second, wider and more exact splitting.
+    pub(crate) fn measure(&self, parameters: P3mParameters, scale: Scale) -> Measured {
+        let step = self.positions.len().div_ceil(SAMPLE).max(1);
+        let sample: Vec<usize> = (0..self.positions.len()).step_by(step).collect();
+        let second = with_best_shapes(
+            (parameters.order + 1).min(*ORDERS.end()),
+            SECOND_CUTOFF * parameters.cutoff_m,
+            parameters.spacing_m,
+            0.1 * parameters.kernel_accuracy,
+        );
+        let field = |parameters| {
+            P3m::new(self.domain, self.settings, parameters).sample(self.positions, self.charges, &sample)
+        };
+        let (first, second) = (field(parameters), field(second));
+        let sum: f64 = first.iter().zip(&second).map(|(a, b)| (a - b).norm_squared()).sum();
+        let relative_rms = (sum / sample.len().max(1) as f64).sqrt() / scale.all;
+        Measured { relative_rms, sample: sample.len() }
+    }
+
+    /// A-priori relative error of parameters.
+    pub(crate) fn estimate(&self, parameters: &P3mParameters, scale: Scale) -> f64 {
+        self.modelled(&self.cloud, parameters, scale.smooth) / scale.all
+    }
+
+    /// Error of parameters by the model [V/m], where the grid's part of E is `smooth` [V/m].
+    fn modelled(&self, cloud: &Cloud, parameters: &P3mParameters, smooth: f64) -> f64 {
+        let spacing = widest_spacing(self.domain, parameters.spacing_m);
+        let shapes = Shapes { cloud: parameters.cloud_shape, window: parameters.window_shape };
+        let coefficient = error_squared(parameters.order, parameters.cutoff_m / spacing, shapes) / spacing;
+        let random = cloud.squared_error(self.settings.relative_permittivity, coefficient);
+        (random + smooth * smooth * smooth_error_squared(parameters.order, parameters.window_shape)).sqrt()
+    }
+
+    /// Whether summing every pair with `images` images each costs less than the cheapest grid.
+    pub(crate) fn all_pairs_are_cheaper(&self, images: usize) -> bool {
+        let error = self.aim() * self.settings.tolerance * self.cloud.floor;
+        let grid = self.candidates(&self.cloud, error, 0.0).first().map_or(f64::INFINITY, |(cost, _)| *cost);
+        let free = self.settings.cutoff_radius_m.is_none() && self.settings.grid_cells.is_none();
+        free && cost::ALL_PAIRS * images as f64 * self.cloud.count * self.cloud.count < grid
+    }
+
+    fn best_by_model(&self, cloud: &Cloud, error: f64, smooth: f64) -> Result<P3mParameters, FieldError> {
+        let candidates = self.candidates(cloud, error, smooth);
+        candidates.first().map(|(_, parameters)| *parameters).ok_or_else(|| self.no_parameters(error))
+    }
+
+    /// That nothing has an error of at most `error` [V/m].
+    fn no_parameters(&self, error: f64) -> FieldError {
+        FieldError::Settings(format!(
+            "no p3m parameters within {MOST_NODES:e} grid nodes meet tolerance {:e} (an error of {error:.1e} V/m); raise electric_field.tolerance{}, or use method = \"direct\"",
+            self.settings.tolerance,
+            self.fixed_keys()
+        ))
+    }
+
+    /// With cut-off radii up to one [m].
+    pub(crate) fn up_to(self, longest: f64) -> Self {
+        Self { longest, ..self }
+    }
+
+    /// Advice about the parameters that the scene fixes.
+    fn fixed_keys(&self) -> &'static str {
+        match (self.settings.cutoff_radius_m, self.settings.grid_cells) {
+            (None, None) => "",
+            (Some(_), None) => " or change field_cutoff_radius",
+            (None, Some(_)) => " or change grid.cells",
+            (Some(_), Some(_)) => ", or change field_cutoff_radius or grid.cells",
+        }
+    }
+
+    /// Candidates with an error of `error` [V/m], cheapest first by the cost model: the best of each order.
+    fn candidates(&self, cloud: &Cloud, error: f64, smooth: f64) -> Vec<(f64, P3mParameters)> {
+        let mut best: Vec<(f64, P3mParameters)> = Vec::new();
+        for order in ORDERS {
+            let of_order = self
+                .spacings(cloud)
+                .into_iter()
+                .filter_map(|spacing| self.candidate(cloud, order, spacing, error, smooth))
+                .map(|parameters| (self.cost(cloud, &parameters), parameters))
+                .min_by(|a, b| a.0.total_cmp(&b.0));
+            best.extend(of_order);
+        }
+        best.sort_by(|a, b| a.0.total_cmp(&b.0));
+        best
+    }
+
+    /// The least cut-off, or the fixed one where it is enough, for an error of `error` [V/m] on nodes at most `spacing` apart, where the
+    /// grid's part of E is `smooth` [V/m].
+    fn candidate(
+        &self,
+        cloud: &Cloud,
+        order: usize,
+        spacing: f64,
+        error: f64,
+        smooth: f64,
+    ) -> Option<P3mParameters> {
+        /// Rounds in which the random part makes room for the smooth one, and what is close enough.
+        const MOST: usize = 8;
+        const ENOUGH: f64 = 1.02;
+        if smooth == 0.0 {
+            return self.candidate_for(cloud, order, spacing, error);
+        }
+        let mut random = error;
+        for _ in 0..MOST {
+            let parameters = self.candidate_for(cloud, order, spacing, random)?;
+            let modelled = self.modelled(cloud, &parameters, smooth);
+            if modelled <= ENOUGH * error {
+                return Some(parameters);
+            }
+            random *= (error / modelled).max(0.3);
+        }
+        None
+    }
+
+    /// The same for the random part of the error alone.
+    fn candidate_for(&self, cloud: &Cloud, order: usize, spacing: f64, error: f64) -> Option<P3mParameters> {
+        /// A spacing that divides the box stays one when it is rounded.
+        const ROUNDING: f64 = 1e-12;
+        let coefficient = error * error / cloud.squared_error(self.settings.relative_permittivity, 1.0);
+        let spacing = widest_spacing(self.domain, spacing) * (1.0 + ROUNDING);
+        let least = cutoff_over_spacing_for(order, coefficient * spacing)? * spacing;
+        let cutoff = self.settings.cutoff_radius_m.unwrap_or(least);
+        (least..=self.longest)
+            .contains(&cutoff)
+            .then(|| with_best_shapes(order, cutoff, spacing, self.kernel_accuracy(error)))
+    }
+
+    /// Polynomials a good deal better than the tolerance, never better than round-off.
+    fn kernel_accuracy(&self, error: f64) -> f64 {
+        (0.05 * error / self.cloud.floor.max(error)).clamp(1e-13, 1e-3)
+    }
+
+    /// Node spacings worth a look [m].
+    fn spacings(&self, cloud: &Cloud) -> Vec<f64> {
+        const FINEST: f64 = 0.25;
+        const FINEST_OF_CUTOFF: f64 = 0.05;
+        const COARSEST: f64 = 4.0;
+        const STEP: f64 = 1.12;
+        if let Some(cells) = self.settings.grid_cells {
+            let extent = self.domain.extent();
+            return vec![(0..3).map(|axis| extent[axis] / cells[axis] as f64).fold(0.0, f64::max)];
+        }
+        let distance = cloud.density.cbrt().recip();
+        // A cut-off far below the distance of the grains needs clouds, and nodes, of its own size.
+        let cutoff = self.settings.cutoff_radius_m.unwrap_or(self.longest);
+        let least = (self.domain.volume() / MOST_NODES).cbrt();
+        let finest = (FINEST * distance).min(FINEST_OF_CUTOFF * cutoff).max(least);
+        let count = ((COARSEST * distance / finest).ln() / STEP.ln()).ceil() as i32;
+        (0..=count).map(|i| finest * STEP.powi(i)).collect()
+    }
+
+    /// Modelled cost of one evaluation [ns].
+    fn cost(&self, cloud: &Cloud, parameters: &P3mParameters) -> f64 {
+        let pairs = 4.0 / 3.0 * std::f64::consts::PI * cloud.density * parameters.cutoff_m.powi(3);
+        let nodes: f64 = grid_sizes(self.domain, parameters.spacing_m, parameters.cloud())
+            .iter()
+            .map(|size| size.padded as f64)
+            .product();
+        let pair = cost::PAIR[usize::from(!parameters.near().is_single())];
+        let per_particle = cost::PARTICLE + pair * pairs + cost::NODE * (parameters.order as f64).powi(3);
+        cloud.count * per_particle + cost::TRANSFORM * nodes * nodes.max(2.0).log2()
+    }
+
+    /// The candidate with the shortest evaluation, or the cheapest by the model when timing is off. Where near and grid level
+    /// balance depends on the processor: around the winner, spacings are tried until none is faster.
+    fn fastest(
+        &self,
+        candidates: &[(f64, P3mParameters)],
+        error: f64,
+        smooth: f64,
+    ) -> Result<P3mParameters, FieldError> {
+        const WORTH_TIMING: f64 = 2.5;
+        const STEPS: [f64; 2] = [1.2, 1.0 / 1.2];
+        const MOST_STEPS: usize = 4;
+        if self.settings.tuning == Tuning::Model {
+            return Ok(candidates[0].1);
+        }
+        let worth = candidates.iter().take(TIMED).filter(|(cost, _)| *cost < WORTH_TIMING * candidates[0].0);
+        let mut best = (f64::INFINITY, candidates[0].1);
+        for (_, parameters) in worth {
+            best = faster(best, (self.time(parameters)?, *parameters));
+        }
+        for step in STEPS.into_iter().filter(|_| self.settings.grid_cells.is_none()) {
+            for _ in 0..MOST_STEPS {
+                let (seconds, P3mParameters { order, spacing_m, .. }) = best;
+                let Some(next) = self.candidate(&self.cloud, order, spacing_m * step, error, smooth) else {
+                    break;
+                };
+                best = faster(best, (self.time(&next)?, next));
+                if best.0 >= seconds {
+                    break;
+                }
+            }
+        }
+        Ok(best.1)
+    }
+
+    /// Shortest of a few evaluations [s].
+    fn time(&self, parameters: &P3mParameters) -> Result<f64, FieldError> {
+        let mut field = FieldValues::default();
+        let mut p3m = P3m::new(self.domain, self.settings, *parameters);
+        let mut shortest = f64::INFINITY;
+        for _ in 0..TIMED_PARTICLES.div_ceil(self.positions.len().max(1)).min(MOST_EVALUATIONS) {
+            let start = Instant::now();
+            p3m.evaluate(self.positions, self.charges, Wanted::default(), &mut field)?;
+            shortest = shortest.min(start.elapsed().as_secs_f64());
+        }
+        Ok(shortest)
+    }
+}
+
+fn faster(a: (f64, P3mParameters), b: (f64, P3mParameters)) -> (f64, P3mParameters) {
+    if b.0 < a.0 { b } else { a }
+}

@@ -1,0 +1,5 @@
+//! Where charges and their images are: the images that a domain's faces make, lists of cells, checks of the input.
+
+pub(crate) mod image_cells;
+pub(crate) mod images;
+pub(crate) mod inputs;

@@ -1,0 +1,156 @@
+//! The far level: a smooth field that somebody else solves for, on cells of any shape with boundary conditions of its own.
+//!
+//! Another process with OpenFOAM does, or a solver in this one: whoever implements [`FarField`].
+
+mod box_mesh;
+mod density;
+mod level;
+mod local_fit;
+mod mesh;
+mod solver;
+mod walls;
+
+pub use density::SmoothDensity;
+pub(crate) use level::FarLevel;
+pub use mesh::{BoundaryFace, CellFace, Condition, FarMesh, FarMeshParts, Neighbour};
+pub use solver::{FarSolver, FarState};
+
+use crate::FieldError;
+use crate::geometry::inputs::NET_CHARGE_ROUND_OFF;
+use nalgebra::Vector3;
+use std::fmt;
+use std::sync::Arc;
+
+/// What the far level's source is made of.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum FarSource {
+    /// Every charge is a Kaiser–Bessel cloud (`amberfield_laws::kaiser_bessel_cloud`).
+    Clouds {
+        /// Radius, where the clouds end [m].
+        radius_m: f64,
+        /// Shape β.
+        shape: f64,
+    },
+    /// Every charge is spread over its cell.
+    NearestCell,
+}
+
+/// What a far level is asked to solve: ∇²φ = −ρ/ε.
+#[derive(Clone, Copy, Debug)]
+pub struct FarRequest<'a> {
+    /// What ρ is made of.
+    pub source: FarSource,
+    /// Places of the charges inside the mesh [m].
+    pub positions: &'a [Vector3<f64>],
+    /// Their charges [C].
+    pub charges: &'a [f64],
+    /// Places of image charges outside the mesh [m].
+    pub image_positions: &'a [Vector3<f64>],
+    /// Image charges [C]; their clouds may reach inside.
+    pub image_charges: &'a [f64],
+    /// By boundary face: φ [V] where the potential is prescribed, ∂φ/∂n outwards [V/m] where the normal field is.
+    pub boundary: &'a [f64],
+    /// Permittivity of the medium [F/m].
+    pub permittivity: f64,
+    /// φ at the cells' centres to start from [V], so that a run that is resumed goes on bit for bit; empty: from where the
+    /// solver is.
+    pub guess: &'a [f64],
+    /// Whether the mean density is taken off, where no face fixes the potential.
+    pub neutralising_background: bool,
+    /// Time at which the charges are where they are [s].
+    pub time_s: f64,
+}
+
+/// What a far level answers.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct FarValues {
+    /// φ at the cells' centres [V].
+    pub potential: Vec<f64>,
+    /// E = −∇φ at the cells' centres [V/m], by the solver's own gradient.
+    pub e: Vec<Vector3<f64>>,
+    /// Cell of every charge inside the mesh.
+    pub cells: Vec<u32>,
+    /// Charges that lay outside the mesh and were given to the nearest cell.
+    pub outside: u64,
+    /// Iterations of the linear solver.
+    pub iterations: u64,
+    /// Its residual, relative.
+    pub residual: f64,
+    /// Time that it took, without the mapping of charges and the way there and back [s].
+    pub seconds: f64,
+}
+
+/// Refuses a net charge [C] that no face of a mesh takes, in a medium of a permittivity [F/m].
+pub(crate) fn check_net_charge(
+    mesh: &FarMesh,
+    permittivity: f64,
+    neutralising_background: bool,
+    charges: &[f64],
+) -> Result<(), FieldError> {
+    if neutralising_background || mesh.has_conductor() {
+        return Ok(());
+    }
+    let of_slopes = || mesh.boundary().iter().map(|face| permittivity * face.condition.value() * face.area);
+    let net_charge_c = charges.iter().sum::<f64>() + of_slopes().sum::<f64>();
+    let all = charges.iter().map(|charge| charge.abs()).sum::<f64>() + of_slopes().map(f64::abs).sum::<f64>();
+    if net_charge_c.abs() > NET_CHARGE_ROUND_OFF * all {
+        return Err(FieldError::NetCharge { net_charge_c });
+    }
+    Ok(())
+}
+
+/// How a far level is reached when a field is built, and again after it was lost.
+#[derive(Clone)]
+pub struct Connect(Arc<dyn Fn() -> Result<Box<dyn FarField>, FieldError> + Send + Sync>);
+
+impl Connect {
+    /// By calling `connect`.
+    #[must_use]
+    pub fn new(connect: impl Fn() -> Result<Box<dyn FarField>, FieldError> + Send + Sync + 'static) -> Self {
+        Self(Arc::new(connect))
+    }
+
+    /// Reaches it.
+    ///
+    /// # Errors
+    /// Nobody there.
+    pub fn connect(&self) -> Result<Box<dyn FarField>, FieldError> {
+        (self.0)()
+    }
+}
+
+impl fmt::Debug for Connect {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.write_str("Connect")
+    }
+}
+
+/// Somebody who solves for the far level's potential.
+pub trait FarField: fmt::Debug + Send + Sync {
+    /// The cells.
+    fn mesh(&self) -> &FarMesh;
+
+    /// Solves for φ.
+    ///
+    /// # Errors
+    /// A peer that is lost, a request that does not fit the mesh, an answer that makes no sense.
+    fn solve(&mut self, request: &FarRequest<'_>, values: &mut FarValues) -> Result<(), FieldError>;
+
+    /// Asks without waiting for the answer, which [`Self::take`] gives.
+    ///
+    /// # Errors
+    /// As [`Self::solve`]; whoever works in this process cannot work beside it.
+    fn ask(&mut self, _request: &FarRequest<'_>) -> Result<(), FieldError> {
+        Err(FieldError::Settings(
+            "electric_field.overlap needs a field solver that is not waited for when it is lost; set it to false, or solver.on_solver_loss to \"stop\"".into(),
+        ))
+    }
+
+    /// Waits for the answer to what was asked last.
+    ///
+    /// # Errors
+    /// As [`Self::solve`].
+    fn take(&mut self, _values: &mut FarValues) -> Result<(), FieldError> {
+        Err(FieldError::Settings("nothing was asked".into()))
+    }
+}

@@ -1,0 +1,161 @@
+//! A curved wall: what its facets say of the surface through their corners.
+//!
+//! Around each face the surface is z = s + b·u + ½ uᵀKu over the face's plane: slope b and curvature K fit the centres and normals
+//! of the faces around it, and s = −½ tr(K M), with M the mean square of the corners' distances from the centre, brings
+//! the corners onto it. Facets lie inside a concave wall by s: images in one surface and boundary data on the other would
+//! be wrong by more than all the rest.
+
+use super::patch::{Patch, half_diagonal};
+use super::{Mirror, OF_GAP};
+use crate::levels::far::mesh::{BoundaryFace, Condition, FarMesh};
+use nalgebra::{Matrix2, SMatrix, SVector, Vector2, Vector3};
+
+/// Steps of Newton's method to the nearest point of a surface.
+const STEPS: usize = 4;
+/// Faces on the way to the one that holds a foot.
+const HOPS: usize = 6;
+/// How far beside its face a foot may be, over the half diagonal, and still be on the wall.
+const BESIDE: f64 = 1.5;
+
+/// The surface around a face.
+#[derive(Clone, Debug)]
+struct Facet {
+    centre: Vector3<f64>,
+    normal: Vector3<f64>,
+    along: [Vector3<f64>; 2],
+    half: f64,
+    /// s [m], b, K [1/m].
+    height: f64,
+    slope: Vector2<f64>,
+    bend: Matrix2<f64>,
+    /// Faces around it, by their number in the patch.
+    around: Vec<u32>,
+}
+
+/// A curved piece of the boundary.
+#[derive(Debug)]
+pub(super) struct CurvedWall {
+    facets: Vec<Facet>,
+    patch: Patch,
+    conductor: bool,
+    extent: Vector3<f64>,
+    depth: f64,
+}
+
+impl CurvedWall {
+    /// A wall of faces; `around` has each face's neighbours in it, by their number among `faces`.
+    pub(super) fn new(mesh: &FarMesh, faces: &[u32], around: &[Vec<u32>], depth: f64) -> Self {
+        let all = mesh.boundary();
+        let member = |index: u32| &all[faces[index as usize] as usize];
+        let facets = (0..faces.len() as u32).map(|index| {
+            let near = &around[index as usize];
+            Facet::new(member(index), near.iter().map(|&other| member(other)), near.clone())
+        });
+        Self {
+            facets: facets.collect(),
+            patch: Patch::new(all, faces, depth),
+            conductor: matches!(member(0).condition, Condition::Potential(_)),
+            extent: mesh.domain().extent(),
+            depth,
+        }
+    }
+
+    /// The point of the surface over a point of a face.
+    pub(super) fn place(&self, face: usize, point: &Vector3<f64>) -> Vector3<f64> {
+        self.facets[face].foot(point).at
+    }
+
+    /// What it makes of a charge at a point.
+    pub(super) fn mirror(&self, point: &Vector3<f64>) -> Option<Mirror> {
+        let mut index = self.patch.nearest(point)?;
+        let mut foot = self.facets[index].foot(point);
+        for _ in 0..HOPS {
+            let apart = |face: usize| (self.facets[face].centre - foot.at).norm_squared();
+            let others = self.facets[index].around.iter().map(|&face| face as usize);
+            match others.min_by(|a, b| apart(*a).total_cmp(&apart(*b))) {
+                Some(nearer) if apart(nearer) < apart(index) => index = nearer,
+                _ => break,
+            }
+            foot = self.facets[index].foot(point);
+        }
+        let facet = &self.facets[index];
+        let distance = foot.normal.dot(&(foot.at - point));
+        let along: f64 = (0..3).map(|axis| (foot.normal[axis] * self.extent[axis]).abs()).sum();
+        let depth = self.depth.min(OF_GAP * along);
+        // An image is not farther outside than the deepest charge of a flat wall is inside.
+        let depth = depth / (1.0 + facet.sharpest().max(0.0) * depth);
+        let beside = (foot.at - facet.centre).norm() > BESIDE * facet.half;
+        if beside || !(0.0..depth).contains(&distance) {
+            return None;
+        }
+        // What an insulator adds to the image of a sphere is no point charge: the plane's is as good.
+        let curvature = if self.conductor { -0.5 * facet.bend.trace() } else { 0.0 };
+        Some(Mirror { normal: foot.normal, offset: foot.normal.dot(&foot.at), distance, curvature, depth })
+    }
+}
+
+/// The nearest point of a surface, and the normal there.
+struct Foot {
+    at: Vector3<f64>,
+    normal: Vector3<f64>,
+}
+
+impl Facet {
+    fn new<'a>(
+        face: &BoundaryFace,
+        others: impl Iterator<Item = &'a BoundaryFace>,
+        around: Vec<u32>,
+    ) -> Self {
+        let normal = face.normal;
+        let aside = Vector3::ith(normal.iamin(), 1.0);
+        let first = normal.cross(&aside).normalize();
+        let along = [first, normal.cross(&first)];
+        let half = half_diagonal(face);
+        let flat = |v: &Vector3<f64>| Vector2::new(along[0].dot(v), along[1].dot(v));
+        let (mut matrix, mut right) = (SMatrix::<f64, 5, 5>::zeros(), SVector::<f64, 5>::zeros());
+        let mut add = |row: SVector<f64, 5>, value: f64| {
+            matrix += row * row.transpose();
+            right += row * value;
+        };
+        for other in others {
+            let apart = other.centre - face.centre;
+            let (u, z) = (flat(&apart), normal.dot(&apart));
+            add(SVector::from([u.x, u.y, 0.5 * u.x * u.x, u.x * u.y, 0.5 * u.y * u.y]), z);
+            let slope = -flat(&other.normal) / normal.dot(&other.normal);
+            add(SVector::from([half, 0.0, half * u.x, half * u.y, 0.0]), half * slope.x);
+            add(SVector::from([0.0, half, 0.0, half * u.x, half * u.y]), half * slope.y);
+        }
+        let fit = matrix.cholesky().map_or_else(SVector::zeros, |factors| factors.solve(&right));
+        let slope = Vector2::new(fit[0], fit[1]);
+        let bend = Matrix2::new(fit[2], fit[3], fit[3], fit[4]);
+        let spread = |a: usize, b: usize| along[a].dot(&(face.spread * along[b]));
+        let spread = Matrix2::new(spread(0, 0), spread(0, 1), spread(0, 1), spread(1, 1));
+        let height = -0.5 * (bend * spread).trace();
+        Self { centre: face.centre, normal, along, half, height, slope, bend, around }
+    }
+
+    /// Largest curvature towards the inside [1/m].
+    fn sharpest(&self) -> f64 {
+        -self.bend.symmetric_eigenvalues().min()
+    }
+
+    fn foot(&self, point: &Vector3<f64>) -> Foot {
+        let apart = point - self.centre;
+        let (over, above) =
+            (Vector2::new(self.along[0].dot(&apart), self.along[1].dot(&apart)), self.normal.dot(&apart));
+        let surface = |u: &Vector2<f64>| {
+            (self.height + self.slope.dot(u) + 0.5 * u.dot(&(self.bend * u)), self.slope + self.bend * u)
+        };
+        let mut u = over;
+        for _ in 0..STEPS {
+            let (z, slope) = surface(&u);
+            let residual = u - over + (z - above) * slope;
+            let jacobian = Matrix2::identity() + slope * slope.transpose() + (z - above) * self.bend;
+            let Some(inverse) = jacobian.try_inverse() else { break };
+            u -= inverse * residual;
+        }
+        let (z, slope) = surface(&u);
+        let normal = (self.normal - self.along[0] * slope.x - self.along[1] * slope.y).normalize();
+        Foot { at: self.centre + self.along[0] * u.x + self.along[1] * u.y + self.normal * z, normal }
+    }
+}

@@ -1,0 +1,164 @@
+//! Cells with a field that is constant in each, whoever solves for it.
+
+use super::mesh::Mesh;
+use crate::FieldError;
+use crate::levels::far::{FarField, FarRequest, FarSolver, FarSource, check_net_charge};
+use nalgebra::Vector3;
+use std::fmt::Debug;
+
+/// Cells that take each charge whole and answer with a potential and a field.
+pub(super) trait Cells: Debug + Send + Sync {
+    /// Finds each charge's cell and solves ∇²φ = −ρ/permittivity [F/m].
+    fn solve(
+        &mut self,
+        positions: &[Vector3<f64>],
+        charges: &[f64],
+        permittivity: f64,
+        cells: &mut Vec<u32>,
+    ) -> Result<(), FieldError>;
+
+    /// Centre of a cell [m].
+    fn centre(&self, cell: u32) -> Vector3<f64>;
+
+    /// Potential of a cell [V].
+    fn potential(&self, cell: u32) -> f64;
+
+    /// E of a cell [V/m].
+    fn field(&self, cell: u32) -> Vector3<f64>;
+
+    /// The field solver of another process and its state; `None` where the cells are solved for here.
+    fn solver(&self) -> Option<&FarSolver> {
+        None
+    }
+
+    /// The same, to start from another state.
+    fn solver_mut(&mut self) -> Option<&mut FarSolver> {
+        None
+    }
+
+    /// Cells along each axis, where they are a box's.
+    fn counts(&self) -> Option<[usize; 3]>;
+
+    /// Memory held [bytes].
+    fn memory_bytes(&self) -> usize;
+}
+
+impl Cells for Mesh {
+    fn solve(
+        &mut self,
+        positions: &[Vector3<f64>],
+        charges: &[f64],
+        permittivity: f64,
+        cells: &mut Vec<u32>,
+    ) -> Result<(), FieldError> {
+        cells.clear();
+        cells.extend(positions.iter().map(|position| self.number(self.cell_of(position))));
+        self.solve_for(cells, charges, permittivity);
+        Ok(())
+    }
+
+    fn centre(&self, cell: u32) -> Vector3<f64> {
+        self.centre_of(self.place(cell))
+    }
+
+    fn potential(&self, cell: u32) -> f64 {
+        self.potential_of(self.place(cell))
+    }
+
+    fn field(&self, cell: u32) -> Vector3<f64> {
+        self.field_of(self.place(cell))
+    }
+
+    fn counts(&self) -> Option<[usize; 3]> {
+        Some(self.cells())
+    }
+
+    fn memory_bytes(&self) -> usize {
+        self.bytes()
+    }
+}
+
+/// The cells of a field solver's mesh, its own gradient and its own boundary conditions.
+#[derive(Debug)]
+pub(super) struct SolverCells {
+    solver: FarSolver,
+    neutralising_background: bool,
+    /// Where the charges are for the solver.
+    places: Vec<Vector3<f64>>,
+    boundary: Vec<f64>,
+}
+
+impl SolverCells {
+    pub(super) fn new(solver: Box<dyn FarField>, neutralising_background: bool) -> Self {
+        let boundary = solver.mesh().boundary().iter().map(|face| face.condition.value()).collect();
+        Self { solver: FarSolver::new(solver, false), neutralising_background, places: Vec::new(), boundary }
+    }
+}
+
+impl Cells for SolverCells {
+    fn solve(
+        &mut self,
+        positions: &[Vector3<f64>],
+        charges: &[f64],
+        permittivity: f64,
+        cells: &mut Vec<u32>,
+    ) -> Result<(), FieldError> {
+        let mesh = self.solver.mesh();
+        check_net_charge(mesh, permittivity, self.neutralising_background, charges)?;
+        cells.clear();
+        cells.resize(positions.len(), u32::MAX);
+        // A stray belongs to the nearest wall's cell, whichever process has that: it is sent as if it were at its centre.
+        self.places.clear();
+        self.places.extend(positions.iter().zip(cells.iter_mut()).map(|(position, cell)| {
+            let (found, inside) = mesh.locate(position, None);
+            *cell = found;
+            if inside { *position } else { mesh.centres()[found as usize] }
+        }));
+        mesh.check_inside(positions, cells)?;
+        let request = FarRequest {
+            source: FarSource::NearestCell,
+            positions: &self.places,
+            charges,
+            image_positions: &[],
+            image_charges: &[],
+            boundary: &self.boundary,
+            permittivity,
+            guess: &[],
+            neutralising_background: self.neutralising_background,
+            time_s: 0.0,
+        };
+        self.solver.solve(&request)?;
+        // The same cells, unless a charge lies on a face, where the solver's word counts.
+        let theirs = self.solver.values.cells.iter().zip(cells);
+        theirs.filter(|(theirs, _)| **theirs != u32::MAX).for_each(|(theirs, ours)| *ours = *theirs);
+        Ok(())
+    }
+
+    fn solver(&self) -> Option<&FarSolver> {
+        Some(&self.solver)
+    }
+
+    fn solver_mut(&mut self) -> Option<&mut FarSolver> {
+        Some(&mut self.solver)
+    }
+
+    fn centre(&self, cell: u32) -> Vector3<f64> {
+        self.solver.mesh().centres()[cell as usize]
+    }
+
+    fn potential(&self, cell: u32) -> f64 {
+        self.solver.values.potential[cell as usize]
+    }
+
+    fn field(&self, cell: u32) -> Vector3<f64> {
+        self.solver.values.e[cell as usize]
+    }
+
+    fn counts(&self) -> Option<[usize; 3]> {
+        None
+    }
+
+    fn memory_bytes(&self) -> usize {
+        self.solver.values.potential.capacity() * size_of::<[f64; 4]>()
+    }
+}

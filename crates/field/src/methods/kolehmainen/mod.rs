@@ -1,0 +1,260 @@
+//! The published hybrid of mesh and pairs, reproduced for comparison.
+
+mod cells;
+mod inverse;
+mod lattice;
+mod mesh;
+
+use crate::geometry::image_cells::ImageCells;
+use crate::geometry::images::ImageLattice;
+use crate::geometry::inputs::{check_charges_in_box, check_result};
+use crate::levels::far::{FarField, FarSolver};
+use crate::methods::cutoff::{check_radius, coulomb};
+use crate::numerics::stopwatch::Stopwatch;
+use crate::{FieldError, FieldMethod, FieldValues, Wanted};
+use amberfield_core::Domain;
+use amberfield_core::constants::{VACUUM_PERMITTIVITY, coulomb_constant};
+use cells::{Cells, SolverCells};
+use mesh::Mesh;
+use nalgebra::Vector3;
+use rayon::prelude::*;
+
+/// Cells per cut-off radius when the scene leaves them open: just above √3, the diagonal of a cube.
+const CELLS_PER_RADIUS: f64 = 1.75;
+/// Cells at most; beyond it the cut-off radius is a mistake.
+const MOST_CELLS: f64 = 2e8;
+
+/// The hybrid of Kolehmainen, Ozel, Boyce and Sundaresan (2016): every charge goes to its cell, Poisson's equation
+/// on the mesh gives a field constant in each cell, the plain sum over pairs within a cut-off radius is added, and
+/// for those pairs that lie in different cells Coulomb's field between the cells' centres is taken off again.
+///
+/// It does not converge: the mesh made its own field of each charge, not Coulomb's between centres. Its error
+/// stays at 20 to 40 % for charges of both signs however large the radius. Walls have no images in the near sum.
+///
+/// The mesh is that of the box: seven-point finite volumes, walls at cell faces, gradient by Gauss' theorem with
+/// linear interpolation, and the faces' potentials and normal fields in its boundary conditions. Beyond open faces the
+/// mesh goes on for ever. Components: pairs are near, the mesh far, the sum over cells' centres correction. The
+/// potential holds the mesh's potential of the particle's own charge, one cell wide.
+#[derive(Debug)]
+pub struct Kolehmainen {
+    domain: Domain,
+    lattice: ImageLattice,
+    relative_permittivity: f64,
+    neutralising_background: bool,
+    radius: f64,
+    mesh: Box<dyn Cells>,
+    images: ImageCells<InCell>,
+    wrapped: Vec<Vector3<f64>>,
+    cells: Vec<u32>,
+    sums: Vec<PairSums>,
+    pairs_per_particle: f64,
+    stopwatch: Stopwatch,
+}
+
+/// An image's cell, and by how many periods it is moved.
+type InCell = (u32, [i32; 3]);
+
+/// Sums over the partners of one particle, over k_e.
+#[derive(Clone, Copy, Debug, Default)]
+struct PairSums {
+    near: Vector3<f64>,
+    near_potential: f64,
+    correction: Vector3<f64>,
+    correction_potential: f64,
+    partners: usize,
+}
+
+impl Kolehmainen {
+    /// The hybrid with cut-off radius `radius_m` [m]; `cells` per axis, or cubes of nearly `radius_m`/1.75.
+    ///
+    /// # Errors
+    /// A radius below the cells' diagonal, no cells or too many, one closed axis between open ones, values on faces
+    /// of several axes beside open faces.
+    pub fn new(
+        domain: &Domain,
+        relative_permittivity: f64,
+        neutralising_background: bool,
+        radius_m: f64,
+        cells: Option<[usize; 3]>,
+    ) -> Result<Self, FieldError> {
+        check_radius(radius_m)?;
+        let cells = choose_cells(domain, radius_m, cells)?;
+        let mesh = Box::new(Mesh::new(domain, cells)?);
+        Ok(Self::on(domain, relative_permittivity, neutralising_background, radius_m, mesh))
+    }
+
+    /// The hybrid over a field solver's mesh, whose faces, gradient and mapping of charges are the solver's own.
+    ///
+    /// # Errors
+    /// A radius below the diagonal of the largest cell, taken as a cube.
+    pub fn over(
+        solver: Box<dyn FarField>,
+        relative_permittivity: f64,
+        neutralising_background: bool,
+        radius_m: f64,
+    ) -> Result<Self, FieldError> {
+        check_radius(radius_m)?;
+        let diagonal = 3.0_f64.sqrt() * solver.mesh().largest_cell();
+        if radius_m < diagonal * (1.0 - 1e-9) {
+            return Err(FieldError::Settings(format!(
+                "cut-off radius {radius_m:e} m is below the largest cell's diagonal {diagonal:e} m; raise electric_field.field_cutoff_radius or refine the mesh"
+            )));
+        }
+        let domain = solver.mesh().domain().clone();
+        let mesh = Box::new(SolverCells::new(solver, neutralising_background));
+        Ok(Self::on(&domain, relative_permittivity, neutralising_background, radius_m, mesh))
+    }
+
+    fn on(
+        domain: &Domain,
+        relative_permittivity: f64,
+        neutralising_background: bool,
+        radius: f64,
+        mesh: Box<dyn Cells>,
+    ) -> Self {
+        Self {
+            domain: domain.clone(),
+            lattice: ImageLattice::periodic_only(domain),
+            relative_permittivity,
+            neutralising_background,
+            radius,
+            mesh,
+            images: ImageCells::default(),
+            wrapped: Vec::new(),
+            cells: Vec::new(),
+            sums: Vec::new(),
+            pairs_per_particle: 0.0,
+            stopwatch: Stopwatch::default(),
+        }
+    }
+
+    /// Sums over pairs within the radius, and over the centres of their cells where these differ.
+    fn sum_pairs(&mut self, charges: &[f64]) {
+        let cells = &self.cells;
+        self.images.build(&self.lattice, &self.wrapped, charges, self.radius, |index, image| {
+            (cells[index], image.periods)
+        });
+        let (images, mesh, extent) = (&self.images, &self.mesh, self.domain.extent());
+        self.sums.resize(self.wrapped.len(), PairSums::default());
+        self.sums.par_iter_mut().zip(&self.wrapped).zip(cells).enumerate().for_each(
+            |(index, ((sums, at), &own))| {
+                let here = mesh.centre(own);
+                let mut total = PairSums::default();
+                images.for_each_partner(index, at, |k, d, _| {
+                    total.partners += 1;
+                    let (potential, e) = coulomb(images.charge[k], &d);
+                    total.near_potential += potential;
+                    total.near += e;
+                    let (other, periods) = images.extra[k];
+                    if (other, periods) != (own, [0; 3]) {
+                        let moved = Vector3::from(periods.map(f64::from)).component_mul(&extent);
+                        let d = here - mesh.centre(other) - moved;
+                        let (potential, e) = coulomb(images.charge[k], &d);
+                        total.correction_potential -= potential;
+                        total.correction -= e;
+                    }
+                });
+                *sums = total;
+            },
+        );
+        let partners: usize = self.sums.iter().map(|sums| sums.partners).sum();
+        self.pairs_per_particle = partners as f64 / self.sums.len().max(1) as f64;
+    }
+
+    fn fill(&self, wanted: Wanted, out: &mut FieldValues) {
+        let k = coulomb_constant(self.relative_permittivity);
+        let mesh = &self.mesh;
+        let particles = || self.sums.iter().zip(&self.cells);
+        out.clear();
+        out.e.extend(particles().map(|(sums, cell)| mesh.field(*cell) + (sums.near + sums.correction) * k));
+        if wanted.potential {
+            out.potential.extend(particles().map(|(sums, cell)| {
+                mesh.potential(*cell) + (sums.near_potential + sums.correction_potential) * k
+            }));
+        }
+        if wanted.components {
+            out.components.near.extend(self.sums.iter().map(|sums| sums.near * k));
+            out.components.far.extend(self.cells.iter().map(|cell| mesh.field(*cell)));
+            out.components.correction.extend(self.sums.iter().map(|sums| sums.correction * k));
+        }
+        out.complete(self.sums.len(), wanted);
+    }
+}
+
+impl FieldMethod for Kolehmainen {
+    fn evaluate(
+        &mut self,
+        positions: &[Vector3<f64>],
+        charges: &[f64],
+        wanted: Wanted,
+        out: &mut FieldValues,
+    ) -> Result<(), FieldError> {
+        let permittivity = VACUUM_PERMITTIVITY * self.relative_permittivity;
+        let background = self.neutralising_background;
+        check_charges_in_box(&self.domain, permittivity, background, positions, charges)?;
+        self.stopwatch.restart();
+        self.wrapped.clear();
+        self.wrapped.extend(positions.iter().map(|position| self.domain.wrap(*position)));
+        self.mesh.solve(&self.wrapped, charges, permittivity, &mut self.cells)?;
+        self.stopwatch.lap("mesh");
+        self.sum_pairs(charges);
+        self.stopwatch.lap("pairs");
+        self.fill(wanted, out);
+        check_result(&out.e)
+    }
+
+    fn far_solver(&self) -> Option<&FarSolver> {
+        self.mesh.solver()
+    }
+
+    fn far_solver_mut(&mut self) -> Option<&mut FarSolver> {
+        self.mesh.solver_mut()
+    }
+
+    fn grid_cells(&self) -> Option<[usize; 3]> {
+        self.mesh.counts()
+    }
+
+    fn pairs_per_particle(&self) -> f64 {
+        self.pairs_per_particle
+    }
+
+    fn seconds(&self) -> &[(&'static str, f64)] {
+        self.stopwatch.laps()
+    }
+
+    fn memory_bytes(&self) -> usize {
+        self.mesh.memory_bytes()
+            + self.images.memory_bytes()
+            + self.wrapped.capacity() * size_of::<Vector3<f64>>()
+            + self.cells.capacity() * size_of::<u32>()
+            + self.sums.capacity() * size_of::<PairSums>()
+    }
+}
+
+/// Cells per axis, given or by the radius, whose diagonal is at most the radius.
+fn choose_cells(domain: &Domain, radius: f64, cells: Option<[usize; 3]>) -> Result<[usize; 3], FieldError> {
+    let extent = domain.extent();
+    let wanted: [f64; 3] = match cells {
+        Some(cells) => cells.map(|count| count as f64),
+        None => std::array::from_fn(|axis| (CELLS_PER_RADIUS * extent[axis] / radius).ceil()),
+    };
+    let total: f64 = wanted.iter().product();
+    if !(1.0..=MOST_CELLS).contains(&total) {
+        return Err(FieldError::Settings(format!(
+            "{} x {} x {} cells for a cut-off radius of {radius:e} m; give electric_field.grid.cells or a radius that make between 1 and {MOST_CELLS:e} cells",
+            wanted[0], wanted[1], wanted[2]
+        )));
+    }
+    #[expect(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "between 1 and 2e8")]
+    let cells = wanted.map(|count| count as usize);
+    let diagonal = Vector3::from_fn(|axis, _| extent[axis] / wanted[axis]).norm();
+    // A radius equal to the diagonal is allowed, to the last digit written.
+    if radius < diagonal * (1.0 - 1e-9) {
+        return Err(FieldError::Settings(format!(
+            "cut-off radius {radius:e} m is below the largest cell diagonal {diagonal:e} m of {} x {} x {} cells; raise electric_field.field_cutoff_radius or give more cells",
+            cells[0], cells[1], cells[2]
+        )));
+    }
+    Ok(cells)
+}

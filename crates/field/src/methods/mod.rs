@@ -1,0 +1,7 @@
+//! How levels are combined: each method computes the field of the charges in its own way, behind one trait.
+
+pub(crate) mod cutoff;
+pub(crate) mod direct;
+pub(crate) mod kolehmainen;
+pub(crate) mod method;
+pub(crate) mod p3m;

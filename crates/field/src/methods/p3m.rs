@@ -1,0 +1,271 @@
+//! Particle–particle particle–mesh with smooth splitting:
+//!
+//! 1/r = [1 − Φ(r/r_c)]/r + Φ(r/r_c)/r — pairs within r_c, and the internal grid with the box's faces; or, over a mesh of
+//! somebody else's,
+//!
+//! 1/r = [1 − Φ(r/r_c)]/r + [Φ(r/r_c) − Φ(r/R)]/r + Φ(r/R)/r — pairs, a middle grid without faces, and the far level's
+//! cells, to which R is matched.
+//!
+//! Φ is the Kaiser–Bessel cloud's of `amberfield_laws::kaiser_bessel_cloud`: nothing is left of the pairs beyond r_c and of
+//! the middle grid beyond R.
+
+use crate::geometry::inputs::{check_charges_in_box, check_finite, check_result};
+use crate::levels::far::{FarLevel, FarSolver};
+use crate::levels::grid::level::{GridLevel, GridParameters};
+use crate::levels::near::{NearLevel, NearParameters};
+use crate::numerics::stopwatch::Stopwatch;
+use crate::{FieldError, FieldMethod, FieldValues, Wanted};
+use amberfield_core::constants::coulomb_constant;
+use amberfield_core::{Domain, FieldSettings};
+use amberfield_laws::kaiser_bessel_cloud::Cloud;
+use nalgebra::Vector3;
+use serde::{Deserialize, Serialize};
+use std::f64::consts::PI;
+
+/// Parameters of the splitting.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
+pub struct P3mParameters {
+    /// Near cut-off radius r_c, where the clouds end [m].
+    pub cutoff_m: f64,
+    /// Shape β of the clouds.
+    pub cloud_shape: f64,
+    /// Largest node spacing of the grid [m].
+    pub spacing_m: f64,
+    /// Order of the window between charges and nodes, 4 to 8.
+    pub order: usize,
+    /// Shape β of the window.
+    pub window_shape: f64,
+    /// Error of the near kernel's polynomials over the cloud's value at its centre.
+    pub kernel_accuracy: f64,
+}
+
+impl P3mParameters {
+    pub(crate) fn near(&self) -> NearParameters {
+        NearParameters {
+            cutoff_m: self.cutoff_m,
+            cloud_shape: self.cloud_shape,
+            kernel_accuracy: self.kernel_accuracy,
+        }
+    }
+
+    pub(crate) fn grid(&self) -> GridParameters {
+        GridParameters {
+            spacing_m: self.spacing_m,
+            order: self.order,
+            window_shape: self.window_shape,
+            cloud: self.cloud(),
+        }
+    }
+
+    pub(crate) fn cloud(&self) -> Cloud {
+        Cloud { radius: self.cutoff_m, shape: self.cloud_shape }
+    }
+}
+
+/// The levels and their buffers.
+#[derive(Debug)]
+pub(crate) struct P3m {
+    domain: Domain,
+    parameters: P3mParameters,
+    coulomb: f64,
+    neutralising_background: bool,
+    near: NearLevel,
+    grid: GridLevel,
+    far: Option<FarLevel>,
+    /// The grains; with a far level then places at its walls without charge, then images.
+    positions: Vec<Vector3<f64>>,
+    charges: Vec<f64>,
+    /// E and potential of each level, at the grains and the places at the walls.
+    near_field: Vec<(Vector3<f64>, f64)>,
+    grid_field: Vec<(Vector3<f64>, f64)>,
+    far_field: Vec<(Vector3<f64>, f64)>,
+    stopwatch: Stopwatch,
+}
+
+impl P3m {
+    pub(crate) fn new(domain: &Domain, settings: &FieldSettings, parameters: P3mParameters) -> Self {
+        let near = NearLevel::new(domain, parameters.near());
+        let grid = GridLevel::new(domain, parameters.grid());
+        Self::with_levels(domain, settings, parameters, near, grid)
+    }
+
+    /// Three levels, the last one somebody else's.
+    pub(crate) fn over(far: FarLevel, settings: &FieldSettings, parameters: P3mParameters) -> Self {
+        let near = NearLevel::new(&far.domain_of_pairs(), parameters.near());
+        let wider = far.cloud_as_returned();
+        let grid = GridLevel::between(&far.domain_of_grid(), parameters.grid(), wider);
+        let domain = far.mesh().domain().clone();
+        Self { far: Some(far), ..Self::with_levels(&domain, settings, parameters, near, grid) }
+    }
+
+    fn with_levels(
+        domain: &Domain,
+        settings: &FieldSettings,
+        parameters: P3mParameters,
+        near: NearLevel,
+        grid: GridLevel,
+    ) -> Self {
+        Self {
+            domain: domain.clone(),
+            parameters,
+            coulomb: coulomb_constant(settings.relative_permittivity),
+            neutralising_background: settings.neutralising_background,
+            near,
+            grid,
+            far: None,
+            positions: Vec::new(),
+            charges: Vec::new(),
+            near_field: Vec::new(),
+            grid_field: Vec::new(),
+            far_field: Vec::new(),
+            stopwatch: Stopwatch::default(),
+        }
+    }
+
+    /// E of the charges alone at a sample of the particles.
+    pub(crate) fn sample(
+        &mut self,
+        positions: &[Vector3<f64>],
+        charges: &[f64],
+        sample: &[usize],
+    ) -> Vec<Vector3<f64>> {
+        self.load(positions, charges);
+        self.near.sort(&self.positions, &self.charges, positions.len());
+        self.grid.solve(&self.positions, &self.charges);
+        let places: Vec<_> = sample.iter().map(|&particle| self.positions[particle]).collect();
+        let mut far = vec![(Vector3::zeros(), 0.0); sample.len()];
+        self.grid.gather(&places, &mut far);
+        let near = self.near.at(sample);
+        near.iter().zip(&far).map(|(near, far)| self.coulomb * (near + far.0)).collect()
+    }
+
+    /// Takes the grains, and what a far level adds to them; how many places the field is asked for at.
+    fn load(&mut self, positions: &[Vector3<f64>], charges: &[f64]) -> usize {
+        self.positions.clear();
+        self.positions.extend(positions.iter().map(|&position| self.domain.wrap(position)));
+        self.charges.clear();
+        self.charges.extend(charges);
+        let targets = match &mut self.far {
+            Some(far) => far.extend(&mut self.positions, &mut self.charges),
+            None => positions.len(),
+        };
+        let nothing = (Vector3::zeros(), 0.0);
+        for (field, length) in [
+            (&mut self.near_field, targets),
+            (&mut self.grid_field, targets),
+            (&mut self.far_field, if self.far.is_some() { positions.len() } else { 0 }),
+        ] {
+            field.clear();
+            field.resize(length, nothing);
+        }
+        targets
+    }
+
+    /// Mean potential of the near level in a box without conductor, where the mean must vanish.
+    fn background_potential(&self, charges: &[f64]) -> f64 {
+        if !self.domain.needs_neutrality() {
+            return 0.0;
+        }
+        let net: f64 = charges.iter().sum();
+        2.0 * PI * self.parameters.cloud().mean_square() * net / self.domain.volume()
+    }
+}
+
+impl FieldMethod for P3m {
+    fn evaluate(
+        &mut self,
+        positions: &[Vector3<f64>],
+        charges: &[f64],
+        wanted: Wanted,
+        out: &mut FieldValues,
+    ) -> Result<(), FieldError> {
+        let permittivity = 1.0 / (4.0 * PI * self.coulomb);
+        let background = self.neutralising_background;
+        match &self.far {
+            None => check_charges_in_box(&self.domain, permittivity, background, positions, charges)?,
+            Some(far) => {
+                check_finite(positions, charges)?;
+                far.check_net_charge(charges)?;
+            }
+        }
+        self.stopwatch.restart();
+        let targets = self.load(positions, charges);
+        if let Some(far) = &mut self.far {
+            far.locate(&self.positions[..positions.len()])?;
+        }
+        self.near.sort(&self.positions, &self.charges, targets);
+        self.stopwatch.lap("sort");
+        let potential = wanted.potential || self.far.is_some();
+        self.near.add_all(potential, &mut self.near_field);
+        self.stopwatch.lap("near");
+        self.grid.solve(&self.positions, &self.charges);
+        self.stopwatch.lap("grid");
+        self.grid.gather(&self.positions[..targets], &mut self.grid_field);
+        self.stopwatch.lap("gather");
+
+        let k = self.coulomb;
+        let count = positions.len();
+        if let Some(far) = &mut self.far {
+            let at_walls = self.near_field[count..].iter().zip(&self.grid_field[count..]);
+            let short = at_walls.map(|(near, grid)| (k * (near.0 + grid.0), k * (near.1 + grid.1)));
+            far.solve(&self.positions[..count], charges, short)?;
+            self.stopwatch.lap("far");
+            far.gather(&self.positions[..count], &mut self.far_field);
+            self.stopwatch.lap("far gather");
+        }
+        let far = |particle: usize| self.far_field.get(particle).copied().unwrap_or_default();
+        let levels = || self.near_field[..count].iter().zip(&self.grid_field).enumerate();
+        out.clear();
+        out.e.extend(levels().map(|(i, (near, grid))| k * (near.0 + grid.0) + far(i).0));
+        if wanted.potential {
+            let own_cloud = self.parameters.cloud().potential(0.0);
+            let background = self.background_potential(charges);
+            out.potential.extend(levels().zip(charges).map(|((i, (near, grid)), charge)| {
+                k * (near.1 + grid.1 - charge * own_cloud - background) + far(i).1
+            }));
+        }
+        if wanted.components {
+            let parts = &mut out.components;
+            parts.near.extend(self.near_field[..count].iter().map(|near| k * near.0));
+            let grid = self.grid_field[..count].iter().map(|grid| k * grid.0);
+            if self.far.is_some() {
+                parts.middle.extend(grid);
+                parts.far.extend(self.far_field.iter().map(|far| far.0));
+            } else {
+                parts.far.extend(grid);
+            }
+        }
+        out.complete(positions.len(), wanted);
+        self.stopwatch.lap("sum");
+        check_result(&out.e)
+    }
+
+    fn far_solver(&self) -> Option<&FarSolver> {
+        self.far.as_ref().map(FarLevel::solver)
+    }
+
+    fn far_solver_mut(&mut self) -> Option<&mut FarSolver> {
+        self.far.as_mut().map(FarLevel::solver_mut)
+    }
+
+    fn pairs_per_particle(&self) -> f64 {
+        self.near.pairs_per_particle()
+    }
+
+    fn grid_cells(&self) -> Option<[usize; 3]> {
+        Some(self.grid.cells())
+    }
+
+    fn seconds(&self) -> &[(&'static str, f64)] {
+        self.stopwatch.laps()
+    }
+
+    fn memory_bytes(&self) -> usize {
+        let per_place = size_of::<(Vector3<f64>, f64)>();
+        let fields = [&self.near_field, &self.grid_field, &self.far_field];
+        let fields: usize = fields.iter().map(|field| field.capacity() * per_place).sum();
+        let far = self.far.as_ref().map_or(0, FarLevel::memory_bytes);
+        let places = (self.positions.capacity() + self.charges.capacity() / 3) * size_of::<Vector3<f64>>();
+        self.near.memory_bytes() + self.grid.memory_bytes() + far + places + fields
+    }
+}
