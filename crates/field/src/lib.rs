@@ -13,7 +13,8 @@ mod plan;
 mod values;
 
 pub use choosing::candidates::Candidate;
-pub use electric_field::{Choice, ElectricField, Measured, Statistics};
+pub use choosing::choice::{Choice, Measured};
+pub use electric_field::{ElectricField, Statistics};
 pub use error::FieldError;
 pub use levels::faces::BoundaryField;
 pub use levels::far;

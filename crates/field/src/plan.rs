@@ -1,6 +1,6 @@
 //! Which field stages a scene has, and why.
 
-use crate::Choice;
+use crate::choosing::choice::Choice;
 use amberfield_core::{Domain, FieldSettings, Plan};
 
 /// Stages of a scene's field and what it leaves out; over a solver's mesh of so many cells, if there is one.

@@ -2,5 +2,6 @@
 
 pub(crate) mod candidates;
 pub(crate) mod charge_statistics;
+pub(crate) mod choice;
 pub(crate) mod error_model;
 pub(crate) mod tuner;

@@ -1,11 +1,15 @@
 //! From a tolerance and a cloud of charges to the parameters of p3m: error model, candidates, timing, check.
 
+use crate::choosing::candidates::Candidate;
 use crate::choosing::charge_statistics::Cloud;
+use crate::choosing::choice::{Choice, Measured};
 use crate::choosing::error_model::{error_squared, smooth_error_squared};
+use crate::error::FieldError;
 use crate::levels::grid::level::{grid_sizes, widest_spacing};
 use crate::levels::grid::shapes::{self, ORDERS, Shapes, cutoff_over_spacing_for};
+use crate::methods::method::FieldMethod;
 use crate::methods::p3m::{P3m, P3mParameters};
-use crate::{Candidate, Choice, FieldError, FieldMethod, FieldValues, Measured, Wanted};
+use crate::values::{FieldValues, Wanted};
 use amberfield_core::constants::coulomb_constant;
 use amberfield_core::{Domain, FieldSettings, Tuning};
 use nalgebra::Vector3;

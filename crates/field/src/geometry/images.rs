@@ -4,7 +4,7 @@
 //! Along one axis the images of a coordinate x are ±x + offset + m·period with a sign for the charge: a
 //! conductor reverses it, an insulator keeps it. The images of a point are all products over the three axes.
 
-use crate::FieldError;
+use crate::error::FieldError;
 use amberfield_core::{Axis, Boundary, Domain, Side};
 use nalgebra::Vector3;
 
@@ -301,6 +301,11 @@ impl ImageLattice {
             }
         }
     }
+}
+
+/// Images per charge in a box without closed axes.
+pub(crate) fn images_per_charge(domain: &Domain) -> usize {
+    ImageLattice::new(domain).axes.iter().map(|axis| axis.images.len()).product()
 }
 
 #[cfg(test)]

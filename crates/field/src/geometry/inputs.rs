@@ -1,7 +1,8 @@
 //! Checks of positions and charges that every method shares.
 
-use crate::FieldError;
-use amberfield_core::{Axis, Boundary, Domain, Side};
+use crate::error::FieldError;
+use amberfield_core::constants::VACUUM_PERMITTIVITY;
+use amberfield_core::{Axis, Boundary, Domain, FieldSettings, Side};
 use nalgebra::Vector3;
 
 /// Net charge over Σ|q| (and the charge that the faces' normal fields stand for) that counts as round-off:
@@ -109,6 +110,18 @@ pub(crate) fn check_charges_in_box(
     check_finite(positions, charges)?;
     check_in_box(domain, positions)?;
     check_net_charge(domain, permittivity, neutralising_background, charges)
+}
+
+/// Refuses particles that a grid in the box of a scene with these settings cannot carry, as p3m does at every
+/// evaluation.
+pub(crate) fn check_scene(
+    domain: &Domain,
+    settings: &FieldSettings,
+    positions: &[Vector3<f64>],
+    charges: &[f64],
+) -> Result<(), FieldError> {
+    let permittivity = VACUUM_PERMITTIVITY * settings.relative_permittivity;
+    check_charges_in_box(domain, permittivity, settings.neutralising_background, positions, charges)
 }
 
 /// Refuses a result that is not finite: two charges, or a charge and an image, in one place.

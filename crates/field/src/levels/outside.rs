@@ -1,6 +1,6 @@
 //! What there is without charges.
 
-use crate::FieldError;
+use crate::error::FieldError;
 use crate::levels::faces::BoundaryField;
 use amberfield_core::{Domain, FieldSettings, Method};
 use nalgebra::Vector3;

@@ -1,10 +1,12 @@
 //! The plain truncated sum: what most DEM runs use today.
 
+use crate::error::FieldError;
 use crate::geometry::image_cells::ImageCells;
 use crate::geometry::images::ImageLattice;
 use crate::geometry::inputs::{check_finite, check_result};
+use crate::methods::method::FieldMethod;
 use crate::numerics::stopwatch::Stopwatch;
-use crate::{FieldError, FieldMethod, FieldValues, Wanted};
+use crate::values::{FieldValues, Wanted};
 use amberfield_core::Domain;
 use amberfield_core::constants::coulomb_constant;
 use nalgebra::Vector3;

@@ -1,7 +1,8 @@
 //! What every way to compute the field of charges offers.
 
+use crate::error::FieldError;
 use crate::levels::far::FarSolver;
-use crate::{FieldError, FieldValues, Wanted};
+use crate::values::{FieldValues, Wanted};
 use nalgebra::Vector3;
 use std::fmt;
 

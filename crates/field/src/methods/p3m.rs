@@ -9,12 +9,14 @@
 //! Φ is the Kaiser–Bessel cloud's of `amberfield_laws::kaiser_bessel_cloud`: nothing is left of the pairs beyond r_c and of
 //! the middle grid beyond R.
 
+use crate::error::FieldError;
 use crate::geometry::inputs::{check_charges_in_box, check_finite, check_result};
 use crate::levels::far::{FarLevel, FarSolver};
 use crate::levels::grid::level::{GridLevel, GridParameters};
 use crate::levels::near::{NearLevel, NearParameters};
+use crate::methods::method::FieldMethod;
 use crate::numerics::stopwatch::Stopwatch;
-use crate::{FieldError, FieldMethod, FieldValues, Wanted};
+use crate::values::{FieldValues, Wanted};
 use amberfield_core::constants::coulomb_constant;
 use amberfield_core::{Domain, FieldSettings};
 use amberfield_laws::kaiser_bessel_cloud::Cloud;

@@ -12,7 +12,7 @@
 //! conductor, so that nothing cancels close to it.
 
 use super::heat::AxisHeat;
-use crate::FieldError;
+use crate::error::FieldError;
 use crate::geometry::images::{AxisKind, axis_kinds};
 use amberfield_core::{Axis, Boundary, Domain, Side};
 use nalgebra::Vector3;

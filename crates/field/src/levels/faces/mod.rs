@@ -3,7 +3,7 @@
 mod general;
 mod heat;
 
-use crate::FieldError;
+use crate::error::FieldError;
 use crate::geometry::images::{AxisKind, FaceKind, Geometry, axis_kinds};
 use amberfield_core::{Axis, Boundary, Domain, Side};
 use general::General;

@@ -1,7 +1,7 @@
 //! A mesh of equal cells in a box.
 
 use super::{BoundaryFace, CellFace, Condition, FarMeshParts, Neighbour};
-use crate::FieldError;
+use crate::error::FieldError;
 use amberfield_core::{Axis, Boundary, Domain};
 use nalgebra::{Matrix3, Vector3};
 

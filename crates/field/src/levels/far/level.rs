@@ -11,7 +11,7 @@ use super::local_fit::LocalFits;
 use super::mesh::{Condition, FarMesh};
 use super::walls::Walls;
 use super::{FarField, FarRequest, FarSolver, FarSource, check_net_charge};
-use crate::FieldError;
+use crate::error::FieldError;
 use amberfield_core::{Axis, Boundary, Domain, FieldSettings};
 use amberfield_laws::kaiser_bessel_cloud::Cloud;
 use nalgebra::Vector3;

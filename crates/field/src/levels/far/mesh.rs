@@ -1,6 +1,6 @@
 //! Cells of any shape, what lies beyond each of their faces, and in which of them a point lies.
 
-use crate::FieldError;
+use crate::error::FieldError;
 use amberfield_core::Domain;
 use nalgebra::{Matrix3, Vector3};
 use rayon::prelude::*;

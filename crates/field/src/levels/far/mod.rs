@@ -15,7 +15,7 @@ pub(crate) use level::FarLevel;
 pub use mesh::{BoundaryFace, CellFace, Condition, FarMesh, FarMeshParts, Neighbour};
 pub use solver::{FarSolver, FarState};
 
-use crate::FieldError;
+use crate::error::FieldError;
 use crate::geometry::inputs::NET_CHARGE_ROUND_OFF;
 use nalgebra::Vector3;
 use std::fmt;

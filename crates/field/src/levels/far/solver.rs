@@ -5,7 +5,7 @@
 //! space and slow in time; what the forecast misses is measured when the answer comes.
 
 use super::{FarField, FarMesh, FarRequest, FarSource, FarValues};
-use crate::FieldError;
+use crate::error::FieldError;
 use nalgebra::Vector3;
 use serde::{Deserialize, Serialize};
 

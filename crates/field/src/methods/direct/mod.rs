@@ -4,11 +4,13 @@ mod modes;
 mod pairs;
 mod splitting;
 
+use crate::error::FieldError;
 use crate::geometry::image_cells::ImageCells;
 use crate::geometry::images::{BoundingBox, Geometry, ImageLattice};
 use crate::geometry::inputs::{check_finite, check_inside, check_net_charge, check_result};
+use crate::methods::method::FieldMethod;
 use crate::numerics::stopwatch::Stopwatch;
-use crate::{FieldError, FieldMethod, FieldValues, Wanted};
+use crate::values::{FieldValues, Wanted};
 use amberfield_core::Domain;
 use amberfield_core::constants::coulomb_constant;
 use modes::Modes;

@@ -1,7 +1,7 @@
 //! Cells with a field that is constant in each, whoever solves for it.
 
 use super::mesh::Mesh;
-use crate::FieldError;
+use crate::error::FieldError;
 use crate::levels::far::{FarField, FarRequest, FarSolver, FarSource, check_net_charge};
 use nalgebra::Vector3;
 use std::fmt::Debug;

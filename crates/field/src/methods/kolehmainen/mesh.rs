@@ -3,12 +3,13 @@
 //! Walls are cell faces: a conductor lies half a cell from the cell's centre, an insulator gives its flux.
 
 use super::inverse::Inverse;
+use crate::error::FieldError;
 use crate::geometry::images::FaceKind::{Conductor, Insulator, Open};
 use crate::geometry::images::{AxisKind, Geometry, axis_kinds};
+use crate::levels::faces::BoundaryField;
 use crate::levels::grid::axis::{smooth_even, symmetry};
 use crate::levels::grid::solve::{TILE, across_rows};
 use crate::levels::grid::transform::{LineScratch, LineTransform, Symmetry};
-use crate::{BoundaryField, FieldError};
 use amberfield_core::{Axis, Boundary, Domain, Side};
 use nalgebra::Vector3;
 use rayon::prelude::*;

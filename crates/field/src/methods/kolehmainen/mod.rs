@@ -5,13 +5,15 @@ mod inverse;
 mod lattice;
 mod mesh;
 
+use crate::error::FieldError;
 use crate::geometry::image_cells::ImageCells;
 use crate::geometry::images::ImageLattice;
 use crate::geometry::inputs::{check_charges_in_box, check_result};
 use crate::levels::far::{FarField, FarSolver};
 use crate::methods::cutoff::{check_radius, coulomb};
+use crate::methods::method::FieldMethod;
 use crate::numerics::stopwatch::Stopwatch;
-use crate::{FieldError, FieldMethod, FieldValues, Wanted};
+use crate::values::{FieldValues, Wanted};
 use amberfield_core::Domain;
 use amberfield_core::constants::{VACUUM_PERMITTIVITY, coulomb_constant};
 use cells::{Cells, SolverCells};
