@@ -148,7 +148,7 @@ impl Cloud {
 
     /// Numbers as the peers' scripts read them, with the exact field for 4πε = 1 from E in SI units.
     pub(crate) fn numbers<'a>(&'a self, exact: &'a [Vector3<f64>]) -> impl Iterator<Item = f64> + 'a {
-        let k = amberfield_core::constants::coulomb_constant(1.0);
+        let k = amberfield_core::Permittivity::VACUUM.coulomb();
         let head = [self.position.len() as f64, self.domain.extent().x, 2.0 * RADIUS];
         let grains = self.position.iter().zip(&self.charge).zip(exact);
         head.into_iter()

@@ -2,7 +2,7 @@
 
 use crate::foreign::{close, guarded, slice, slice_mut};
 use crate::status::AmberfieldStatus;
-use amberfield_core::{Boundary, Domain, FieldSettings, Tuning, Vector3};
+use amberfield_core::{Boundary, Domain, FieldSettings, Permittivity, Tuning, Vector3};
 use amberfield_coupling::{Announced, SolverSettings};
 use amberfield_field::far::FarField;
 use amberfield_field::{ElectricField, FieldValues, Wanted};
@@ -258,7 +258,7 @@ fn read(settings: &AmberfieldHostSettings, case: Option<String>) -> Result<Scene
         domain,
         settings: FieldSettings {
             tolerance,
-            relative_permittivity: permittivity,
+            permittivity: Permittivity::from_relative(permittivity),
             neutralising_background: settings.neutralising_background != 0,
             tuning: if settings.model_tuning == 0 { Tuning::Timed } else { Tuning::Model },
             ..FieldSettings::default()

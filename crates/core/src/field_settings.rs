@@ -1,5 +1,6 @@
 //! Settings of the electric field.
 
+use crate::permittivity::Permittivity;
 use nalgebra::Vector3;
 use serde::{Deserialize, Serialize};
 use std::fmt;
@@ -92,8 +93,9 @@ pub struct FieldSettings {
     pub tolerance: f64,
     /// Near cut-off radius r_c [m], when the scene fixes it.
     pub cutoff_radius_m: Option<f64>,
-    /// Relative permittivity εr of the medium.
-    pub relative_permittivity: f64,
+    /// Permittivity of the medium.
+    #[serde(rename = "relative_permittivity")]
+    pub permittivity: Permittivity,
     /// Uniform external field [V/m].
     pub external_field_v_m: Vector3<f64>,
     /// Whether a net charge in an insulating or periodic box is balanced by a uniform background.
@@ -117,7 +119,7 @@ impl Default for FieldSettings {
             method: Method::P3m,
             tolerance: 1e-2,
             cutoff_radius_m: None,
-            relative_permittivity: 1.0,
+            permittivity: Permittivity::VACUUM,
             external_field_v_m: Vector3::zeros(),
             neutralising_background: false,
             grid_cells: None,

@@ -2,8 +2,7 @@
 
 mod common;
 
-use amberfield_core::constants::coulomb_constant;
-use amberfield_core::{CouplingInterval, FieldSettings, ForceLimit, Method, Vector3};
+use amberfield_core::{CouplingInterval, FieldSettings, ForceLimit, Method, Permittivity, Vector3};
 use amberfield_dem::{ElectricEnergy, FieldStageSetup, Setup, Simulation};
 use common::{RADIUS, grain, lattice, mass, material, run, setup};
 
@@ -28,13 +27,13 @@ fn opposite_charges_fall_towards_each_other_with_coulombs_force() {
     let mut simulation = Simulation::new(charged(distance, CouplingInterval::Steps(1))).unwrap();
     run(&mut simulation, 1000);
     let p = simulation.particles();
-    let force = coulomb_constant(1.0) * CHARGE * CHARGE / (distance * distance);
+    let force = Permittivity::VACUUM.coulomb() * CHARGE * CHARGE / (distance * distance);
     let expected = force / mass(RADIUS) * simulation.time_s();
     // The grains have come closer by 1e-5 of their distance.
     assert!((p.velocity[0].x / expected - 1.0).abs() < 1e-4, "{} {expected}", p.velocity[0].x);
     assert!((p.velocity[0] + p.velocity[1]).norm() < 1e-12 * expected);
     let energy = simulation.energies(ElectricEnergy::Evaluated).unwrap();
-    let electric = -coulomb_constant(1.0) * CHARGE * CHARGE / (p.position[1] - p.position[0]).norm();
+    let electric = -Permittivity::VACUUM.coulomb() * CHARGE * CHARGE / (p.position[1] - p.position[0]).norm();
     assert!((energy.electric.unwrap() / electric - 1.0).abs() < 1e-9);
     assert_eq!(simulation.energies(ElectricEnergy::Forecast).unwrap(), energy);
 }
@@ -93,7 +92,7 @@ fn force_limit_shortens_and_books() {
     run(&mut simulation, 10);
     let limited = simulation.limited().unwrap();
     assert_eq!((limited.grains, limited.steps, limited.grain_steps), (2, 10, 20));
-    let unlimited = coulomb_constant(1.0) * CHARGE * CHARGE / (9.0 * RADIUS * RADIUS);
+    let unlimited = Permittivity::VACUUM.coulomb() * CHARGE * CHARGE / (9.0 * RADIUS * RADIUS);
     assert!((limited.largest_force_n / unlimited - 1.0).abs() < 1e-6, "{limited:?}");
     let bound = factor * mass(RADIUS) * simulation.skin_m() / (simulation.step_s() * simulation.step_s());
     assert!((simulation.electric_forces().unwrap()[0].norm() / bound - 1.0).abs() < 1e-12);

@@ -2,9 +2,9 @@
 
 mod common;
 
-use amberfield_core::constants::coulomb_constant;
 use amberfield_core::{
-    Boundary, CouplingInterval, Domain, DragLaw, FieldSettings, Gas, Method, Skin, Step, Vector3,
+    Boundary, CouplingInterval, Domain, DragLaw, FieldSettings, Gas, Method, Permittivity, Skin, Step,
+    Vector3,
 };
 use amberfield_dem::{FieldStageSetup, Setup, Simulation};
 use common::{RADIUS, grain, material, setup};
@@ -102,7 +102,7 @@ fn plasma_guard_is_within_the_edge_for_a_charge_whose_field_is_extrapolated() {
 #[test]
 fn wall_image_guard_is_the_edge_for_a_charge_that_hovers_over_an_insulator() {
     let height = 0.5 * NEXT;
-    let hover = coulomb_constant(1.0) * CHARGE / (NEXT * RADIUS).powi(2);
+    let hover = Permittivity::VACUUM.coulomb() * CHARGE / (NEXT * RADIUS).powi(2);
     let insulator = Boundary::Insulating { normal_field_v_m: 0.0 };
     let scene = held(&[height + DISPLACED], insulator, -hover);
     let edge = edge_over("wall image", &scene);

@@ -4,8 +4,7 @@
 //! sets' fields are known to 1e-9. Parameters come from the cost model, so that the table is the same everywhere.
 #![expect(clippy::print_stdout, reason = "prints its table")]
 
-use amberfield_core::constants::coulomb_constant;
-use amberfield_core::{FieldSettings, Method, Tuning};
+use amberfield_core::{FieldSettings, Method, Permittivity, Tuning};
 use amberfield_field::{ElectricField, FieldError, FieldValues, Wanted};
 use amberfield_oracle::ErrorNorms;
 use amberfield_oracle::reference::{self, ReferenceSet};
@@ -19,7 +18,7 @@ fn error(set: &ReferenceSet, settings: &FieldSettings) -> Result<f64, FieldError
     let mut field = ElectricField::new(&set.domain, settings, &set.position, &set.charge)?;
     let mut values = FieldValues::default();
     field.evaluate(&set.position, &set.charge, Wanted::default(), &mut values)?;
-    let k = coulomb_constant(1.0);
+    let k = Permittivity::VACUUM.coulomb();
     Ok(ErrorNorms::new(&values.e, &set.field_si(k), set.scale() * k).relative_rms)
 }
 

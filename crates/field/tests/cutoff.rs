@@ -1,7 +1,6 @@
 //! The truncated sum against loops over all pairs.
 
-use amberfield_core::constants::coulomb_constant;
-use amberfield_core::{Boundary, Domain, Vector3};
+use amberfield_core::{Boundary, Domain, Permittivity, Vector3};
 use amberfield_field::{Cutoff, FieldError, FieldMethod, FieldValues, Wanted};
 use amberfield_oracle::{open_sum, reference};
 
@@ -12,7 +11,7 @@ const WANTED: Wanted = Wanted { potential: true, components: true };
 
 fn evaluate(domain: &Domain, radius: f64, positions: &[Vector3<f64>], charges: &[f64]) -> (FieldValues, f64) {
     let mut out = FieldValues::default();
-    let mut cutoff = Cutoff::new(domain, 2.0, radius).expect("a valid radius");
+    let mut cutoff = Cutoff::new(domain, Permittivity::from_relative(2.0), radius).expect("a valid radius");
     cutoff.evaluate(positions, charges, WANTED, &mut out).expect("valid particles");
     (out, cutoff.pairs_per_particle())
 }
@@ -65,7 +64,7 @@ fn any_radius_agrees_with_all_pairs_and_copies() {
         let mut partners = 0;
         for at in 0..positions.len() {
             let (e, potential, near) = brute_force(&domain, radius, &positions, &charges, at);
-            let k = coulomb_constant(2.0);
+            let k = Permittivity::from_relative(2.0).coulomb();
             assert!((out.e[at] / k - e).norm() < ROUND_OFF * 1e3, "radius {radius}");
             assert!((out.potential[at] / k - potential).abs() < ROUND_OFF * 1e3);
             assert_eq!(out.components.near[at], out.e[at]);
@@ -81,8 +80,11 @@ fn a_radius_beyond_an_open_box_is_the_direct_sum() {
     let (out, pairs) = evaluate(&set.domain, 2.0, &set.position, &set.charge);
     assert_eq!(pairs, 1999.0);
     for at in [0, 1234, 1999] {
-        let (e, potential) = open_sum(coulomb_constant(2.0), &set.position, &set.charge, at);
-        assert!((out.e[at] - e).norm() < ROUND_OFF * coulomb_constant(2.0) * set.scale());
+        let (e, potential) =
+            open_sum(Permittivity::from_relative(2.0).coulomb(), &set.position, &set.charge, at);
+        assert!(
+            (out.e[at] - e).norm() < ROUND_OFF * Permittivity::from_relative(2.0).coulomb() * set.scale()
+        );
         assert!((out.potential[at] / potential - 1.0).abs() < ROUND_OFF * 10.0);
     }
 }
@@ -93,7 +95,7 @@ fn results_do_not_depend_on_threads_or_earlier_calls() {
     let (first, _) = evaluate(&set.domain, 0.2, &set.position, &set.charge);
     for threads in [1, 4] {
         let pool = rayon::ThreadPoolBuilder::new().num_threads(threads).build().unwrap();
-        let mut cutoff = Cutoff::new(&set.domain, 2.0, 0.2).unwrap();
+        let mut cutoff = Cutoff::new(&set.domain, Permittivity::from_relative(2.0), 0.2).unwrap();
         let mut out = FieldValues::default();
         pool.install(|| cutoff.evaluate(&set.position[..100], &set.charge[..100], WANTED, &mut out)).unwrap();
         pool.install(|| cutoff.evaluate(&set.position, &set.charge, WANTED, &mut out)).unwrap();
@@ -108,6 +110,6 @@ fn results_do_not_depend_on_threads_or_earlier_calls() {
 fn bad_radius_is_refused() {
     let domain = Domain::new(Vector3::zeros(), Vector3::repeat(1.0), [[Boundary::Open; 2]; 3]).unwrap();
     for radius in [0.0, -1.0, f64::NAN, f64::INFINITY] {
-        assert!(matches!(Cutoff::new(&domain, 1.0, radius), Err(FieldError::Settings(_))));
+        assert!(matches!(Cutoff::new(&domain, Permittivity::VACUUM, radius), Err(FieldError::Settings(_))));
     }
 }

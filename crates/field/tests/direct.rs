@@ -1,7 +1,6 @@
 //! The direct sum against the reference sets, and every other geometry against one that is known.
 
-use amberfield_core::constants::coulomb_constant;
-use amberfield_core::{Boundary, Domain, Vector3};
+use amberfield_core::{Boundary, Domain, Permittivity, Vector3};
 use amberfield_field::{Direct, FieldError, FieldMethod, FieldValues, Wanted};
 use amberfield_oracle::{ErrorNorms, field_scale, reference};
 use std::f64::consts::PI;
@@ -25,9 +24,9 @@ fn domain(extent: [f64; 3], faces: [[Boundary; 2]; 3]) -> Domain {
 fn field(domain: &Domain, positions: &[Vector3<f64>], charges: &[f64]) -> FieldValues {
     let mut out = FieldValues::default();
     let wanted = Wanted { potential: true, components: true };
-    let mut direct = Direct::new(domain, 1.0, false).expect("a supported geometry");
+    let mut direct = Direct::new(domain, Permittivity::VACUUM, false).expect("a supported geometry");
     direct.evaluate(positions, charges, wanted, &mut out).expect("a valid system");
-    let k = coulomb_constant(1.0);
+    let k = Permittivity::VACUUM.coulomb();
     out.e.iter_mut().for_each(|e| *e /= k);
     out.potential.iter_mut().for_each(|potential| *potential /= k);
     out
@@ -79,7 +78,8 @@ fn components_add_up_and_permittivity_divides() {
     let (mut vacuum, mut glass) = (FieldValues::default(), FieldValues::default());
     let wanted = Wanted { potential: true, components: true };
     for (permittivity, out) in [(1.0, &mut vacuum), (5.0, &mut glass)] {
-        let mut direct = Direct::new(&set.domain, permittivity, false).expect("periodic");
+        let mut direct =
+            Direct::new(&set.domain, Permittivity::from_relative(permittivity), false).expect("periodic");
         direct.evaluate(&set.position, &set.charge, wanted, out).expect("neutral");
     }
     for index in 0..64 {
@@ -224,13 +224,22 @@ fn background_takes_a_net_charge_where_allowed() {
     let cube = domain([2.0; 3], [PERIODIC; 3]);
     let mut out = FieldValues::default();
     let at = [Vector3::repeat(0.3)];
-    let refused = Direct::new(&cube, 1.0, false).unwrap().evaluate(&at, &[1.0], Wanted::default(), &mut out);
+    let refused = Direct::new(&cube, Permittivity::VACUUM, false).unwrap().evaluate(
+        &at,
+        &[1.0],
+        Wanted::default(),
+        &mut out,
+    );
     assert!(matches!(refused, Err(FieldError::NetCharge { .. })));
     let wanted = Wanted { potential: true, components: false };
-    Direct::new(&cube, 1.0, true).unwrap().evaluate(&at, &[1.0], wanted, &mut out).unwrap();
+    Direct::new(&cube, Permittivity::VACUUM, true).unwrap().evaluate(&at, &[1.0], wanted, &mut out).unwrap();
     // Wigner crystal, simple cubic: ξ = −2.837297479480619 over the edge.
     let expected = -2.837_297_479_480_619 / 2.0;
-    assert!((out.potential[0] / coulomb_constant(1.0) - expected).abs() < REACHED, "{}", out.potential[0]);
+    assert!(
+        (out.potential[0] / Permittivity::VACUUM.coulomb() - expected).abs() < REACHED,
+        "{}",
+        out.potential[0]
+    );
     assert!(out.e[0].norm() < 1e-2, "by symmetry, round-off of 9e9");
 }
 
@@ -256,7 +265,7 @@ fn scale_does_not_matter_and_threads_do_not_either() {
 fn bad_input_is_an_error() {
     let cube = domain([1.0; 3], [GROUNDED; 3]);
     let mut out = FieldValues::default();
-    let mut direct = Direct::new(&cube, 1.0, false).unwrap();
+    let mut direct = Direct::new(&cube, Permittivity::VACUUM, false).unwrap();
     let mut evaluate = |positions: &[Vector3<f64>], charges: &[f64]| {
         direct.evaluate(positions, charges, Wanted::default(), &mut out)
     };
@@ -266,5 +275,7 @@ fn bad_input_is_an_error() {
     assert!(matches!(evaluate(&[inside, inside], &[1.0, 1.0]), Err(FieldError::Settings(_))));
     assert_eq!(evaluate(&[], &[]), Ok(()));
     let column = domain([1.0; 3], [OPEN, PERIODIC, OPEN]);
-    assert!(Direct::new(&column, 1.0, false).unwrap_err().to_string().contains("axes x and z"));
+    assert!(
+        Direct::new(&column, Permittivity::VACUUM, false).unwrap_err().to_string().contains("axes x and z")
+    );
 }

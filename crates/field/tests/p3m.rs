@@ -1,7 +1,6 @@
 //! p3m against the reference sets: the tolerance that is asked for is met, walls included, and not overpaid.
 
-use amberfield_core::constants::coulomb_constant;
-use amberfield_core::{Boundary, Domain, FieldSettings, Method, Tuning, Vector3};
+use amberfield_core::{Boundary, Domain, FieldSettings, Method, Permittivity, Tuning, Vector3};
 use amberfield_field::{Choice, ElectricField, FieldValues, Wanted};
 use amberfield_oracle::{ErrorNorms, field_scale, reference, rms};
 use rand::{RngExt, SeedableRng};
@@ -34,7 +33,7 @@ fn evaluate(
 
 #[test]
 fn tolerance_is_met_on_every_reference_set_and_not_overpaid() {
-    let k = coulomb_constant(1.0);
+    let k = Permittivity::VACUUM.coulomb();
     for set in reference::all() {
         for tolerance in TOLERANCES {
             let (values, choice) = evaluate(&set.domain, &settings(tolerance), &set.position, &set.charge);
@@ -49,7 +48,7 @@ fn tolerance_is_met_on_every_reference_set_and_not_overpaid() {
 
 #[test]
 fn grains_touching_a_wall_are_as_good_as_the_rest() {
-    let k = coulomb_constant(1.0);
+    let k = Permittivity::VACUUM.coulomb();
     for set in reference::all() {
         let near_wall: Vec<usize> = (0..set.position.len())
             .filter(|&i| {
@@ -75,7 +74,7 @@ fn grains_touching_a_wall_are_as_good_as_the_rest() {
 
 #[test]
 fn potential_follows_the_field() {
-    let k = coulomb_constant(1.0);
+    let k = Permittivity::VACUUM.coulomb();
     for set in reference::all() {
         let (values, _) = evaluate(&set.domain, &settings(1e-4), &set.position, &set.charge);
         let square = |values: &mut dyn Iterator<Item = f64>| values.map(|v| v * v).sum::<f64>().sqrt();
@@ -100,7 +99,7 @@ fn components_add_up_to_the_field() {
 
 #[test]
 fn a_lone_grain_feels_its_images() {
-    let k = coulomb_constant(1.0);
+    let k = Permittivity::VACUUM.coulomb();
     let domain = reference::f_cube_domain();
     for row in reference::f_cube_single() {
         for tolerance in [1e-2, 1e-4] {
@@ -164,7 +163,7 @@ fn every_supported_mix_of_faces_agrees_with_the_direct_sum() {
             let mut values = FieldValues::default();
             let wanted = Wanted { potential: true, components: false };
             field.evaluate(&positions, &charges, wanted, &mut values).unwrap();
-            let scale = field_scale(&exact.e, &charges, extent.product(), coulomb_constant(1.0));
+            let scale = field_scale(&exact.e, &charges, extent.product(), Permittivity::VACUUM.coulomb());
             let error = ErrorNorms::new(&values.e, &exact.e, scale).relative_rms;
             assert!(error <= tolerance, "{faces:?} at {tolerance:e}: {error:e}");
             let worst =
@@ -187,7 +186,7 @@ fn results_do_not_depend_on_the_number_of_threads() {
 
 #[test]
 fn a_timed_choice_meets_the_tolerance_too_and_can_be_reused() {
-    let k = coulomb_constant(1.0);
+    let k = Permittivity::VACUUM.coulomb();
     let set = reference::by_name("b_periodic_bip_2000").unwrap();
     let timed = FieldSettings { tuning: Tuning::Timed, ..settings(1e-3) };
     let (values, choice) = evaluate(&set.domain, &timed, &set.position, &set.charge);
@@ -210,7 +209,7 @@ fn odd_clouds_end_in_a_sensible_answer() {
     let (exact, _) =
         evaluate(&domain, &FieldSettings { method: Method::Direct, ..settings(1e-2) }, &corner, &charges);
     let (values, _) = evaluate(&domain, &settings(1e-3), &corner, &charges);
-    let scale = field_scale(&exact.e, &charges, domain.volume(), coulomb_constant(1.0));
+    let scale = field_scale(&exact.e, &charges, domain.volume(), Permittivity::VACUUM.coulomb());
     assert!(ErrorNorms::new(&values.e, &exact.e, scale).relative_rms <= 1e-3);
     let (values, _) = evaluate(&domain, &settings(1e-3), &corner, &[0.0; 200]);
     assert!(values.e.iter().all(|e| *e == Vector3::zeros()));
@@ -222,7 +221,7 @@ fn odd_clouds_end_in_a_sensible_answer() {
 fn permittivity_divides_the_field() {
     let set = reference::by_name("b_periodic_bip_2000").unwrap();
     let (vacuum, _) = evaluate(&set.domain, &settings(1e-3), &set.position, &set.charge);
-    let medium = FieldSettings { relative_permittivity: 4.0, ..settings(1e-3) };
+    let medium = FieldSettings { permittivity: Permittivity::from_relative(4.0), ..settings(1e-3) };
     let (medium, _) = evaluate(&set.domain, &medium, &set.position, &set.charge);
     for (a, b) in vacuum.e.iter().zip(&medium.e) {
         assert!((a / 4.0 - b).norm() <= 1e-12 * a.norm());

@@ -6,9 +6,9 @@
 //! Source: Jackson, *Classical Electrodynamics*, 3rd ed., §2.1.
 //!
 //! ```
-//! use amberfield_core::constants::coulomb_constant;
+//! use amberfield_core::Permittivity;
 //! use amberfield_laws::image_in_plane::{PlaneWall, force_on_charge};
-//! let f = force_on_charge(coulomb_constant(1.0), 1e-9, 0.01, PlaneWall::Grounded);
+//! let f = force_on_charge(Permittivity::VACUUM.coulomb(), 1e-9, 0.01, PlaneWall::Grounded);
 //! assert!((f + 2.2469e-5).abs() < 1e-9);
 //! ```
 

@@ -2,14 +2,14 @@
 //!
 //! q charge [C]; r distance [m], r > 0; r̂ unit vector from the charge to the point; ε = ε₀εr [F/m].
 //! E [V/m] points away from positive charge. Functions take k = 1/(4πε) [V·m/C]
-//! (`amberfield_core::constants::coulomb_constant`) so that a sum multiplies by it once.
+//! (`amberfield_core::Permittivity::coulomb`) so that a sum multiplies by it once.
 //! Range: any r > 0; the caller skips the charge itself by index.
 //! Source: Jackson, *Classical Electrodynamics*, 3rd ed., §1.2.
 //!
 //! ```
-//! use amberfield_core::{Vector3, constants::coulomb_constant};
+//! use amberfield_core::{Permittivity, Vector3};
 //! use amberfield_laws::point_charge::{field, potential};
-//! let k = coulomb_constant(1.0);
+//! let k = Permittivity::VACUUM.coulomb();
 //! let e = field(k, 1e-9, Vector3::new(0.0, 0.0, 2.0));
 //! assert!((e.z - k * 1e-9 / 4.0).abs() < 1e-12);
 //! assert!((potential(k, 1e-9, 2.0) - 2.0 * e.z).abs() < 1e-12);

@@ -3,8 +3,7 @@
 #![expect(clippy::print_stdout, reason = "how good it is, for whoever asks with --nocapture")]
 
 use super::{AGREEMENT, difference};
-use amberfield_core::constants::coulomb_constant;
-use amberfield_core::{Boundary, Domain, FieldSettings, Tuning, Vector3};
+use amberfield_core::{Boundary, Domain, FieldSettings, Permittivity, Tuning, Vector3};
 use amberfield_coupling::{Announced, RemoteSolver, SolverSettings};
 use amberfield_field::far::{FarField, FarRequest, FarSource, FarValues};
 use amberfield_field::{ElectricField, FieldValues, Wanted};
@@ -98,7 +97,7 @@ fn in_a_ball_the_field_is_that_of_kelvins_images() {
         unit_vector(random) * (RADIUS - GRAIN) * depth
     };
     let exact = |positions: &[Vector3<f64>], charges: &[f64]| {
-        grounded_cavity(coulomb_constant(1.0), RADIUS, positions, charges)
+        grounded_cavity(Permittivity::VACUUM.coulomb(), RADIUS, positions, charges)
     };
     for bipolar in [true, false] {
         let (positions, charges) = cloud(2000, GRAIN, bipolar, place);
@@ -124,7 +123,8 @@ fn in_a_ball_the_field_is_that_of_kelvins_images() {
 #[test]
 fn in_a_cylinder_the_field_is_that_of_the_fourier_bessel_series() {
     const GRAIN: f64 = 3e-4;
-    let exact = GroundedCylinder { coulomb_constant: coulomb_constant(1.0), radius: 6e-3, length: 12e-3 };
+    let exact =
+        GroundedCylinder { coulomb_constant: Permittivity::VACUUM.coulomb(), radius: 6e-3, length: 12e-3 };
     let bench = case(&cylinder(6.0, 12.0, [10, 14], 6), "leastSquares");
     let place = |random: &mut Random, at_wall: bool| {
         let angle = std::f64::consts::TAU * random.number();
@@ -173,7 +173,7 @@ fn reference_boxes_come_out_on_cubes() {
         let mut field =
             ElectricField::over_mesh(solver, &settings(1e-2), &set.position, &set.charge).unwrap();
         let found = evaluate(&mut field, &set.position, &set.charge);
-        let (rms, _) = errors(&found, &set.field_si(coulomb_constant(1.0)));
+        let (rms, _) = errors(&found, &set.field_si(Permittivity::VACUUM.coulomb()));
         println!("{name}: RMS {rms:.2e}");
         assert!(rms < AGREEMENT, "{name}: {rms:e}");
     }
@@ -222,7 +222,7 @@ fn errs_little(kind: &str, cells: usize) {
         println!("{kind}, of both signs: {bipolar}: RMS {rms:.2e}, worst at the wall {worst:.2e}");
         assert!(rms < 2e-2, "{kind}: {rms:e}");
         // A lone charge does not push itself.
-        let unit = coulomb_constant(1.0) * CHARGE / (size * size);
+        let unit = Permittivity::VACUUM.coulomb() * CHARGE / (size * size);
         for position in positions.iter().skip(600).step_by(300) {
             let [found, truth] =
                 [&mut field, &mut exact].map(|field| evaluate(field, &[*position], &[CHARGE])[0]);

@@ -4,7 +4,6 @@ use crate::arguments::TuneOptions;
 use crate::failure::Failure;
 use crate::print::line;
 use crate::run::{Charges, charges_of, domain_of, scene_name};
-use amberfield_core::constants::coulomb_constant;
 use amberfield_core::{Domain, FieldSettings, Method, Tuning, Vector3};
 use amberfield_field::{Candidate, Choice, ElectricField, FieldError, FieldValues, Wanted};
 use amberfield_oracle::{ErrorNorms, field_scale};
@@ -99,8 +98,7 @@ fn against_direct(
     let mut exact = FieldValues::default();
     let mut direct = ElectricField::new(domain, &settings, positions, charges).map_err(failed)?;
     direct.evaluate(positions, charges, Wanted::default(), &mut exact).map_err(failed)?;
-    let scale =
-        field_scale(&exact.e, charges, domain.volume(), coulomb_constant(settings.relative_permittivity));
+    let scale = field_scale(&exact.e, charges, domain.volume(), settings.permittivity.coulomb());
     Ok(Some(ErrorNorms::new(e, &exact.e, scale).relative_rms))
 }
 

@@ -34,7 +34,6 @@ use crate::contacts::neighbours::Neighbours;
 use crate::contacts::walls::Touch;
 use crate::field_stage::FieldStage;
 use crate::motion::grains::Grains;
-use amberfield_core::constants::{VACUUM_PERMITTIVITY, coulomb_constant};
 use amberfield_core::{ChargeTransfer, Domain, FieldSettings, Material, Particles, Vector3};
 use amberfield_laws::charge_transfer::Drive;
 use amberfield_laws::dielectric_breakdown;
@@ -115,12 +114,12 @@ impl Charging {
         particles: &Particles,
         walls: usize,
     ) -> Self {
-        let permittivity = VACUUM_PERMITTIVITY * field.relative_permittivity;
+        let permittivity = field.permittivity.absolute();
         let largest = particles.radius.iter().copied().fold(0.0, f64::max);
         Self {
             settings,
             permittivity,
-            coulomb: coulomb_constant(field.relative_permittivity),
+            coulomb: field.permittivity.coulomb(),
             tolerance: field.tolerance,
             table: ChargingTable::new(materials, &settings, permittivity),
             facets: Facets::new(largest),

@@ -2,13 +2,12 @@
 
 use super::FieldStage;
 use crate::motion::grains::Original;
-use amberfield_core::constants::VACUUM_PERMITTIVITY;
 use amberfield_core::{CouplingInterval, Vector3};
 
 impl FieldStage {
     /// Permittivity of the medium [F/m].
     pub(crate) fn permittivity(&self) -> f64 {
-        VACUUM_PERMITTIVITY * self.settings.relative_permittivity
+        self.settings.permittivity.absolute()
     }
 
     /// E at the last evaluation at what was beside the grains [V/m].

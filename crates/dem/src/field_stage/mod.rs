@@ -25,7 +25,6 @@ use crate::error::DemError;
 use crate::motion::chunks::{CHUNK, chunk_count, for_each_chunk, is_parallel};
 use crate::motion::grains::Grains;
 use crate::setup::FieldStageSetup;
-use amberfield_core::constants::coulomb_constant;
 use amberfield_core::{CouplingInterval, Domain, FieldSettings, ForceLimit, Particles, Vector3};
 use amberfield_field::far::FarSolver;
 use amberfield_field::{FieldValues, Wanted};
@@ -224,8 +223,7 @@ impl FieldStage {
             self.values.e[..index.len()].iter().map(|e| (e - external).norm_squared()).sum::<f64>() / count;
         let q2 = charge[..index.len()].iter().map(|q| q * q).sum::<f64>() / count;
         let density = count / domain.volume();
-        let floor =
-            coulomb_constant(self.settings.relative_permittivity) * q2.sqrt() * density.powf(2.0 / 3.0);
+        let floor = self.settings.permittivity.coulomb() * q2.sqrt() * density.powf(2.0 / 3.0);
         e2.sqrt().max(floor)
     }
 

@@ -1,7 +1,6 @@
 //! What a cloud of charges means for the error of a field.
 
-use amberfield_core::Domain;
-use amberfield_core::constants::coulomb_constant;
+use amberfield_core::{Domain, Permittivity};
 use nalgebra::Vector3;
 
 /// What a cloud of charges means for the error.
@@ -19,21 +18,21 @@ pub(crate) struct Cloud {
 impl Cloud {
     pub(crate) fn new(
         domain: &Domain,
-        permittivity: f64,
+        permittivity: Permittivity,
         positions: &[Vector3<f64>],
         charges: &[f64],
     ) -> Self {
         let count = positions.len() as f64;
         let charge = (charges.iter().map(|q| q * q).sum::<f64>() / count.max(1.0)).sqrt();
         let mean_density = count / domain.volume();
-        let floor = coulomb_constant(permittivity) * charge * mean_density.powf(2.0 / 3.0);
+        let floor = permittivity.coulomb() * charge * mean_density.powf(2.0 / 3.0);
         let density = local_density(domain, positions, charges).max(mean_density);
         Self { count, charge, density, floor }
     }
 
     /// Squared error [V²/m²] for a coefficient in 1/m.
-    pub(crate) fn squared_error(&self, permittivity: f64, coefficient: f64) -> f64 {
-        (coulomb_constant(permittivity) * self.charge).powi(2) * self.density * coefficient
+    pub(crate) fn squared_error(&self, permittivity: Permittivity, coefficient: f64) -> f64 {
+        (permittivity.coulomb() * self.charge).powi(2) * self.density * coefficient
     }
 }
 

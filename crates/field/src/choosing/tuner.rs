@@ -10,7 +10,6 @@ use crate::levels::grid::shapes::{self, ORDERS, Shapes, cutoff_over_spacing_for}
 use crate::methods::method::FieldMethod;
 use crate::methods::p3m::{P3m, P3mParameters};
 use crate::values::{FieldValues, Wanted};
-use amberfield_core::constants::coulomb_constant;
 use amberfield_core::{Domain, FieldSettings, Tuning};
 use nalgebra::Vector3;
 use std::time::Instant;
@@ -95,7 +94,7 @@ impl<'a> Tuner<'a> {
         positions: &'a [Vector3<f64>],
         charges: &'a [f64],
     ) -> Self {
-        let cloud = Cloud::new(domain, settings.relative_permittivity, positions, charges);
+        let cloud = Cloud::new(domain, settings.permittivity, positions, charges);
         Self { domain, settings, positions, charges, cloud, longest: f64::INFINITY }
     }
 
@@ -113,7 +112,7 @@ impl<'a> Tuner<'a> {
                 density: self.cloud.count.max(1.0) / self.domain.volume(),
                 ..self.cloud
             };
-            let scale = coulomb_constant(self.settings.relative_permittivity) * cloud.density.powf(2.0 / 3.0);
+            let scale = self.settings.permittivity.coulomb() * cloud.density.powf(2.0 / 3.0);
             let bound = self.aim() * self.settings.tolerance * scale;
             let parameters = self.best_by_model(&cloud, bound, 0.0)?;
             return Ok(Chosen { parameters, estimated: None, measured: None });
@@ -209,7 +208,7 @@ impl<'a> Tuner<'a> {
         let spacing = widest_spacing(self.domain, parameters.spacing_m);
         let shapes = Shapes { cloud: parameters.cloud_shape, window: parameters.window_shape };
         let coefficient = error_squared(parameters.order, parameters.cutoff_m / spacing, shapes) / spacing;
-        let random = cloud.squared_error(self.settings.relative_permittivity, coefficient);
+        let random = cloud.squared_error(self.settings.permittivity, coefficient);
         (random + smooth * smooth * smooth_error_squared(parameters.order, parameters.window_shape)).sqrt()
     }
 
@@ -298,7 +297,7 @@ impl<'a> Tuner<'a> {
     fn candidate_for(&self, cloud: &Cloud, order: usize, spacing: f64, error: f64) -> Option<P3mParameters> {
         /// A spacing that divides the box stays one when it is rounded.
         const ROUNDING: f64 = 1e-12;
-        let coefficient = error * error / cloud.squared_error(self.settings.relative_permittivity, 1.0);
+        let coefficient = error * error / cloud.squared_error(self.settings.permittivity, 1.0);
         let spacing = widest_spacing(self.domain, spacing) * (1.0 + ROUNDING);
         let least = cutoff_over_spacing_for(order, coefficient * spacing)? * spacing;
         let cutoff = self.settings.cutoff_radius_m.unwrap_or(least);

@@ -15,7 +15,6 @@ use crate::methods::kolehmainen::Kolehmainen;
 use crate::methods::method::FieldMethod;
 use crate::methods::p3m::{P3m, P3mParameters};
 use crate::values::{FieldValues, Wanted};
-use amberfield_core::constants::VACUUM_PERMITTIVITY;
 use amberfield_core::{Domain, FieldSettings, Method};
 use nalgebra::Vector3;
 use std::time::Instant;
@@ -103,8 +102,7 @@ impl ElectricField {
         match choice {
             Choice::P3m(parameters) => Self::over_far(far_level(solver, settings), settings, *parameters),
             Choice::Kolehmainen { cutoff_m } => {
-                let (permittivity, background) =
-                    (settings.relative_permittivity, settings.neutralising_background);
+                let (permittivity, background) = (settings.permittivity, settings.neutralising_background);
                 let (domain, cells) = (solver.mesh().domain().clone(), solver.mesh().cell_count());
                 Ok(Self {
                     outside: Outside::new(&domain, settings)?,
@@ -158,7 +156,7 @@ impl ElectricField {
         settings: &FieldSettings,
         choice: &Choice,
     ) -> Result<Self, FieldError> {
-        let permittivity = settings.relative_permittivity;
+        let permittivity = settings.permittivity;
         let background = settings.neutralising_background;
         let method: Box<dyn FieldMethod> = match choice {
             Choice::Cutoff { cutoff_m } => Box::new(Cutoff::new(domain, permittivity, *cutoff_m)?),
@@ -219,8 +217,7 @@ impl ElectricField {
 }
 
 fn far_level(solver: Box<dyn FarField>, settings: &FieldSettings) -> FarLevel {
-    let permittivity = VACUUM_PERMITTIVITY * settings.relative_permittivity;
-    FarLevel::new(solver, permittivity, settings)
+    FarLevel::new(solver, settings)
 }
 
 /// The cut-off radius of a method that cannot do without.

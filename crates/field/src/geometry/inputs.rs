@@ -1,8 +1,7 @@
 //! Checks of positions and charges that every method shares.
 
 use crate::error::FieldError;
-use amberfield_core::constants::VACUUM_PERMITTIVITY;
-use amberfield_core::{Axis, Boundary, Domain, FieldSettings, Side};
+use amberfield_core::{Axis, Boundary, Domain, FieldSettings, Permittivity, Side};
 use nalgebra::Vector3;
 
 /// Net charge over Σ|q| (and the charge that the faces' normal fields stand for) that counts as round-off:
@@ -64,9 +63,9 @@ fn check_in_box(domain: &Domain, positions: &[Vector3<f64>]) -> Result<(), Field
 
 /// Charge [C] that the prescribed normal fields of the faces stand for by Gauss's law: ε Σ (E·n) A, counted on
 /// the faces of axes without an open face.
-pub(crate) fn charge_of_normal_fields(domain: &Domain, permittivity: f64) -> f64 {
+pub(crate) fn charge_of_normal_fields(domain: &Domain, permittivity: Permittivity) -> f64 {
     let flux: f64 = normal_fluxes(domain).sum();
-    permittivity * flux
+    permittivity.absolute() * flux
 }
 
 fn normal_fluxes(domain: &Domain) -> impl Iterator<Item = f64> {
@@ -79,10 +78,10 @@ fn normal_fluxes(domain: &Domain) -> impl Iterator<Item = f64> {
     })
 }
 
-/// Refuses a net charge that no face can take. `permittivity` is ε0·εr [F/m].
+/// Refuses a net charge that no face can take.
 pub(crate) fn check_net_charge(
     domain: &Domain,
-    permittivity: f64,
+    permittivity: Permittivity,
     neutralising_background: bool,
     charges: &[f64],
 ) -> Result<(), FieldError> {
@@ -91,7 +90,7 @@ pub(crate) fn check_net_charge(
     }
     let net_charge_c = charges.iter().sum::<f64>() - charge_of_normal_fields(domain, permittivity);
     let absolute = charges.iter().map(|charge| charge.abs()).sum::<f64>()
-        + permittivity * normal_fluxes(domain).map(f64::abs).sum::<f64>();
+        + permittivity.absolute() * normal_fluxes(domain).map(f64::abs).sum::<f64>();
     if net_charge_c.abs() > NET_CHARGE_ROUND_OFF * absolute {
         return Err(FieldError::NetCharge { net_charge_c });
     }
@@ -102,7 +101,7 @@ pub(crate) fn check_net_charge(
 /// that no face takes. `permittivity` is ε0·εr [F/m].
 pub(crate) fn check_charges_in_box(
     domain: &Domain,
-    permittivity: f64,
+    permittivity: Permittivity,
     neutralising_background: bool,
     positions: &[Vector3<f64>],
     charges: &[f64],
@@ -120,7 +119,7 @@ pub(crate) fn check_scene(
     positions: &[Vector3<f64>],
     charges: &[f64],
 ) -> Result<(), FieldError> {
-    let permittivity = VACUUM_PERMITTIVITY * settings.relative_permittivity;
+    let permittivity = settings.permittivity;
     check_charges_in_box(domain, permittivity, settings.neutralising_background, positions, charges)
 }
 
@@ -148,10 +147,10 @@ mod tests {
 
     #[test]
     fn normal_fields_count_in_the_net_charge() {
-        let (permittivity, field) = (2e-11, 5.0);
+        let (permittivity, field) = (Permittivity::from_relative(2.5), 5.0);
         let domain =
             box_with([[insulating(field), insulating(0.0)], [insulating(0.0); 2], [Boundary::Periodic; 2]]);
-        let taken = permittivity * field * 6.0;
+        let taken = permittivity.absolute() * field * 6.0;
         assert!(check_net_charge(&domain, permittivity, false, &[0.5 * taken, 0.5 * taken]).is_ok());
         assert!(check_net_charge(&domain, permittivity, false, &[taken, -taken]).is_err());
         assert!(check_net_charge(&domain, permittivity, true, &[taken, -taken]).is_ok());
@@ -161,11 +160,16 @@ mod tests {
     fn only_closed_boxes_without_conductor_refuse_a_net_charge() {
         let net = [1e-14, 2e-14];
         let refused = box_with([[Boundary::Periodic; 2]; 3]);
-        assert!(matches!(check_net_charge(&refused, 1.0, false, &net), Err(FieldError::NetCharge { .. })));
-        assert!(check_net_charge(&refused, 1.0, false, &[1e-14, -1e-14 * (1.0 + 1e-13)]).is_ok());
+        assert!(matches!(
+            check_net_charge(&refused, Permittivity::VACUUM, false, &net),
+            Err(FieldError::NetCharge { .. })
+        ));
+        assert!(
+            check_net_charge(&refused, Permittivity::VACUUM, false, &[1e-14, -1e-14 * (1.0 + 1e-13)]).is_ok()
+        );
         let grounded =
             box_with([[Boundary::Periodic; 2], [insulating(0.0), Boundary::Grounded], [Boundary::Open; 2]]);
-        assert!(check_net_charge(&grounded, 1.0, false, &net).is_ok());
+        assert!(check_net_charge(&grounded, Permittivity::VACUUM, false, &net).is_ok());
     }
 
     #[test]

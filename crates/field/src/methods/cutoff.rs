@@ -7,8 +7,7 @@ use crate::geometry::inputs::{check_finite, check_result};
 use crate::methods::method::FieldMethod;
 use crate::numerics::stopwatch::Stopwatch;
 use crate::values::{FieldValues, Wanted};
-use amberfield_core::Domain;
-use amberfield_core::constants::coulomb_constant;
+use amberfield_core::{Domain, Permittivity};
 use nalgebra::Vector3;
 use rayon::prelude::*;
 
@@ -21,7 +20,7 @@ use rayon::prelude::*;
 pub struct Cutoff {
     domain: Domain,
     lattice: ImageLattice,
-    relative_permittivity: f64,
+    permittivity: Permittivity,
     radius: f64,
     cells: ImageCells<()>,
     wrapped: Vec<Vector3<f64>>,
@@ -46,12 +45,12 @@ impl Cutoff {
     ///
     /// # Errors
     /// A radius that is not positive and finite.
-    pub fn new(domain: &Domain, relative_permittivity: f64, radius_m: f64) -> Result<Self, FieldError> {
+    pub fn new(domain: &Domain, permittivity: Permittivity, radius_m: f64) -> Result<Self, FieldError> {
         check_radius(radius_m)?;
         Ok(Self {
             domain: domain.clone(),
             lattice: ImageLattice::periodic_only(domain),
-            relative_permittivity,
+            permittivity,
             radius: radius_m,
             cells: ImageCells::default(),
             wrapped: Vec::new(),
@@ -76,7 +75,7 @@ impl FieldMethod for Cutoff {
         self.wrapped.extend(positions.iter().map(|position| self.domain.wrap(*position)));
         self.cells.build(&self.lattice, &self.wrapped, charges, self.radius, |_, _| ());
         coulomb_sums(&self.cells, &self.wrapped, &mut self.sums);
-        let k = coulomb_constant(self.relative_permittivity);
+        let k = self.permittivity.coulomb();
         out.clear();
         out.e.extend(self.sums.iter().map(|sum| sum.e * k));
         if wanted.potential {

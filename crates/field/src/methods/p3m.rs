@@ -17,8 +17,7 @@ use crate::levels::near::{NearLevel, NearParameters};
 use crate::methods::method::FieldMethod;
 use crate::numerics::stopwatch::Stopwatch;
 use crate::values::{FieldValues, Wanted};
-use amberfield_core::constants::coulomb_constant;
-use amberfield_core::{Domain, FieldSettings};
+use amberfield_core::{Domain, FieldSettings, Permittivity};
 use amberfield_laws::kaiser_bessel_cloud::Cloud;
 use nalgebra::Vector3;
 use serde::{Deserialize, Serialize};
@@ -69,7 +68,7 @@ impl P3mParameters {
 pub(crate) struct P3m {
     domain: Domain,
     parameters: P3mParameters,
-    coulomb: f64,
+    permittivity: Permittivity,
     neutralising_background: bool,
     near: NearLevel,
     grid: GridLevel,
@@ -110,7 +109,7 @@ impl P3m {
         Self {
             domain: domain.clone(),
             parameters,
-            coulomb: coulomb_constant(settings.relative_permittivity),
+            permittivity: settings.permittivity,
             neutralising_background: settings.neutralising_background,
             near,
             grid,
@@ -138,7 +137,7 @@ impl P3m {
         let mut far = vec![(Vector3::zeros(), 0.0); sample.len()];
         self.grid.gather(&places, &mut far);
         let near = self.near.at(sample);
-        near.iter().zip(&far).map(|(near, far)| self.coulomb * (near + far.0)).collect()
+        near.iter().zip(&far).map(|(near, far)| self.permittivity.coulomb() * (near + far.0)).collect()
     }
 
     /// Takes the grains, and what a far level adds to them; how many places the field is asked for at.
@@ -181,7 +180,7 @@ impl FieldMethod for P3m {
         wanted: Wanted,
         out: &mut FieldValues,
     ) -> Result<(), FieldError> {
-        let permittivity = 1.0 / (4.0 * PI * self.coulomb);
+        let permittivity = self.permittivity;
         let background = self.neutralising_background;
         match &self.far {
             None => check_charges_in_box(&self.domain, permittivity, background, positions, charges)?,
@@ -205,7 +204,7 @@ impl FieldMethod for P3m {
         self.grid.gather(&self.positions[..targets], &mut self.grid_field);
         self.stopwatch.lap("gather");
 
-        let k = self.coulomb;
+        let k = self.permittivity.coulomb();
         let count = positions.len();
         if let Some(far) = &mut self.far {
             let at_walls = self.near_field[count..].iter().zip(&self.grid_field[count..]);

@@ -2,8 +2,8 @@
 
 mod open;
 
-use amberfield_core::constants::{VACUUM_PERMITTIVITY, coulomb_constant};
-use amberfield_core::{Boundary, Domain, Vector3};
+use amberfield_core::constants::VACUUM_PERMITTIVITY;
+use amberfield_core::{Boundary, Domain, Permittivity, Vector3};
 use amberfield_field::{Direct, FieldError, FieldMethod, FieldValues, Kolehmainen, Wanted};
 use amberfield_oracle::{ErrorNorms, reference};
 use nalgebra::{DMatrix, DVector};
@@ -179,10 +179,10 @@ fn published_formulas_hold_with_every_kind_of_face() {
         let positions = points(&domain, 24);
         let mut charges: Vec<f64> = (0..24).map(|i| if i % 2 == 0 { 1e-10 } else { -1e-10 }).collect();
         charges[5] = if domain.needs_neutrality() { charges[5] } else { 3e-10 };
-        let mut hybrid = Kolehmainen::new(&domain, 1.0, true, radius, Some(cells)).unwrap();
+        let mut hybrid = Kolehmainen::new(&domain, Permittivity::VACUUM, true, radius, Some(cells)).unwrap();
         let out = evaluate(&mut hybrid, &positions, &charges);
         let mesh = DenseMesh::solve(&domain, cells, &positions, &charges);
-        let k = coulomb_constant(1.0);
+        let k = Permittivity::VACUUM.coulomb();
         let largest = out.components.near.iter().map(|e| e.norm()).fold(0.0, f64::max);
         for (i, x) in positions.iter().enumerate() {
             let far = mesh.field(mesh.cell(x));
@@ -210,10 +210,10 @@ fn hand_computed_set_with_a_shared_cell() {
         corner + Vector3::new(5.5, 3.5, 3.5),
     ];
     let charges = [1.0, 2.0, -3.0];
-    let mut hybrid = Kolehmainen::new(&domain, 1.0, false, 2.5, Some([8; 3])).unwrap();
+    let mut hybrid = Kolehmainen::new(&domain, Permittivity::VACUUM, false, 2.5, Some([8; 3])).unwrap();
     assert_eq!(hybrid.grid_cells(), Some([8; 3]));
     let out = evaluate(&mut hybrid, &positions, &charges);
-    let k = coulomb_constant(1.0);
+    let k = Permittivity::VACUUM.coulomb();
     let along_x = |vectors: &[Vector3<f64>]| vectors.iter().map(|e| e.x / k).collect::<Vec<_>>();
     // 0: 2 at 0.5 to its right, −3 at 2.25; no correction with 1, centres 2 apart with 2. And so on.
     let near = [-2.0 / 0.25 + 3.0 / 5.0625, 1.0 / 0.25 + 3.0 / 3.0625, 1.0 / 5.0625 + 2.0 / 3.0625];
@@ -247,32 +247,33 @@ fn lattice_values_are_those_of_the_unbounded_mesh() {
         ([1.0, 1.0, 1.0], 0.253),
     ] {
         let positions = [centre, centre + Vector3::from(offset)];
-        let mut hybrid = Kolehmainen::new(&domain, 1.0, false, 1.8, Some([7; 3])).unwrap();
+        let mut hybrid = Kolehmainen::new(&domain, Permittivity::VACUUM, false, 1.8, Some([7; 3])).unwrap();
         let out = evaluate(&mut hybrid, &positions, &[1.0, 0.0]);
-        let value = out.components.far[1].norm() / coulomb_constant(1.0);
+        let value = out.components.far[1].norm() / Permittivity::VACUUM.coulomb();
         assert!((value - expected).abs() < 6e-4, "{offset:?}: {value}");
         assert!(
-            out.components.far[0].norm() < 1e-10 * coulomb_constant(1.0),
+            out.components.far[0].norm() < 1e-10 * Permittivity::VACUUM.coulomb(),
             "its own cell has no field of it"
         );
     }
     // A charge in the last cell: the mesh goes on beyond the box.
     let edge = [domain.min() + Vector3::new(6.5, 0.5, 6.5), domain.min() + Vector3::new(5.5, 0.5, 6.5)];
-    let mut hybrid = Kolehmainen::new(&domain, 1.0, false, 1.8, Some([7; 3])).unwrap();
+    let mut hybrid = Kolehmainen::new(&domain, Permittivity::VACUUM, false, 1.8, Some([7; 3])).unwrap();
     let out = evaluate(&mut hybrid, &edge, &[1.0, 0.0]);
-    assert!((out.components.far[1].x / coulomb_constant(1.0) + 1.318).abs() < 6e-4);
-    assert!(out.components.far[0].norm() < 1e-10 * coulomb_constant(1.0));
+    assert!((out.components.far[1].x / Permittivity::VACUUM.coulomb() + 1.318).abs() < 6e-4);
+    assert!(out.components.far[0].norm() < 1e-10 * Permittivity::VACUUM.coulomb());
 }
 
 fn error(name: &str, radius_over_diameter: f64) -> (ErrorNorms, f64) {
     const DIAMETER: f64 = 0.04;
     let set = reference::by_name(name).expect("the set is there");
     let mut hybrid =
-        Kolehmainen::new(&set.domain, 1.0, false, radius_over_diameter * DIAMETER, None).expect("valid");
+        Kolehmainen::new(&set.domain, Permittivity::VACUUM, false, radius_over_diameter * DIAMETER, None)
+            .expect("valid");
     let mut out = FieldValues::default();
     hybrid.evaluate(&set.position, &set.charge, Wanted::default(), &mut out).expect("neutral or grounded");
     assert!(out.potential.is_empty() && out.components.near.is_empty());
-    let k = coulomb_constant(1.0);
+    let k = Permittivity::VACUUM.coulomb();
     let exact = set.field_si(k);
     let force: Vector3<f64> = out.e.iter().zip(&set.charge).map(|(e, q)| e * *q).sum();
     let forces: f64 = out.e.iter().zip(&set.charge).map(|(e, q)| (e * *q).norm()).sum();
@@ -306,7 +307,7 @@ fn results_repeat_on_any_number_of_threads() {
     let run = |threads| {
         let pool = rayon::ThreadPoolBuilder::new().num_threads(threads).build().unwrap();
         pool.install(|| {
-            let mut hybrid = Kolehmainen::new(&set.domain, 1.0, false, 0.12, None).unwrap();
+            let mut hybrid = Kolehmainen::new(&set.domain, Permittivity::VACUUM, false, 0.12, None).unwrap();
             let first = evaluate(&mut hybrid, &set.position, &set.charge);
             let memory = hybrid.memory_bytes();
             assert!(first == evaluate(&mut hybrid, &set.position, &set.charge), "twice the same");
@@ -322,7 +323,7 @@ fn results_repeat_on_any_number_of_threads() {
 fn plates_are_linear_on_the_mesh() {
     let domain =
         domain([1.0, 0.9, 1.5], [PERIODIC, PERIODIC, [Boundary::Potential(3.0), Boundary::Potential(-6.0)]]);
-    let mut hybrid = Kolehmainen::new(&domain, 1.0, false, 0.5, Some([5, 4, 6])).unwrap();
+    let mut hybrid = Kolehmainen::new(&domain, Permittivity::VACUUM, false, 0.5, Some([5, 4, 6])).unwrap();
     let out = evaluate(&mut hybrid, &points(&domain, 20), &[0.0; 20]);
     for e in &out.e {
         assert!((e - Vector3::new(0.0, 0.0, 6.0)).norm() < 1e-12);
@@ -335,20 +336,28 @@ fn plates_are_linear_on_the_mesh() {
 #[test]
 fn bad_settings_are_refused_with_numbers() {
     let periodic = domain([1.0; 3], [PERIODIC; 3]);
-    let refuse = |domain: &Domain, radius, cells| match Kolehmainen::new(domain, 1.0, false, radius, cells) {
+    let refuse = |domain: &Domain, radius, cells| match Kolehmainen::new(
+        domain,
+        Permittivity::VACUUM,
+        false,
+        radius,
+        cells,
+    ) {
         Err(FieldError::Settings(message)) => message,
         other => panic!("{other:?}"),
     };
     let message = refuse(&periodic, 0.1, Some([10; 3]));
     assert!(message.contains("1e-1 m") && message.contains("1.732"), "{message}");
-    assert!(Kolehmainen::new(&periodic, 1.0, false, 0.1 * 3_f64.sqrt(), Some([10; 3])).is_ok());
+    assert!(
+        Kolehmainen::new(&periodic, Permittivity::VACUUM, false, 0.1 * 3_f64.sqrt(), Some([10; 3])).is_ok()
+    );
     refuse(&periodic, 0.1, Some([0, 10, 10]));
     refuse(&periodic, 1e-6, None);
     assert!(refuse(&domain([1.0; 3], [OPEN, OPEN, GROUNDED]), 0.5, None).contains("axes x and y"));
     let electrode = [Boundary::Potential(3.0), Boundary::Grounded];
     assert!(refuse(&domain([1.0; 3], [electrode, GROUNDED, OPEN]), 0.5, None).contains("open faces"));
     let mut out = FieldValues::default();
-    let mut hybrid = Kolehmainen::new(&periodic, 1.0, false, 0.5, None).unwrap();
+    let mut hybrid = Kolehmainen::new(&periodic, Permittivity::VACUUM, false, 0.5, None).unwrap();
     let net = hybrid.evaluate(&[periodic.centre()], &[1.0], ALL, &mut out);
     assert!(matches!(net, Err(FieldError::NetCharge { .. })));
 }
@@ -358,10 +367,13 @@ fn bad_settings_are_refused_with_numbers() {
 fn distant_charges_feel_coulomb() {
     let domain = domain([1.0; 3], OPEN3);
     let positions = [domain.min() + Vector3::repeat(0.125), domain.min() + Vector3::repeat(0.875)];
-    let mut hybrid = Kolehmainen::new(&domain, 1.0, false, 0.15, Some([12; 3])).unwrap();
+    let mut hybrid = Kolehmainen::new(&domain, Permittivity::VACUUM, false, 0.15, Some([12; 3])).unwrap();
     let out = evaluate(&mut hybrid, &positions, &[1e-9, 1e-9]);
     let mut exact = FieldValues::default();
-    Direct::new(&domain, 1.0, false).unwrap().evaluate(&positions, &[1e-9, 1e-9], ALL, &mut exact).unwrap();
+    Direct::new(&domain, Permittivity::VACUUM, false)
+        .unwrap()
+        .evaluate(&positions, &[1e-9, 1e-9], ALL, &mut exact)
+        .unwrap();
     // Discretisation error of order (h/r)² = 0.4 %.
     assert!((out.e[0] - exact.e[0]).norm() < 1e-2 * exact.e[0].norm());
 }

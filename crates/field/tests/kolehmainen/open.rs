@@ -2,7 +2,7 @@
 
 use super::{GROUNDED, OPEN, PERIODIC, ROUND_OFF, domain, evaluate, insulating};
 use amberfield_core::constants::VACUUM_PERMITTIVITY;
-use amberfield_core::{Boundary, Domain, Vector3};
+use amberfield_core::{Boundary, Domain, Permittivity, Vector3};
 use amberfield_field::Kolehmainen;
 
 fn points(domain: &Domain, count: u32) -> Vec<Vector3<f64>> {
@@ -29,7 +29,8 @@ fn half_open_meshes_are_those_with_mirror_charges() {
             let charges: Vec<f64> = (0..12).map(|i| 1e-10 * (f64::from(i % 5) - 1.3)).collect();
             let both = [charges.clone(), charges.iter().map(|q| q * sign).collect()].concat();
             let run = |domain: &Domain, cells, positions: &[_], charges: &[f64]| {
-                let mut hybrid = Kolehmainen::new(domain, 1.0, false, 0.6, Some(cells)).expect("supported");
+                let mut hybrid = Kolehmainen::new(domain, Permittivity::VACUUM, false, 0.6, Some(cells))
+                    .expect("supported");
                 evaluate(&mut hybrid, positions, charges)
             };
             let expected = run(&whole, [4, 3, 10], &all, &both);
@@ -59,7 +60,8 @@ fn open_slab_is_the_limit_of_a_tall_box() {
         charges.push(charges[i]);
     }
     let run = |domain: &Domain, cells| {
-        let mut hybrid = Kolehmainen::new(domain, 1.0, false, 0.4, Some(cells)).expect("supported");
+        let mut hybrid =
+            Kolehmainen::new(domain, Permittivity::VACUUM, false, 0.4, Some(cells)).expect("supported");
         evaluate(&mut hybrid, &positions, &charges)
     };
     let (a, b) = (run(&slab, [5, 6, 8]), run(&tall, [5, 6, 40]));
@@ -68,7 +70,8 @@ fn open_slab_is_the_limit_of_a_tall_box() {
         assert!((a - b).norm() < 1e-9, "{a:?} {b:?}");
     }
     let sheet = [min + Vector3::new(0.05, 0.05, 0.05), min + Vector3::new(0.3, 0.3, 0.75)];
-    let mut coarse = Kolehmainen::new(&slab, 1.0, false, 0.9, Some([1, 1, 8])).expect("fine enough");
+    let mut coarse =
+        Kolehmainen::new(&slab, Permittivity::VACUUM, false, 0.9, Some([1, 1, 8])).expect("fine enough");
     let out = evaluate(&mut coarse, &sheet, &[1e-10, 0.0]);
     let expected = 1e-10 / (0.5 * 0.6) / (2.0 * VACUUM_PERMITTIVITY);
     assert!((out.components.far[1].z - expected).abs() < 1e-9 * expected, "{:?}", out.components.far[1]);
@@ -77,11 +80,11 @@ fn open_slab_is_the_limit_of_a_tall_box() {
 #[test]
 fn values_on_faces_beside_open_ones_are_added() {
     let plate = domain([1.0; 3], [PERIODIC, PERIODIC, [Boundary::Potential(7.0), Boundary::Open]]);
-    let mut hybrid = Kolehmainen::new(&plate, 1.0, false, 0.5, None).unwrap();
+    let mut hybrid = Kolehmainen::new(&plate, Permittivity::VACUUM, false, 0.5, None).unwrap();
     let out = evaluate(&mut hybrid, &[plate.centre()], &[0.0]);
     assert!((out.potential[0] - 7.0).abs() < 1e-12 && out.e[0].norm() < 1e-12);
     let charged = domain([1.0; 3], [PERIODIC, PERIODIC, [insulating(-3.0), Boundary::Open]]);
-    let mut hybrid = Kolehmainen::new(&charged, 1.0, false, 0.5, None).unwrap();
+    let mut hybrid = Kolehmainen::new(&charged, Permittivity::VACUUM, false, 0.5, None).unwrap();
     let out = evaluate(&mut hybrid, &[charged.centre()], &[0.0]);
     assert!((out.e[0] - Vector3::new(0.0, 0.0, 3.0)).norm() < 1e-12);
 }

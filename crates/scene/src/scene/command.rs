@@ -116,7 +116,7 @@ impl ElectricFieldSettings {
         line("charge_transfer_cutoff", format!("{:?}", self.charge_transfer_cutoff_m));
         line("limit_field_force", self.limit_field_force.to_string());
         line("field_force_limit_factor", format!("{:?}", self.field_force_limit_factor));
-        line("relative_permittivity", format!("{:?}", field.relative_permittivity));
+        line("relative_permittivity", format!("{:?}", field.permittivity.relative()));
         let external = field.external_field_v_m;
         line("external_field_V_m", format!("[{:?}, {:?}, {:?}]", external.x, external.y, external.z));
         line(
@@ -181,7 +181,7 @@ impl ElectricFieldSettings {
             self.charge_transfer_cutoff_m,
             yes_no(self.limit_field_force),
             self.field_force_limit_factor,
-            field.relative_permittivity,
+            field.permittivity.relative(),
         );
         Ok(text)
     }

@@ -5,7 +5,7 @@ use super::description::ElectricFieldSettings;
 use super::limits::{ELECTRIC, FRACTION, LENGTH, TOLERANCE};
 use crate::SceneError;
 use crate::tree::{Entries, Node, Range, Table, Value};
-use amberfield_core::{CouplingInterval, ForceLimit, Method, Tuning};
+use amberfield_core::{CouplingInterval, ForceLimit, Method, Permittivity, Tuning};
 
 /// Keys of `[electric_field]` besides those of the one-line form.
 const FURTHER_KEYS: [&str; 10] = [
@@ -80,14 +80,16 @@ fn read_common(table: &Table<'_>, read: &mut ElectricFieldSettings) -> Result<()
     ] {
         *flag = table.boolean(key)?.unwrap_or(*flag);
     }
+    let mut relative_permittivity = read.field.permittivity.relative();
     for (key, range, number) in [
         ("charge_transfer_cutoff", LENGTH, &mut read.charge_transfer_cutoff_m),
         ("field_force_limit_factor", FRACTION, &mut read.field_force_limit_factor),
         // A medium thinner than vacuum does not exist; metals are boundaries, not media.
-        ("relative_permittivity", Range::closed(1.0, 1e6), &mut read.field.relative_permittivity),
+        ("relative_permittivity", Range::closed(1.0, 1e6), &mut relative_permittivity),
     ] {
         *number = table.number(key, range)?.unwrap_or(*number);
     }
+    read.field.permittivity = Permittivity::from_relative(relative_permittivity);
     read.field.cutoff_radius_m = table.number("field_cutoff_radius", LENGTH)?;
     read.field.force_limit =
         read.limit_field_force.then_some(ForceLimit { factor: read.field_force_limit_factor });

@@ -1,7 +1,7 @@
 //! Any bytes: an answer, never a panic; and settings survive being written out.
 
 use crate::common::{Folder, GRAINS, PLATE, SCENE};
-use amberfield_core::{CouplingInterval, ForceLimit, Method, Tuning};
+use amberfield_core::{CouplingInterval, ForceLimit, Method, Permittivity, Tuning};
 use amberfield_scene::{ElectricFieldSettings, Purpose, parse_scene, read_checkpoint, write_checkpoint};
 use nalgebra::Vector3;
 use proptest::prelude::*;
@@ -60,7 +60,7 @@ fn settings() -> impl Strategy<Value = ElectricFieldSettings> {
         settings.field.tolerance = tolerance;
         let needed = matches!(method, Method::Kolehmainen | Method::Cutoff);
         settings.field.cutoff_radius_m = radius.or(needed.then_some(1e-3));
-        settings.field.relative_permittivity = permittivity;
+        settings.field.permittivity = Permittivity::from_relative(permittivity);
         settings.use_without_cfd_coupling = uncoupled;
         settings.enable_collision_charge_transfer = transfer;
         settings.limit_field_force = limit;

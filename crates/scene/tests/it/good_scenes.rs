@@ -38,7 +38,7 @@ fn defaults_of_the_electric_field_are_those_of_the_contract() {
         field.use_without_cfd_coupling && !field.enable_collision_charge_transfer && !field.limit_field_force
     );
     assert_eq!((field.charge_transfer_cutoff_m, field.field_force_limit_factor), (5e-7, 1e-3));
-    assert_eq!(field.field.relative_permittivity, 1.0);
+    assert_eq!(field.field.permittivity.relative(), 1.0);
     assert_eq!(field.field.coupling_interval, CouplingInterval::Auto);
     assert_eq!(field.field.force_limit, None);
 }

@@ -1,7 +1,6 @@
 //! A scene sent through a command of its own process, as a user would: it may fail in any way.
 
-use amberfield_core::Vector3;
-use amberfield_core::constants::coulomb_constant;
+use amberfield_core::{Permittivity, Vector3};
 use amberfield_oracle::{ErrorNorms, field_scale};
 use amberfield_scene::{Purpose, read_scene, read_table};
 use amberfield_study::sweep::{Endured, Extreme, Look};
@@ -119,9 +118,9 @@ fn error_of(scene: &Path, set: &[String], out: &Path, exact: &Path) -> Result<f6
         Ok(rows.iter().map(FieldRow::e).collect::<Vec<_>>())
     });
     let (e, exact) = (e.map_err(said)?, exact.map_err(said)?);
-    let permittivity = scene.electric_field.as_ref().map_or(1.0, |field| field.field.relative_permittivity);
+    let medium = scene.electric_field.as_ref().map_or(Permittivity::VACUUM, |field| field.field.permittivity);
     let volume = scene.domain.as_ref().map_or(1.0, amberfield_core::Domain::volume);
-    let scale = field_scale(&exact, &scene.particles.charge, volume, coulomb_constant(permittivity));
+    let scale = field_scale(&exact, &scene.particles.charge, volume, medium.coulomb());
     Ok(ErrorNorms::new(&e, &exact, scale).relative_rms)
 }
 

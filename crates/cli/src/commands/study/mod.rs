@@ -9,7 +9,6 @@ use crate::failure::Failure;
 use crate::machine;
 use crate::print::line;
 use crate::run::{Charges, charges_of, connect_solver, domain_of, field_of, parameters};
-use amberfield_core::constants::coulomb_constant;
 use amberfield_core::{FieldSettings, Method, Tuning, Vector3};
 use amberfield_field::{ElectricField, FieldValues, Wanted};
 use amberfield_oracle::field_scale;
@@ -205,13 +204,13 @@ impl Laboratory for Bench {
         field
             .evaluate(positions, charges, Wanted::default(), &mut values)
             .map_err(|error| error.to_string())?;
-        let coulomb = coulomb_constant(settings.relative_permittivity);
+        let coulomb = settings.permittivity.coulomb();
         let scale = field_scale(&values.e, charges, domain.volume(), coulomb);
         Ok(Exact { e: values.e, scale, by })
     }
 
     fn charges(&self, problem: &Charged) -> (Vec<Vector3<f64>>, Vec<f64>, f64) {
-        let coulomb = coulomb_constant(problem.settings.relative_permittivity);
+        let coulomb = problem.settings.permittivity.coulomb();
         (problem.positions.clone(), problem.charges.clone(), coulomb)
     }
 

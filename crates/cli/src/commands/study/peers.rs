@@ -1,7 +1,6 @@
 //! Other programs in a study, where `cargo xtask bench --peers` has installed them.
 
 use super::Charged;
-use amberfield_core::constants::coulomb_constant;
 use amberfield_core::{Axis, Boundary};
 use amberfield_study::peers::{Environment, SHARES, Script, fastest, pppm_sweep, write_numbers};
 use amberfield_study::sweep::{Exact, Peer};
@@ -77,7 +76,7 @@ fn points(
 /// The charges as the scripts read them: count, edge, diameter, then x y z q Ex Ey Ez with 4πε = 1.
 fn numbers(problem: &Charged, exact: &Exact) -> Vec<f64> {
     let domain = problem.scene.domain.as_ref().expect("checked before");
-    let coulomb = coulomb_constant(problem.settings.relative_permittivity);
+    let coulomb = problem.settings.permittivity.coulomb();
     let largest = problem.scene.particles.radius.iter().copied().fold(0.0, f64::max);
     let mut numbers = vec![problem.charges.len() as f64, domain.extent().x, 2.0 * largest];
     for ((position, &charge), e) in problem.positions.iter().zip(&problem.charges).zip(&exact.e) {

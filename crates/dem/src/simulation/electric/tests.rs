@@ -5,10 +5,10 @@ use crate::contacts::memory::{Follow, Grown};
 use crate::contacts::neighbours::Listed;
 use crate::motion::chunks::CHUNK;
 use crate::setup::{FieldStageSetup, Setup};
-use amberfield_core::constants::{VACUUM_PERMITTIVITY, coulomb_constant};
+use amberfield_core::constants::VACUUM_PERMITTIVITY;
 use amberfield_core::{
     Boundary, ChargeTransfer, Domain, FieldSettings, Grain, GroupId, Material, MaterialId, Method, OnExit,
-    Skin, Step, TimeSettings, Vector3,
+    Permittivity, Skin, Step, TimeSettings, Vector3,
 };
 use amberfield_laws::charge_transfer::{self, between_grains};
 use nalgebra::{DMatrix, DVector};
@@ -129,7 +129,7 @@ fn seen(run: &Simulation, source: usize, i: usize, j: usize) -> f64 {
     let normal = offset.normalize();
     let place = run.grains.position(i) + normal * (a - 0.5 * (a + b - offset.norm()));
     let from = place - run.grains.position(source);
-    coulomb_constant(1.0) * from.dot(&normal) / from.norm().powi(3)
+    Permittivity::VACUUM.coulomb() * from.dot(&normal) / from.norm().powi(3)
 }
 
 #[test]
@@ -176,7 +176,7 @@ fn charges_of_touching_grains_are_seen_before_the_next_evaluation() {
     run.particles.charge[run.grains.original[charged].index()] = 1e-13;
     let sees = |i: usize, j: usize| {
         ![i, j].contains(&charged)
-            && seen(&run, charged, i, j).abs() > 1e-2 * coulomb_constant(1.0) / (RADIUS * RADIUS)
+            && seen(&run, charged, i, j).abs() > 1e-2 * Permittivity::VACUUM.coulomb() / (RADIUS * RADIUS)
     };
     let &(k, grown, i, j) =
         pairs.iter().find(|(_, _, i, j)| [*i, *j].contains(&beside) && sees(*i, *j)).expect("a good scene");

@@ -12,7 +12,7 @@ use super::mesh::{Condition, FarMesh};
 use super::walls::Walls;
 use super::{FarField, FarRequest, FarSolver, FarSource, check_net_charge};
 use crate::error::FieldError;
-use amberfield_core::{Axis, Boundary, Domain, FieldSettings};
+use amberfield_core::{Axis, Boundary, Domain, FieldSettings, Permittivity};
 use amberfield_laws::kaiser_bessel_cloud::Cloud;
 use nalgebra::Vector3;
 use rayon::prelude::*;
@@ -31,7 +31,7 @@ pub(crate) struct FarLevel {
     depth: f64,
     fits: LocalFits,
     cloud: Cloud,
-    permittivity: f64,
+    permittivity: Permittivity,
     neutralising_background: bool,
     image_positions: Vec<Vector3<f64>>,
     image_charges: Vec<f64>,
@@ -40,8 +40,7 @@ pub(crate) struct FarLevel {
 }
 
 impl FarLevel {
-    /// `permittivity` of the medium [F/m].
-    pub(crate) fn new(solver: Box<dyn FarField>, permittivity: f64, settings: &FieldSettings) -> Self {
+    pub(crate) fn new(solver: Box<dyn FarField>, settings: &FieldSettings) -> Self {
         let mesh = solver.mesh();
         let size = mesh.largest_cell();
         let depth = DEPTH_OF_CELL * size;
@@ -50,7 +49,7 @@ impl FarLevel {
             depth,
             fits: LocalFits::new(mesh),
             cloud: Cloud { radius: RADIUS_OF_CELL * size, shape: SHAPE },
-            permittivity,
+            permittivity: settings.permittivity,
             neutralising_background: settings.neutralising_background,
             image_positions: Vec::new(),
             image_charges: Vec::new(),
@@ -133,7 +132,7 @@ impl FarLevel {
             image_positions: &self.image_positions,
             image_charges: &self.image_charges,
             boundary: &self.boundary,
-            permittivity: self.permittivity,
+            permittivity: self.permittivity.absolute(),
             guess: &[],
             neutralising_background: self.neutralising_background,
             time_s: 0.0,

@@ -17,6 +17,7 @@ pub use solver::{FarSolver, FarState};
 
 use crate::error::FieldError;
 use crate::geometry::inputs::NET_CHARGE_ROUND_OFF;
+use amberfield_core::Permittivity;
 use nalgebra::Vector3;
 use std::fmt;
 use std::sync::Arc;
@@ -80,17 +81,18 @@ pub struct FarValues {
     pub seconds: f64,
 }
 
-/// Refuses a net charge [C] that no face of a mesh takes, in a medium of a permittivity [F/m].
+/// Refuses a net charge [C] that no face of a mesh takes, in a medium of a permittivity.
 pub(crate) fn check_net_charge(
     mesh: &FarMesh,
-    permittivity: f64,
+    permittivity: Permittivity,
     neutralising_background: bool,
     charges: &[f64],
 ) -> Result<(), FieldError> {
     if neutralising_background || mesh.has_conductor() {
         return Ok(());
     }
-    let of_slopes = || mesh.boundary().iter().map(|face| permittivity * face.condition.value() * face.area);
+    let of_slopes =
+        || mesh.boundary().iter().map(|face| permittivity.absolute() * face.condition.value() * face.area);
     let net_charge_c = charges.iter().sum::<f64>() + of_slopes().sum::<f64>();
     let all = charges.iter().map(|charge| charge.abs()).sum::<f64>() + of_slopes().map(f64::abs).sum::<f64>();
     if net_charge_c.abs() > NET_CHARGE_ROUND_OFF * all {

@@ -11,8 +11,7 @@ use crate::geometry::inputs::{check_finite, check_inside, check_net_charge, chec
 use crate::methods::method::FieldMethod;
 use crate::numerics::stopwatch::Stopwatch;
 use crate::values::{FieldValues, Wanted};
-use amberfield_core::Domain;
-use amberfield_core::constants::coulomb_constant;
+use amberfield_core::{Domain, Permittivity};
 use modes::Modes;
 use nalgebra::Vector3;
 use splitting::Splitting;
@@ -33,7 +32,7 @@ pub struct Direct {
     domain: Domain,
     geometry: Geometry,
     lattice: ImageLattice,
-    relative_permittivity: f64,
+    permittivity: Permittivity,
     neutralising_background: bool,
     cells: ImageCells<()>,
     wrapped: Vec<Vector3<f64>>,
@@ -56,14 +55,14 @@ impl Direct {
     /// One closed axis between two open ones.
     pub fn new(
         domain: &Domain,
-        relative_permittivity: f64,
+        permittivity: Permittivity,
         neutralising_background: bool,
     ) -> Result<Self, FieldError> {
         Ok(Self {
             domain: domain.clone(),
             geometry: Geometry::of(domain)?,
             lattice: ImageLattice::new(domain),
-            relative_permittivity,
+            permittivity,
             neutralising_background,
             cells: ImageCells::default(),
             wrapped: Vec::new(),
@@ -75,8 +74,7 @@ impl Direct {
     fn sum(&mut self, positions: &[Vector3<f64>], charges: &[f64]) -> Result<Vec<Parts>, FieldError> {
         check_finite(positions, charges)?;
         check_inside(&self.domain, positions)?;
-        let permittivity = 1.0 / (4.0 * PI * coulomb_constant(self.relative_permittivity));
-        check_net_charge(&self.domain, permittivity, self.neutralising_background, charges)?;
+        check_net_charge(&self.domain, self.permittivity, self.neutralising_background, charges)?;
         self.stopwatch.restart();
         self.wrapped.clear();
         self.wrapped.extend(positions.iter().map(|position| self.domain.wrap(*position)));
@@ -139,7 +137,7 @@ impl FieldMethod for Direct {
         out: &mut FieldValues,
     ) -> Result<(), FieldError> {
         let parts = self.sum(positions, charges)?;
-        let k = coulomb_constant(self.relative_permittivity);
+        let k = self.permittivity.coulomb();
         out.clear();
         out.e.extend(parts.iter().map(|part| (part.near + part.far) * k));
         if wanted.potential {
@@ -199,7 +197,7 @@ mod tests {
             let domain = Domain::new(Vector3::zeros(), extent, faces).unwrap();
             let geometry = Geometry::of(&domain);
             prop_assume!(matches!(geometry, Ok(Geometry::Closed | Geometry::Slab(_))));
-            let mut direct = Direct::new(&domain, 1.0, true).unwrap();
+            let mut direct = Direct::new(&domain, Permittivity::VACUUM, true).unwrap();
             let (positions, charges): (Vec<_>, Vec<_>) =
                 places.into_iter().map(|(place, charge)| (Vector3::from(place).component_mul(&extent), charge)).unzip();
             direct.wrapped = positions;

@@ -3,17 +3,18 @@
 use super::mesh::Mesh;
 use crate::error::FieldError;
 use crate::levels::far::{FarField, FarRequest, FarSolver, FarSource, check_net_charge};
+use amberfield_core::Permittivity;
 use nalgebra::Vector3;
 use std::fmt::Debug;
 
 /// Cells that take each charge whole and answer with a potential and a field.
 pub(super) trait Cells: Debug + Send + Sync {
-    /// Finds each charge's cell and solves ∇²φ = −ρ/permittivity [F/m].
+    /// Finds each charge's cell and solves ∇²φ = −ρ/ε.
     fn solve(
         &mut self,
         positions: &[Vector3<f64>],
         charges: &[f64],
-        permittivity: f64,
+        permittivity: Permittivity,
         cells: &mut Vec<u32>,
     ) -> Result<(), FieldError>;
 
@@ -48,12 +49,12 @@ impl Cells for Mesh {
         &mut self,
         positions: &[Vector3<f64>],
         charges: &[f64],
-        permittivity: f64,
+        permittivity: Permittivity,
         cells: &mut Vec<u32>,
     ) -> Result<(), FieldError> {
         cells.clear();
         cells.extend(positions.iter().map(|position| self.number(self.cell_of(position))));
-        self.solve_for(cells, charges, permittivity);
+        self.solve_for(cells, charges, permittivity.absolute());
         Ok(())
     }
 
@@ -100,7 +101,7 @@ impl Cells for SolverCells {
         &mut self,
         positions: &[Vector3<f64>],
         charges: &[f64],
-        permittivity: f64,
+        permittivity: Permittivity,
         cells: &mut Vec<u32>,
     ) -> Result<(), FieldError> {
         let mesh = self.solver.mesh();
@@ -122,7 +123,7 @@ impl Cells for SolverCells {
             image_positions: &[],
             image_charges: &[],
             boundary: &self.boundary,
-            permittivity,
+            permittivity: permittivity.absolute(),
             guess: &[],
             neutralising_background: self.neutralising_background,
             time_s: 0.0,

@@ -185,7 +185,7 @@ impl Mesh {
         [0, 1, 2].map(|a| ((offset[a] / self.axes[a].spacing).max(0.0) as usize).min(self.axes[a].cells - 1))
     }
 
-    /// Solves −∇²φ = Σ charge/(permittivity · cell volume) with the faces' conditions.
+    /// Solves −∇²φ = Σ charge/(permittivity · cell volume) with the faces' conditions; permittivity in F/m.
     pub(super) fn solve_for(&mut self, cells: &[u32], charges: &[f64], permittivity: f64) {
         match &self.walls {
             Some(walls) => self.potential.copy_from_slice(walls),

@@ -14,8 +14,7 @@ use crate::methods::cutoff::{check_radius, coulomb};
 use crate::methods::method::FieldMethod;
 use crate::numerics::stopwatch::Stopwatch;
 use crate::values::{FieldValues, Wanted};
-use amberfield_core::Domain;
-use amberfield_core::constants::{VACUUM_PERMITTIVITY, coulomb_constant};
+use amberfield_core::{Domain, Permittivity};
 use cells::{Cells, SolverCells};
 use mesh::Mesh;
 use nalgebra::Vector3;
@@ -41,7 +40,7 @@ const MOST_CELLS: f64 = 2e8;
 pub struct Kolehmainen {
     domain: Domain,
     lattice: ImageLattice,
-    relative_permittivity: f64,
+    permittivity: Permittivity,
     neutralising_background: bool,
     radius: f64,
     mesh: Box<dyn Cells>,
@@ -74,7 +73,7 @@ impl Kolehmainen {
     /// of several axes beside open faces.
     pub fn new(
         domain: &Domain,
-        relative_permittivity: f64,
+        permittivity: Permittivity,
         neutralising_background: bool,
         radius_m: f64,
         cells: Option<[usize; 3]>,
@@ -82,7 +81,7 @@ impl Kolehmainen {
         check_radius(radius_m)?;
         let cells = choose_cells(domain, radius_m, cells)?;
         let mesh = Box::new(Mesh::new(domain, cells)?);
-        Ok(Self::on(domain, relative_permittivity, neutralising_background, radius_m, mesh))
+        Ok(Self::on(domain, permittivity, neutralising_background, radius_m, mesh))
     }
 
     /// The hybrid over a field solver's mesh, whose faces, gradient and mapping of charges are the solver's own.
@@ -91,7 +90,7 @@ impl Kolehmainen {
     /// A radius below the diagonal of the largest cell, taken as a cube.
     pub fn over(
         solver: Box<dyn FarField>,
-        relative_permittivity: f64,
+        permittivity: Permittivity,
         neutralising_background: bool,
         radius_m: f64,
     ) -> Result<Self, FieldError> {
@@ -104,12 +103,12 @@ impl Kolehmainen {
         }
         let domain = solver.mesh().domain().clone();
         let mesh = Box::new(SolverCells::new(solver, neutralising_background));
-        Ok(Self::on(&domain, relative_permittivity, neutralising_background, radius_m, mesh))
+        Ok(Self::on(&domain, permittivity, neutralising_background, radius_m, mesh))
     }
 
     fn on(
         domain: &Domain,
-        relative_permittivity: f64,
+        permittivity: Permittivity,
         neutralising_background: bool,
         radius: f64,
         mesh: Box<dyn Cells>,
@@ -117,7 +116,7 @@ impl Kolehmainen {
         Self {
             domain: domain.clone(),
             lattice: ImageLattice::periodic_only(domain),
-            relative_permittivity,
+            permittivity,
             neutralising_background,
             radius,
             mesh,
@@ -164,7 +163,7 @@ impl Kolehmainen {
     }
 
     fn fill(&self, wanted: Wanted, out: &mut FieldValues) {
-        let k = coulomb_constant(self.relative_permittivity);
+        let k = self.permittivity.coulomb();
         let mesh = &self.mesh;
         let particles = || self.sums.iter().zip(&self.cells);
         out.clear();
@@ -191,7 +190,7 @@ impl FieldMethod for Kolehmainen {
         wanted: Wanted,
         out: &mut FieldValues,
     ) -> Result<(), FieldError> {
-        let permittivity = VACUUM_PERMITTIVITY * self.relative_permittivity;
+        let permittivity = self.permittivity;
         let background = self.neutralising_background;
         check_charges_in_box(&self.domain, permittivity, background, positions, charges)?;
         self.stopwatch.restart();
