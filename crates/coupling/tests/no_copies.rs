@@ -1,9 +1,9 @@
 //! Nothing is copied between the processes: both map the same memory, and an exchange allocates next to
 //! nothing.
 
-use amberfield_core::{Boundary, Domain, Vector3};
+use amberfield_core::{Boundary, Domain, FarQuestion, SourceCloud, Vector3};
 use amberfield_coupling::{Announced, BoxSolver, FieldSide, MeshArrays, Reply, SolverSettings};
-use amberfield_field::far::{FarField, FarRequest, FarSource, FarValues};
+use amberfield_field::far::{FarField, FarRequest, FarValues};
 use std::alloc::{GlobalAlloc, Layout, System};
 use std::sync::atomic::{AtomicUsize, Ordering};
 use std::time::Duration;
@@ -89,16 +89,19 @@ fn payloads_lie_in_shared_memory_and_exchanges_allocate_nothing_of_their_size() 
     let charges = vec![1e-12; CHARGES];
     let boundary = vec![0.0; remote.mesh().boundary().len()];
     let request = FarRequest {
-        source: FarSource::NearestCell,
+        question: FarQuestion {
+            cloud: SourceCloud::nearest_cell(),
+            permittivity_f_m: 1.0,
+            neutralising_background: 0,
+            time_s: 0.0,
+            tolerance: 0.0,
+        },
         positions: &positions,
         charges: &charges,
         image_positions: &[],
         image_charges: &[],
         boundary: &boundary,
-        permittivity: 1.0,
         guess: &[],
-        neutralising_background: false,
-        time_s: 0.0,
     };
     let mut values = FarValues::default();
     for _ in 0..2 {

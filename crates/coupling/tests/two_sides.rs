@@ -1,11 +1,11 @@
 //! Both sides of the wire in one process: what travels is what the twin solver makes of it, and nothing is
 //! left behind.
 
-use amberfield_core::{Boundary, Domain, Vector3};
+use amberfield_core::{Boundary, Domain, FarQuestion, SourceCloud, Vector3};
 use amberfield_coupling::{
     Announced, BoxSolver, FieldSide, MeshArrays, Question, Reply, SolverSettings, stale_runs,
 };
-use amberfield_field::far::{FarField, FarRequest, FarSource, FarValues};
+use amberfield_field::far::{FarField, FarRequest, FarValues};
 use std::time::Duration;
 
 const RADIUS: f64 = 3e-3;
@@ -53,19 +53,22 @@ fn request<'a>(
     positions: &'a [Vector3<f64>],
     charges: &'a [f64],
     boundary: &'a [f64],
-    source: FarSource,
+    cloud: SourceCloud,
 ) -> FarRequest<'a> {
     FarRequest {
-        source,
+        question: FarQuestion {
+            cloud,
+            permittivity_f_m: 2.0,
+            neutralising_background: 0,
+            time_s: 0.25,
+            tolerance: 0.0,
+        },
         positions,
         charges,
         image_positions: &[],
         image_charges: &[],
         boundary,
-        permittivity: 2.0,
         guess: &[],
-        neutralising_background: false,
-        time_s: 0.25,
     }
 }
 
@@ -91,7 +94,7 @@ fn mesh_and_fields_cross_the_wire_and_the_run_leaves_nothing() {
     for count in [2, 2000, 50_000] {
         let positions: Vec<_> = positions.iter().copied().cycle().take(count).collect();
         let charges: Vec<f64> = (0..count).map(|i| 1e-12 * (1 + i % 3) as f64).collect();
-        let nearest = request(&positions, &charges, &boundary, FarSource::NearestCell);
+        let nearest = request(&positions, &charges, &boundary, SourceCloud::nearest_cell());
         remote.solve(&nearest, &mut values).expect("it answers");
         let total: f64 = values.potential.iter().zip(twin.mesh().volumes()).map(|(rho, v)| rho * v).sum();
         let sum: f64 = charges.iter().sum();
@@ -100,7 +103,7 @@ fn mesh_and_fields_cross_the_wire_and_the_run_leaves_nothing() {
         assert_eq!((values.outside, values.iterations, values.residual), (0, 3, 1e-9));
         assert_eq!(values.e[7], Vector3::new(1.0, 2.0, 2.0));
     }
-    let clouds = FarSource::Clouds { radius_m: RADIUS, shape: 8.0 };
+    let clouds = SourceCloud { radius_m: RADIUS, shape: 8.0 };
     remote.solve(&request(&positions, &[1e-12, 2e-12], &boundary, clouds), &mut values).expect("it answers");
     assert!(values.potential.iter().filter(|rho| **rho > 1e-6).count() > 20);
 
@@ -135,7 +138,7 @@ fn charges_that_are_no_numbers_end_the_field_side_and_it_says_why() {
     let mut remote = announced.connect().expect("the field side comes");
     let boundary = vec![0.0; remote.mesh().boundary().len()];
     let (positions, charges) = ([Vector3::repeat(0.001)], [f64::NAN]);
-    let asked = request(&positions, &charges, &boundary, FarSource::NearestCell);
+    let asked = request(&positions, &charges, &boundary, SourceCloud::nearest_cell());
     let error = remote.solve(&asked, &mut FarValues::default()).expect_err("no number");
     assert!(error.to_string().contains("field solver ended: grain at index 0"), "{error}");
     field.join().expect("it says why and leaves");

@@ -3,9 +3,11 @@
 #![expect(clippy::print_stdout, reason = "how good it is, for whoever asks with --nocapture")]
 
 use super::{AGREEMENT, difference};
-use amberfield_core::{Boundary, Domain, FieldSettings, Permittivity, Tuning, Vector3};
+use amberfield_core::{
+    Boundary, Domain, FarQuestion, FieldSettings, Permittivity, SourceCloud, Tuning, Vector3,
+};
 use amberfield_coupling::{Announced, RemoteSolver, SolverSettings};
-use amberfield_field::far::{FarField, FarRequest, FarSource, FarValues};
+use amberfield_field::far::{FarField, FarRequest, FarValues};
 use amberfield_field::{ElectricField, FieldValues, Wanted};
 use amberfield_oracle::{GroundedCylinder, grounded_cavity, observed_order, reference};
 use amberfield_tests::Bench;
@@ -278,16 +280,19 @@ fn a_manufactured_potential_converges_with_the_cells() {
                 .collect();
             let exact: Vec<f64> = solver.mesh().centres().iter().map(potential).collect();
             let request = FarRequest {
-                source: FarSource::NearestCell,
+                question: FarQuestion {
+                    cloud: SourceCloud::nearest_cell(),
+                    permittivity_f_m: 1.0,
+                    neutralising_background: 0,
+                    time_s: 0.0,
+                    tolerance: 0.0,
+                },
                 positions: &[],
                 charges: &[],
                 image_positions: &[],
                 image_charges: &[],
                 boundary: &boundary,
-                permittivity: 1.0,
                 guess: &[],
-                neutralising_background: false,
-                time_s: 0.0,
             };
             let mut values = FarValues::default();
             solver.solve(&request, &mut values).expect("it answers");

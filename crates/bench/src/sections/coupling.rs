@@ -6,12 +6,14 @@ use crate::beds::{self, Cloud};
 use crate::page::{Table, figure, verdict};
 use crate::store::Store;
 use crate::timing::{median, median_seconds};
-use amberfield_core::{Boundary, CouplingInterval, Domain, FieldSettings, Method, Tuning, Vector3};
+use amberfield_core::{
+    Boundary, CouplingInterval, Domain, FarQuestion, FieldSettings, Method, SourceCloud, Tuning, Vector3,
+};
 use amberfield_coupling::{
     Announced, BoxSolver, FieldSide, MeshArrays, Reply, SolverSettings, solver_program,
 };
 use amberfield_dem::{FieldStageSetup, Simulation};
-use amberfield_field::far::{Connect, FarField, FarRequest, FarSolver, FarSource, FarValues};
+use amberfield_field::far::{Connect, FarField, FarRequest, FarSolver, FarValues};
 use amberfield_field::{ElectricField, FieldValues, Wanted};
 use anyhow::Result;
 use serde::{Deserialize, Serialize};
@@ -113,16 +115,19 @@ fn exchange(domain: &Domain, cells_along: usize, cloud: &Cloud) -> Result<(f64, 
     let mut values = FarValues::default();
     let mut time = |positions: &[Vector3<f64>], charges: &[f64]| {
         let request = FarRequest {
-            source: FarSource::NearestCell,
+            question: FarQuestion {
+                cloud: SourceCloud::nearest_cell(),
+                permittivity_f_m: 1.0,
+                neutralising_background: 0,
+                time_s: 0.0,
+                tolerance: 0.0,
+            },
             positions,
             charges,
             image_positions: &[],
             image_charges: &[],
             boundary: &boundary,
-            permittivity: 1.0,
             guess: &[],
-            neutralising_background: false,
-            time_s: 0.0,
         };
         median_seconds(0.5, || remote.solve(&request, &mut values).expect("it answers"))
     };
@@ -156,16 +161,19 @@ fn round_trip() -> Result<f64> {
     let mut remote = announced.connect()?;
     let mut values = FarValues::default();
     let request = FarRequest {
-        source: FarSource::NearestCell,
+        question: FarQuestion {
+            cloud: SourceCloud::nearest_cell(),
+            permittivity_f_m: 1.0,
+            neutralising_background: 0,
+            time_s: 0.0,
+            tolerance: 0.0,
+        },
         positions: &[],
         charges: &[],
         image_positions: &[],
         image_charges: &[],
         boundary: &[0.0; 6],
-        permittivity: 1.0,
         guess: &[],
-        neutralising_background: false,
-        time_s: 0.0,
     };
     let seconds = median_seconds(0.3, || remote.solve(&request, &mut values).expect("it answers"));
     drop(remote);

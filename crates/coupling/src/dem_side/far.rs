@@ -6,8 +6,8 @@ use super::shared::{Pending, Shared, locked, read_vectors, write_vectors};
 use crate::CouplingError;
 use amberfield_core::Vector3;
 use amberfield_field::FieldError;
-use amberfield_field::far::{FarField, FarMesh, FarRequest, FarSource, FarValues};
-use amberfield_wire::payloads::{FarAnswer, FarQuestion, SourceCloud};
+use amberfield_field::far::{FarField, FarMesh, FarRequest, FarValues};
+use amberfield_wire::payloads::{FarAnswer, FarQuestion};
 use amberfield_wire::{Layout, MessageKind, Section, Sections, WireError};
 use std::ops::Range;
 use std::sync::{Arc, Mutex};
@@ -48,16 +48,7 @@ impl Shared {
     /// Asks for the far field without waiting.
     fn send_far(&mut self, request: &FarRequest<'_>) -> Result<(), CouplingError> {
         self.clear_the_way()?;
-        let question = FarQuestion {
-            cloud: match request.source {
-                FarSource::Clouds { radius_m, shape } => SourceCloud { radius_m, shape },
-                FarSource::NearestCell => SourceCloud::nearest_cell(),
-            },
-            permittivity_f_m: request.permittivity,
-            neutralising_background: u64::from(request.neutralising_background),
-            time_s: request.time_s,
-            tolerance: self.remote.settings.far_tolerance,
-        };
+        let question = FarQuestion { tolerance: self.remote.settings.far_tolerance, ..request.question };
         let layout = |layout: Layout| {
             let layout = layout
                 .with::<FarQuestion>(Section::FarQuestion, 1)

@@ -4,10 +4,10 @@
 //! Seven-point finite volumes with walls at cell faces, as OpenFOAM's `Gauss linear` makes of such a mesh,
 //! and conjugate gradients.
 
-use amberfield_core::{Domain, Vector3};
+use amberfield_core::{Domain, SourceCloud, Vector3};
 use amberfield_field::FieldError;
 use amberfield_field::far::{
-    Condition, FarField, FarMesh, FarMeshParts, FarRequest, FarSource, FarValues, Neighbour, SmoothDensity,
+    Condition, FarField, FarMesh, FarMeshParts, FarRequest, FarValues, Neighbour, SmoothDensity,
 };
 
 /// Relative residual at which the solver stops.
@@ -19,7 +19,7 @@ const MOST_ITERATIONS: u64 = 10_000;
 #[derive(Debug)]
 pub struct BoxSolver {
     mesh: FarMesh,
-    density: Option<(FarSource, SmoothDensity)>,
+    density: Option<(SourceCloud, SmoothDensity)>,
 }
 
 impl BoxSolver {
@@ -34,27 +34,25 @@ impl BoxSolver {
     /// Charge of each cell [C].
     fn charge_of_cells(&mut self, request: &FarRequest<'_>, cells: &[u32]) -> Vec<f64> {
         let mut charge = vec![0.0; self.mesh.cell_count()];
-        match request.source {
-            FarSource::NearestCell => {
-                for (&cell, q) in cells.iter().zip(request.charges) {
-                    charge[cell as usize] += q;
-                }
+        let cloud = request.question.cloud;
+        if cloud.is_nearest_cell() {
+            for (&cell, q) in cells.iter().zip(request.charges) {
+                charge[cell as usize] += q;
             }
-            FarSource::Clouds { radius_m, shape } => {
-                if self.density.as_ref().is_none_or(|(source, _)| *source != request.source) {
-                    let whole = self.mesh.domain();
-                    let density = SmoothDensity::new(whole, whole.min(), whole.max(), radius_m, shape);
-                    self.density = Some((request.source, density));
-                }
-                let (_, density) = self.density.as_mut().expect("just made");
-                density.clear();
-                density.add(request.positions, request.charges);
-                density.add(request.image_positions, request.image_charges);
-                density.at(self.mesh.centres(), &mut charge);
-                for (charge, volume) in charge.iter_mut().zip(self.mesh.volumes()) {
-                    *charge *= volume;
-                }
-            }
+            return charge;
+        }
+        if self.density.as_ref().is_none_or(|(known, _)| *known != cloud) {
+            let whole = self.mesh.domain();
+            let density = SmoothDensity::new(whole, whole.min(), whole.max(), cloud.radius_m, cloud.shape);
+            self.density = Some((cloud, density));
+        }
+        let (_, density) = self.density.as_mut().expect("just made");
+        density.clear();
+        density.add(request.positions, request.charges);
+        density.add(request.image_positions, request.image_charges);
+        density.at(self.mesh.centres(), &mut charge);
+        for (charge, volume) in charge.iter_mut().zip(self.mesh.volumes()) {
+            *charge *= volume;
         }
         charge
     }
@@ -121,7 +119,7 @@ impl FarField for BoxSolver {
         }
         let mut source = self.charge_of_cells(request, &values.cells);
         for source in &mut source {
-            *source /= request.permittivity;
+            *source /= request.question.permittivity_f_m;
         }
         for (face, value) in self.mesh.boundary().iter().zip(request.boundary) {
             source[face.cell as usize] += match face.condition {

@@ -10,9 +10,9 @@
 use super::local_fit::LocalFits;
 use super::mesh::{Condition, FarMesh};
 use super::walls::Walls;
-use super::{FarField, FarRequest, FarSolver, FarSource, check_net_charge};
+use super::{FarField, FarRequest, FarSolver, check_net_charge};
 use crate::error::FieldError;
-use amberfield_core::{Axis, Boundary, Domain, FieldSettings, Permittivity};
+use amberfield_core::{Axis, Boundary, Domain, FarQuestion, FieldSettings, Permittivity, SourceCloud};
 use amberfield_laws::kaiser_bessel_cloud::Cloud;
 use nalgebra::Vector3;
 use rayon::prelude::*;
@@ -125,17 +125,21 @@ impl FarLevel {
                 Condition::Slope(slope) => slope + face.normal.dot(&e),
             },
         ));
+        let question = FarQuestion {
+            cloud: SourceCloud { radius_m: self.cloud.radius, shape: self.cloud.shape },
+            permittivity_f_m: self.permittivity.absolute(),
+            neutralising_background: u64::from(self.neutralising_background),
+            time_s: 0.0,
+            tolerance: 0.0,
+        };
         let request = FarRequest {
-            source: FarSource::Clouds { radius_m: self.cloud.radius, shape: self.cloud.shape },
+            question,
             positions,
             charges,
             image_positions: &self.image_positions,
             image_charges: &self.image_charges,
             boundary: &self.boundary,
-            permittivity: self.permittivity.absolute(),
             guess: &[],
-            neutralising_background: self.neutralising_background,
-            time_s: 0.0,
         };
         self.solver.solve(&request)?;
         let mesh = self.solver.mesh();

@@ -17,52 +17,33 @@ pub use solver::{FarSolver, FarState};
 
 use crate::error::FieldError;
 use crate::geometry::inputs::NET_CHARGE_ROUND_OFF;
-use amberfield_core::Permittivity;
+use amberfield_core::{FarQuestion, Permittivity};
 use nalgebra::Vector3;
 use std::fmt;
 use std::sync::Arc;
 
-/// What the far level's source is made of.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub enum FarSource {
-    /// Every charge is a Kaiser–Bessel cloud (`amberfield_laws::kaiser_bessel_cloud`).
-    Clouds {
-        /// Radius, where the clouds end [m].
-        radius_m: f64,
-        /// Shape β.
-        shape: f64,
-    },
-    /// Every charge is spread over its cell.
-    NearestCell,
-}
-
-/// What a far level is asked to solve: ∇²φ = −ρ/ε.
+/// Question for the far part of a field: scalars, and the arrays beside them.
 #[derive(Clone, Copy, Debug)]
 pub struct FarRequest<'a> {
-    /// What ρ is made of.
-    pub source: FarSource,
-    /// Places of the charges inside the mesh [m].
+    /// Scalars: clouds, permittivity, background, time, tolerance.
+    pub question: FarQuestion,
+    /// Positions of the charges inside the mesh [m].
     pub positions: &'a [Vector3<f64>],
-    /// Their charges [C].
+    /// Charges inside the mesh [C].
     pub charges: &'a [f64],
-    /// Places of image charges outside the mesh [m].
+    /// Positions of image charges outside the mesh [m].
     pub image_positions: &'a [Vector3<f64>],
     /// Image charges [C]; their clouds may reach inside.
     pub image_charges: &'a [f64],
-    /// By boundary face: φ [V] where the potential is prescribed, ∂φ/∂n outwards [V/m] where the normal field is.
+    /// Values by boundary face: φ [V] where the potential is prescribed, ∂φ/∂n outwards [V/m] where the normal
+    /// field is.
     pub boundary: &'a [f64],
-    /// Permittivity of the medium [F/m].
-    pub permittivity: f64,
-    /// φ at the cells' centres to start from [V], so that a run that is resumed goes on bit for bit; empty: from where the
-    /// solver is.
+    /// φ at the cells' centres to start from [V], so that a run that is resumed goes on bit for bit; empty: the
+    /// solver starts where it is.
     pub guess: &'a [f64],
-    /// Whether the mean density is taken off, where no face fixes the potential.
-    pub neutralising_background: bool,
-    /// Time at which the charges are where they are [s].
-    pub time_s: f64,
 }
 
-/// What a far level answers.
+/// Answer with the far part of a field.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct FarValues {
     /// φ at the cells' centres [V].
@@ -75,9 +56,9 @@ pub struct FarValues {
     pub outside: u64,
     /// Iterations of the linear solver.
     pub iterations: u64,
-    /// Its residual, relative.
+    /// Final residual of the linear solver, relative.
     pub residual: f64,
-    /// Time that it took, without the mapping of charges and the way there and back [s].
+    /// Time that the linear solver took, without the mapping of charges and the way there and back [s].
     pub seconds: f64,
 }
 

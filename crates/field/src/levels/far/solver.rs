@@ -4,8 +4,9 @@
 //! its own, and goes on with a forecast, the potential on the line through the last two answers. The far field is smooth in
 //! space and slow in time; what the forecast misses is measured when the answer comes.
 
-use super::{FarField, FarMesh, FarRequest, FarSource, FarValues};
+use super::{FarField, FarMesh, FarRequest, FarValues};
 use crate::error::FieldError;
+use amberfield_core::{FarQuestion, SourceCloud};
 use nalgebra::Vector3;
 use serde::{Deserialize, Serialize};
 
@@ -53,7 +54,7 @@ struct Overlap {
     /// RMS over the cells of what the last forecast missed of E [V/m].
     missed: f64,
     /// What is being solved.
-    pending: Option<Asked>,
+    pending: Option<OpenQuestion>,
     /// Whether anything was solved yet.
     begun: bool,
 }
@@ -71,52 +72,54 @@ impl Answer {
     }
 }
 
-/// A request that may have to be made again.
+/// Question that is open, as a checkpoint has it: after a resume it is asked again.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
-struct Asked {
+struct OpenQuestion {
+    /// Radius [m] and shape of the clouds; `None`: charges are spread over their cells.
     cloud: Option<(f64, f64)>,
     positions: Vec<Vector3<f64>>,
     charges: Vec<f64>,
     image_positions: Vec<Vector3<f64>>,
     image_charges: Vec<f64>,
     boundary: Vec<f64>,
+    /// Absolute permittivity [F/m].
     permittivity: f64,
     neutralising_background: bool,
     time_s: f64,
 }
 
-impl Asked {
+impl OpenQuestion {
     fn of(request: &FarRequest<'_>) -> Self {
+        let FarQuestion { cloud, permittivity_f_m, neutralising_background, time_s, .. } = request.question;
         Self {
-            cloud: match request.source {
-                FarSource::Clouds { radius_m, shape } => Some((radius_m, shape)),
-                FarSource::NearestCell => None,
-            },
+            cloud: (!cloud.is_nearest_cell()).then_some((cloud.radius_m, cloud.shape)),
             positions: request.positions.to_vec(),
             charges: request.charges.to_vec(),
             image_positions: request.image_positions.to_vec(),
             image_charges: request.image_charges.to_vec(),
             boundary: request.boundary.to_vec(),
-            permittivity: request.permittivity,
-            neutralising_background: request.neutralising_background,
-            time_s: request.time_s,
+            permittivity: permittivity_f_m,
+            neutralising_background: neutralising_background != 0,
+            time_s,
         }
     }
 
     fn request<'a>(&'a self, guess: &'a [f64]) -> FarRequest<'a> {
+        let cloud = self.cloud.map(|(radius_m, shape)| SourceCloud { radius_m, shape });
         FarRequest {
-            source: self
-                .cloud
-                .map_or(FarSource::NearestCell, |(radius_m, shape)| FarSource::Clouds { radius_m, shape }),
+            question: FarQuestion {
+                cloud: cloud.unwrap_or(SourceCloud::nearest_cell()),
+                permittivity_f_m: self.permittivity,
+                neutralising_background: u64::from(self.neutralising_background),
+                time_s: self.time_s,
+                tolerance: 0.0,
+            },
             positions: &self.positions,
             charges: &self.charges,
             image_positions: &self.image_positions,
             image_charges: &self.image_charges,
             boundary: &self.boundary,
-            permittivity: self.permittivity,
             guess,
-            neutralising_background: self.neutralising_background,
-            time_s: self.time_s,
         }
     }
 }
@@ -133,7 +136,8 @@ impl FarSolver {
 
     /// Solves, from where it is to start; the request's own guess and time do not count.
     pub(crate) fn solve(&mut self, request: &FarRequest<'_>) -> Result<(), FieldError> {
-        let request = FarRequest { guess: &self.guess, time_s: self.time_s, ..*request };
+        let question = FarQuestion { time_s: self.time_s, ..request.question };
+        let request = FarRequest { question, guess: &self.guess, ..*request };
         match &mut self.overlap {
             Some(overlap) if overlap.begun => {
                 if let Some(asked) = overlap.pending.take() {
@@ -149,7 +153,7 @@ impl FarSolver {
                     overlap.latest_s = asked.time_s;
                 }
                 self.solver.ask(&request)?;
-                overlap.pending = Some(Asked::of(&request));
+                overlap.pending = Some(OpenQuestion::of(&request));
                 overlap.foresee(&self.values, self.time_s);
             }
             Some(overlap) => {

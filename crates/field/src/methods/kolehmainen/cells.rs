@@ -2,8 +2,8 @@
 
 use super::mesh::Mesh;
 use crate::error::FieldError;
-use crate::levels::far::{FarField, FarRequest, FarSolver, FarSource, check_net_charge};
-use amberfield_core::Permittivity;
+use crate::levels::far::{FarField, FarRequest, FarSolver, check_net_charge};
+use amberfield_core::{FarQuestion, Permittivity, SourceCloud};
 use nalgebra::Vector3;
 use std::fmt::Debug;
 
@@ -116,17 +116,21 @@ impl Cells for SolverCells {
             if inside { *position } else { mesh.centres()[found as usize] }
         }));
         mesh.check_inside(positions, cells)?;
+        let question = FarQuestion {
+            cloud: SourceCloud::nearest_cell(),
+            permittivity_f_m: permittivity.absolute(),
+            neutralising_background: u64::from(self.neutralising_background),
+            time_s: 0.0,
+            tolerance: 0.0,
+        };
         let request = FarRequest {
-            source: FarSource::NearestCell,
+            question,
             positions: &self.places,
             charges,
             image_positions: &[],
             image_charges: &[],
             boundary: &self.boundary,
-            permittivity: permittivity.absolute(),
             guess: &[],
-            neutralising_background: self.neutralising_background,
-            time_s: 0.0,
         };
         self.solver.solve(&request)?;
         // The same cells, unless a charge lies on a face, where the solver's word counts.
