@@ -12,7 +12,7 @@ typedef enum AmberfieldStatus {
   AmberfieldStatus_Ok = 0,
   // The run is over: close and leave.
   AmberfieldStatus_Over = 1,
-  // It failed: amberfield_field_error says why.
+  // Failure: amberfield_field_error or amberfield_host_error says why.
   AmberfieldStatus_Failed = 2,
 } AmberfieldStatus;
 
@@ -138,8 +138,8 @@ typedef struct AmberfieldSourceCloud {
 
 // Scalars of the question for the far part of a field.
 //
-// The question is for the solution of div(grad(potential)) = -density/permittivity, where the density is that
-// of the clouds. Charges, their positions and the values on the boundary are arrays beside it.
+// The question is for the solution of div(grad(potential)) = -density/permittivity, where the density is
+// that of the clouds. Charges, their positions and the values on the boundary are arrays beside it.
 typedef struct AmberfieldFarQuestion {
   // Cloud that every charge is.
   struct AmberfieldSourceCloud cloud;
@@ -203,7 +203,7 @@ typedef struct AmberfieldFar {
 typedef struct AmberfieldFlowAnswer {
   // Iterations of the linear solver for the pressure.
   uint64_t iterations;
-  // What continuity misses: RMS over the cells of d(void fraction)/dt + div(void fraction * velocity),
+  // Error of continuity: RMS over the cells of d(void fraction)/dt + div(void fraction * velocity),
   // times the interval.
   double residual;
   // Time that the solver took [s].
