@@ -30,6 +30,14 @@ unsafe impl GlobalAlloc for Counting {
 #[global_allocator]
 static COUNTING: Counting = Counting;
 
+/// Question whose answer does not matter here.
+const QUESTION: FarQuestion = FarQuestion {
+    cloud: SourceCloud::nearest_cell(),
+    permittivity_f_m: 1.0,
+    neutralising_background: 0,
+    time_s: 0.0,
+    tolerance: 0.0,
+};
 const CHARGES: usize = 500_000;
 const EXCHANGES: usize = 5;
 
@@ -89,13 +97,7 @@ fn payloads_lie_in_shared_memory_and_exchanges_allocate_nothing_of_their_size() 
     let charges = vec![1e-12; CHARGES];
     let boundary = vec![0.0; remote.mesh().boundary().len()];
     let request = FarRequest {
-        question: FarQuestion {
-            cloud: SourceCloud::nearest_cell(),
-            permittivity_f_m: 1.0,
-            neutralising_background: 0,
-            time_s: 0.0,
-            tolerance: 0.0,
-        },
+        question: QUESTION,
         positions: &positions,
         charges: &charges,
         image_positions: &[],
