@@ -10,6 +10,7 @@
 //! Numbers are one contact's, or those of several side by side: there is no branch in the law.
 
 use crate::contacts::material_pairs::PairConstants;
+use crate::contacts::memory::Spring;
 use amberfield_core::Vector3;
 use amberfield_laws::rolling_friction;
 use nalgebra::SimdRealField;
@@ -43,17 +44,17 @@ pub(crate) struct History<T> {
 }
 
 impl History<f64> {
-    /// Reads a history as it is stored: spring and contact radius, rolling spring.
+    /// Reads a history as it is stored: tangential spring, rolling spring [N·m].
     #[inline(always)]
-    pub(crate) fn stored([x, y, z, contact_radius]: [f64; 4], rolling: [f64; 3]) -> Self {
-        Self { spring: Vector3::new(x, y, z), contact_radius, rolling: rolling.into() }
+    pub(crate) fn stored(spring: Spring, rolling: [f64; 3]) -> Self {
+        Self { spring: spring.force.into(), contact_radius: spring.contact_radius, rolling: rolling.into() }
     }
 
-    /// History as it is stored: spring and contact radius, rolling spring.
+    /// History as it is stored: tangential spring, rolling spring [N·m].
     #[inline(always)]
-    pub(crate) fn to_store(&self) -> ([f64; 4], [f64; 3]) {
-        let spring = self.spring;
-        ([spring.x, spring.y, spring.z, self.contact_radius], self.rolling.into())
+    pub(crate) fn to_store(&self) -> (Spring, [f64; 3]) {
+        let spring = Spring { force: self.spring.into(), contact_radius: self.contact_radius };
+        (spring, self.rolling.into())
     }
 }
 

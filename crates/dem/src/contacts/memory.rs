@@ -66,6 +66,15 @@ pub(crate) struct Grown {
     pub(crate) local: u32,
 }
 
+/// Tangential spring of a contact, as it is kept from step to step; zero where there was no contact before.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
+pub(crate) struct Spring {
+    /// Tangential force [N].
+    pub(crate) force: [f64; 3],
+    /// Contact radius √(R*δ) of the last step [m].
+    pub(crate) contact_radius: f64,
+}
+
 /// History of a touching pair.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 pub(crate) struct PairHistory {
@@ -75,8 +84,8 @@ pub(crate) struct PairHistory {
     pub(crate) entry: u32,
     /// Partner.
     pub(crate) partner: Original,
-    /// Tangential force [N] and contact radius [m].
-    pub(crate) spring: [f64; 4],
+    /// Tangential spring.
+    pub(crate) spring: Spring,
     /// Rolling torque [N·m].
     pub(crate) rolling: [f64; 3],
 }
@@ -94,8 +103,8 @@ pub(crate) struct WallHistory {
     pub(crate) overlap: f64,
     /// Triangle of a mesh that is touched.
     pub(crate) triangle: u32,
-    /// Tangential force [N] and contact radius [m].
-    pub(crate) spring: [f64; 4],
+    /// Tangential spring.
+    pub(crate) spring: Spring,
     /// Rolling torque [N·m].
     pub(crate) rolling: [f64; 3],
     pub(crate) charging: Memory,

@@ -2,7 +2,7 @@
 
 use crate::contacts::cells::{INDEX_BITS, INDEX_MASK, LinkedCells};
 use crate::contacts::material_pairs::Features;
-use crate::contacts::memory::{Follow, Grown, Growth, PairHistory};
+use crate::contacts::memory::{Follow, Grown, Growth, PairHistory, Spring};
 use crate::motion::chunks::{CHUNK, NO_PUSH, Push, chunk_count, for_each_chunk, is_parallel};
 use crate::motion::grains::Grains;
 use amberfield_core::{Domain, Vector3};
@@ -25,8 +25,8 @@ pub(crate) struct ChunkList {
     pub(crate) partner: Vec<u32>,
     /// Whether the entry touched at the last evaluation.
     pub(crate) touching: Vec<bool>,
-    /// Tangential spring force [N] and contact radius [m]; empty without friction.
-    pub(crate) spring: Vec<[f64; 4]>,
+    /// Tangential springs; empty without friction.
+    pub(crate) spring: Vec<Spring>,
     /// Rolling spring torque [N·m]; empty without rolling friction.
     pub(crate) rolling: Vec<[f64; 3]>,
     /// Charging of the entries; empty without charge transfer.
@@ -266,7 +266,7 @@ impl ChunkList {
         self.touching.clear();
         self.touching.resize(entries, false);
         self.spring.clear();
-        self.spring.resize(if features.friction { entries } else { 0 }, [0.0; 4]);
+        self.spring.resize(if features.friction { entries } else { 0 }, Spring::default());
         self.rolling.clear();
         self.rolling.resize(if features.rolling { entries } else { 0 }, [0.0; 3]);
         self.growth.clear();
@@ -307,8 +307,8 @@ impl ChunkList {
                 if let Some((list, old, sign)) = found {
                     self.touching[entry] = true;
                     if features.friction {
-                        let [x, y, z, radius] = list.spring[old];
-                        self.spring[entry] = [sign * x, sign * y, sign * z, radius];
+                        let Spring { force, contact_radius } = list.spring[old];
+                        self.spring[entry] = Spring { force: force.map(|f| sign * f), contact_radius };
                     }
                     if features.rolling {
                         self.rolling[entry] = list.rolling[old].map(|c| sign * c);

@@ -3,7 +3,7 @@
 use crate::contacts::batch::{BATCH, Batch};
 use crate::contacts::cells::{INDEX_BITS, INDEX_MASK};
 use crate::contacts::material_pairs::PairTable;
-use crate::contacts::memory::Follow;
+use crate::contacts::memory::{Follow, Spring};
 use crate::contacts::neighbours::{ChunkList, Hit, Neighbours};
 use crate::motion::chunks::{CHUNK, Push, chunk_count, for_each_chunk, is_parallel};
 use crate::motion::grains::Grains;
@@ -148,8 +148,8 @@ fn read<const FRICTION: bool, const ROLLING: bool, const PERIODIC: bool>(
     }
     let touching = list.touching[entry];
     if FRICTION {
-        let [x, y, z, contact_radius] = if touching { list.spring[entry] } else { [0.0; 4] };
-        batch.spring.set(lane, Vector3::new(x, y, z));
+        let Spring { force, contact_radius } = if touching { list.spring[entry] } else { Spring::default() };
+        batch.spring.set(lane, force.into());
         batch.contact_radius[lane] = contact_radius;
     }
     if ROLLING {
@@ -207,8 +207,8 @@ fn write<const FRICTION: bool, const ROLLING: bool>(
     let j = (list.partner[entry] & INDEX_MASK) as usize;
     list.touching[entry] = true;
     if FRICTION {
-        let spring = batch.spring.get(lane);
-        list.spring[entry] = [spring.x, spring.y, spring.z, batch.contact_radius[lane]];
+        let force = batch.spring.get(lane).into();
+        list.spring[entry] = Spring { force, contact_radius: batch.contact_radius[lane] };
     }
     if ROLLING {
         list.rolling[entry] = batch.rolling.get(lane).into();

@@ -2,6 +2,7 @@
 
 use crate::contacts::Contacts;
 use crate::contacts::material_pairs::{Features, PairConstants};
+use crate::contacts::memory::Spring;
 use crate::contacts::walls::ContactWalls;
 use crate::motion::grains::Grains;
 use amberfield_core::Vector3;
@@ -87,11 +88,11 @@ struct Springs<'a> {
 }
 
 impl Springs<'_> {
-    fn energy(&self, spring: &[f64; 4], rolling: &[f64; 3]) -> f64 {
+    fn energy(&self, spring: &Spring, rolling: &[f64; 3]) -> f64 {
         let contact_radius = (self.radius * self.overlap).sqrt();
         let mut energy = 0.4 * self.pair.hertz * contact_radius * self.overlap * self.overlap;
         if self.features.friction && contact_radius > 0.0 {
-            let force2 = spring[..3].iter().map(|f| f * f).sum::<f64>();
+            let force2 = spring.force.iter().map(|f| f * f).sum::<f64>();
             energy += 0.5 * force2 / (self.pair.tangential * contact_radius);
         }
         if self.features.rolling && contact_radius > 0.0 && self.pair.rolling > 0.0 {

@@ -8,7 +8,7 @@ mod touches;
 pub(crate) use touches::{Surface, Touch, WallSlot};
 
 use crate::contacts::material_pairs::{Features, PairTable};
-use crate::contacts::memory::{Memory, WallHistory};
+use crate::contacts::memory::{Memory, Spring, WallHistory};
 use crate::contacts::walls::mesh::{ClosestPoint, Found, MOST_CONTACTS, MeshWall};
 use crate::motion::chunks::{CHUNK, chunk_count, for_each_chunk, is_parallel};
 use crate::motion::grains::Grains;
@@ -54,8 +54,8 @@ pub(crate) struct TouchingWall {
     pub(crate) material: u16,
     /// Overlap [m].
     pub(crate) overlap: f64,
-    /// Tangential force [N] and contact radius [m].
-    pub(crate) spring: [f64; 4],
+    /// Tangential spring.
+    pub(crate) spring: Spring,
     /// Rolling torque [N·m].
     pub(crate) rolling: [f64; 3],
 }
@@ -66,7 +66,7 @@ struct WallContact {
     normal: Vector3<f64>,
     overlap: f64,
     triangle: u32,
-    spring: [f64; 4],
+    spring: Spring,
     rolling: [f64; 3],
 }
 
