@@ -7,6 +7,7 @@ mod docs;
 mod edges;
 mod laws;
 mod length;
+mod links;
 mod source;
 mod table_of_contents;
 mod tree;
@@ -51,6 +52,7 @@ fn all_problems(tree: &Tree) -> Vec<Problem> {
         edges::problems(tree),
         laws::problems(tree),
         length::problems(tree),
+        links::problems(tree),
         table_of_contents::problems(tree),
         width::problems(tree),
         words::problems(tree),

@@ -1,13 +1,15 @@
 //! The text files of the repository, by path.
 
 use anyhow::{Context, Result};
-use std::collections::BTreeMap;
+use std::collections::{BTreeMap, BTreeSet};
 use std::fs;
 use std::path::Path;
 
 /// Paths with forward slashes relative to the root, and the files' text.
 pub(super) struct Tree {
     files: BTreeMap<String, String>,
+    /// Paths of all files and folders, whatever is in them.
+    paths: BTreeSet<String>,
 }
 
 /// Endings of the files that the rules look at.
@@ -18,7 +20,7 @@ const SKIPPED: [&str; 4] = ["target", "build", "runs", ".git"];
 impl Tree {
     /// Reads every text file below the root; results of builds and runs are left out.
     pub(super) fn read(root: &Path) -> Result<Self> {
-        let mut tree = Self { files: BTreeMap::new() };
+        let mut tree = Self { files: BTreeMap::new(), paths: BTreeSet::new() };
         tree.read_folder(root, "")?;
         Ok(tree)
     }
@@ -30,8 +32,12 @@ impl Tree {
             let name = entry.file_name().to_string_lossy().into_owned();
             let path = if folder.is_empty() { name.clone() } else { format!("{folder}/{name}") };
             let kind = entry.file_type()?;
+            let is_skipped = folder.is_empty() && SKIPPED.contains(&name.as_str());
+            if !is_skipped {
+                self.paths.insert(path.clone());
+            }
             if kind.is_dir() {
-                if !(folder.is_empty() && SKIPPED.contains(&name.as_str())) {
+                if !is_skipped {
                     self.read_folder(root, &path)?;
                 }
             } else if kind.is_file() && is_text(&path) {
@@ -46,11 +52,23 @@ impl Tree {
     /// A tree for tests.
     #[cfg(test)]
     pub(super) fn made_up(files: &[(&str, &str)]) -> Self {
-        Self { files: files.iter().map(|(path, text)| ((*path).to_owned(), (*text).to_owned())).collect() }
+        let paths = files.iter().flat_map(|(path, _)| {
+            let folders = path.match_indices('/').map(|(end, _)| path[..end].to_owned());
+            folders.chain([(*path).to_owned()])
+        });
+        Self {
+            files: files.iter().map(|(path, text)| ((*path).to_owned(), (*text).to_owned())).collect(),
+            paths: paths.collect(),
+        }
     }
 
     pub(super) fn len(&self) -> usize {
         self.files.len()
+    }
+
+    /// Whether a file or folder is there.
+    pub(super) fn has(&self, path: &str) -> bool {
+        self.paths.contains(path)
     }
 
     pub(super) fn text(&self, path: &str) -> Option<&str> {
