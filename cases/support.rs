@@ -15,11 +15,11 @@ pub(crate) fn full_size() -> bool {
 }
 
 /// A curve of a case's plot.
-pub(crate) use amberfield_study::Series as Curve;
+pub(crate) use amberfield_draw::Series as Curve;
 
 /// Draws curves into the case's folder at full size, and beside what was built at smoke size.
 pub(crate) fn plot(case: &str, name: &str, [x, y]: [&str; 2], logarithmic: bool, curves: Vec<Curve>) {
-    use amberfield_study::{Plot, Scale, write_plot};
+    use amberfield_draw::{Plot, Scale, write_plot};
     let root = Path::new(env!("CARGO_MANIFEST_DIR")).join("../..");
     let folder = if full_size() { root.join("cases") } else { root.join("target/case-plots") }.join(case);
     fs::create_dir_all(&folder).expect("a folder");

@@ -3,7 +3,7 @@
 use crate::machine::Machine;
 use crate::sections::{charging, coupling, dem, field, gas, kernel, open, rates, scaling};
 use crate::store::Store;
-use amberfield_study::{Plot, Scale, Series, write_plot};
+use amberfield_draw::{Plot, Scale, Series, write_plot};
 use anyhow::{Context as _, Result};
 use std::fmt;
 

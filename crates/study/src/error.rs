@@ -2,7 +2,7 @@
 
 use std::path::PathBuf;
 
-/// Reason why a picture cannot be made.
+/// Reason why a study cannot be run or its page cannot be written.
 #[derive(Debug, thiserror::Error)]
 #[non_exhaustive]
 pub enum StudyError {
@@ -31,11 +31,7 @@ pub enum StudyError {
         reason: String,
     },
     /// A plot cannot be drawn.
-    #[error("cannot draw {}: {reason}", path.display())]
-    Plot {
-        /// The file.
-        path: PathBuf,
-        /// Reason in words.
-        reason: String,
-    },
+    #[cfg(feature = "plots")]
+    #[error(transparent)]
+    Draw(#[from] amberfield_draw::DrawError),
 }

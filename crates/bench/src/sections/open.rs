@@ -7,7 +7,7 @@ use crate::sections::field::{self, OURS};
 use crate::store::Store;
 use crate::timing::on_threads;
 use amberfield_core::{Boundary, FieldSettings, Method};
-use amberfield_study::Series;
+use amberfield_draw::Series;
 use amberfield_study::peers::{Script, fastest};
 use anyhow::Result;
 use serde::{Deserialize, Serialize};

@@ -9,7 +9,7 @@ mod trajectories;
 use crate::Context;
 use crate::page::{Table, figure, verdict};
 use crate::store::Store;
-use amberfield_study::Series;
+use amberfield_draw::Series;
 use anyhow::Result;
 use serde::{Deserialize, Serialize};
 use std::path::Path;

@@ -87,7 +87,7 @@ impl Bins {
 /// Plots some of the frames; a plot that fails is a warning, the results stand.
 #[cfg(feature = "plots")]
 pub(crate) fn plot(folder: &RunFolder) {
-    use amberfield_study::{Plot, Scale, Series, write_plot};
+    use amberfield_draw::{Plot, Scale, Series, write_plot};
     /// Frames in a plot.
     const CURVES: usize = 5;
     let text = std::fs::read_to_string(folder.file(FILE)).unwrap_or_default();

@@ -7,7 +7,7 @@ use std::path::Path;
 /// Draws the grains; a picture that fails is a warning, the results stand.
 #[cfg(feature = "plots")]
 pub(crate) fn draw(path: &Path, scene: &Scene, simulation: &Simulation) {
-    use amberfield_study::{PictureScene, write_picture};
+    use amberfield_draw::{PictureScene, write_picture};
     let Some(domain) = &scene.domain else { return };
     let picture = PictureScene {
         title: &scene.title,

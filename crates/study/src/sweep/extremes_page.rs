@@ -4,7 +4,7 @@ use super::description::{Extreme, Study};
 use super::extremes::{EnergyRow, ExtremeRow};
 use super::page::write_both;
 use crate::StudyError;
-use crate::plot::{Plot, Scale, Series};
+use amberfield_draw::{Plot, Scale, Series};
 use std::fmt::Write as _;
 use std::path::Path;
 

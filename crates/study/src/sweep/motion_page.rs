@@ -3,7 +3,7 @@
 use super::motion::MotionRow;
 use super::page::{by_method, write_both};
 use crate::StudyError;
-use crate::plot::{Plot, Scale};
+use amberfield_draw::{Plot, Scale};
 use std::fmt::Write as _;
 use std::path::Path;
 

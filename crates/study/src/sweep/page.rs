@@ -9,7 +9,7 @@ use super::motion::MotionRow;
 use super::motion_page;
 use super::row::Row;
 use crate::StudyError;
-use crate::plot::{Plot, Scale, Series, write_plot};
+use amberfield_draw::{Plot, Scale, Series, write_plot};
 use std::fmt::Write as _;
 use std::path::{Path, PathBuf};
 
@@ -333,5 +333,5 @@ fn draw_model(folder: &Path, name: &str, rows: &[Row]) -> Result<(), StudyError>
 /// Writes a plot as SVG and as PNG.
 pub(super) fn write_both(folder: &Path, name: &str, plot: &Plot<'_>) -> Result<(), StudyError> {
     write_plot(&folder.join(format!("{name}.svg")), plot)?;
-    write_plot(&folder.join(format!("{name}.png")), plot)
+    Ok(write_plot(&folder.join(format!("{name}.png")), plot)?)
 }

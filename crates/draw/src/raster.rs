@@ -1,6 +1,6 @@
 //! Pixels, drawn several times finer than they are written so that every edge is smooth.
 
-use crate::StudyError;
+use crate::DrawError;
 use crate::colour::{Colour, PAPER};
 use crate::font;
 use std::fs::File;
@@ -80,7 +80,7 @@ impl Raster {
     }
 
     /// Writes a PNG file.
-    pub(crate) fn write_png(&self, path: &Path) -> Result<(), StudyError> {
+    pub(crate) fn write_png(&self, path: &Path) -> Result<(), DrawError> {
         write_png(path, (self.width as u32, self.height as u32), &self.bytes())
     }
 
@@ -163,8 +163,8 @@ pub(crate) fn blend(pixel: &mut Colour, colour: Colour, weight: f64) {
 }
 
 /// Writes rows of red, green and blue as a PNG file.
-pub(crate) fn write_png(path: &Path, (width, height): (u32, u32), bytes: &[u8]) -> Result<(), StudyError> {
-    let failed = |source| StudyError::Write { path: path.to_owned(), source };
+pub(crate) fn write_png(path: &Path, (width, height): (u32, u32), bytes: &[u8]) -> Result<(), DrawError> {
+    let failed = |source| DrawError::Write { path: path.to_owned(), source };
     let file = BufWriter::new(File::create(path).map_err(failed)?);
     let mut encoder = png::Encoder::new(file, width, height);
     encoder.set_color(png::ColorType::Rgb);

@@ -6,7 +6,7 @@ mod grains;
 mod legend;
 mod surroundings;
 
-use crate::StudyError;
+use crate::DrawError;
 use crate::raster::Raster;
 use amberfield_core::{Domain, Particles, Wall};
 use camera::Camera;
@@ -36,7 +36,7 @@ pub struct PictureScene<'a> {
 ///
 /// # Errors
 /// When the file cannot be written.
-pub fn write_picture(path: &Path, scene: &PictureScene<'_>) -> Result<(), StudyError> {
+pub fn write_picture(path: &Path, scene: &PictureScene<'_>) -> Result<(), DrawError> {
     render(scene).write_png(path)
 }
 

@@ -1,6 +1,6 @@
 //! Curves, by plotters.
 
-use crate::error::StudyError;
+use crate::error::DrawError;
 use crate::raster::write_png;
 use plotters::coord::Shift;
 use plotters::coord::ranged1d::ValueFormatter;
@@ -61,8 +61,8 @@ const COLOURS: [RGBColor; 6] = [
 ///
 /// # Errors
 /// A file that cannot be written; a plot without points.
-pub fn write_plot(path: &Path, plot: &Plot<'_>) -> Result<(), StudyError> {
-    let failed = |reason| StudyError::Plot { path: path.to_owned(), reason };
+pub fn write_plot(path: &Path, plot: &Plot<'_>) -> Result<(), DrawError> {
+    let failed = |reason| DrawError::Plot { path: path.to_owned(), reason };
     if path.extension().is_some_and(|extension| extension == "png") {
         let mut pixels = vec![0; SIZE.0 as usize * SIZE.1 as usize * 3];
         draw(plot, BitMapBackend::with_buffer(&mut pixels, SIZE).into_drawing_area()).map_err(failed)?;
@@ -70,7 +70,7 @@ pub fn write_plot(path: &Path, plot: &Plot<'_>) -> Result<(), StudyError> {
     }
     let mut text = String::new();
     draw(plot, SVGBackend::with_string(&mut text, SIZE).into_drawing_area()).map_err(failed)?;
-    std::fs::write(path, text).map_err(|source| StudyError::Write { path: path.to_owned(), source })
+    std::fs::write(path, text).map_err(|source| DrawError::Write { path: path.to_owned(), source })
 }
 
 fn draw<B: DrawingBackend>(plot: &Plot<'_>, area: DrawingArea<B, Shift>) -> Result<(), String> {
@@ -92,15 +92,15 @@ fn draw<B: DrawingBackend>(plot: &Plot<'_>, area: DrawingArea<B, Shift>) -> Resu
     area.present().map_err(failed::<B>)
 }
 
-type DrawError<B> = DrawingAreaErrorKind<<B as DrawingBackend>::ErrorType>;
+type BackendError<B> = DrawingAreaErrorKind<<B as DrawingBackend>::ErrorType>;
 
-fn failed<B: DrawingBackend>(error: DrawError<B>) -> String {
+fn failed<B: DrawingBackend>(error: BackendError<B>) -> String {
     error.to_string()
 }
 
 /// Draws the axes, the curves and their names.
 fn curves<'s, B, X, Y>(
-    chart: Result<ChartContext<'s, B, Cartesian2d<X, Y>>, DrawError<B>>,
+    chart: Result<ChartContext<'s, B, Cartesian2d<X, Y>>, BackendError<B>>,
     plot: &Plot<'_>,
 ) -> Result<(), String>
 where
