@@ -31,7 +31,6 @@ pub enum StudyError {
         reason: String,
     },
     /// A plot cannot be drawn.
-    #[cfg(feature = "plots")]
     #[error(transparent)]
     Draw(#[from] amberfield_draw::DrawError),
 }

@@ -1,9 +1,10 @@
-//! Error against run time: [`sweep`] runs studies. The feature `plots` (on by default) holds all of it.
+//! Measuring: error against run time, speed and memory, ours and the peers'.
+//!
+//! [`sweep`] runs the studies of `amberfield study`; the program in `speed` is `cargo xtask bench`.
 #![forbid(unsafe_code)]
 
 mod error;
 pub mod peers;
-#[cfg(feature = "plots")]
 pub mod sweep;
 
 pub use error::StudyError;

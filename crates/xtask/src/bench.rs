@@ -1,4 +1,4 @@
-//! Speed and memory, by `crates/bench`.
+//! Speed and memory, by the program `bench` of `crates/study`.
 
 use crate::shell::{cargo, run as execute};
 use anyhow::Result;
@@ -6,5 +6,5 @@ use std::path::Path;
 
 /// Builds and runs the measuring program with the given arguments.
 pub(crate) fn run(root: &Path, arguments: &[&str]) -> Result<()> {
-    execute(cargo(root, &["run", "--release", "-p", "amberfield-bench", "--"]).args(arguments))
+    execute(cargo(root, &["run", "--release", "-p", "amberfield-study", "--bin", "bench", "--"]).args(arguments))
 }
