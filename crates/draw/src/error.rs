@@ -2,7 +2,7 @@
 
 use std::path::PathBuf;
 
-/// Why a drawing cannot be made.
+/// Reason why a drawing cannot be made.
 #[derive(Debug, thiserror::Error)]
 #[non_exhaustive]
 pub enum DrawError {
@@ -11,7 +11,7 @@ pub enum DrawError {
     Write {
         /// The file.
         path: PathBuf,
-        /// What the system says.
+        /// Error of the system.
         source: std::io::Error,
     },
     /// A plot cannot be drawn.
@@ -19,7 +19,7 @@ pub enum DrawError {
     Plot {
         /// The file.
         path: PathBuf,
-        /// Why.
+        /// Reason in words.
         reason: String,
     },
 }

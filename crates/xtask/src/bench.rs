@@ -6,5 +6,7 @@ use std::path::Path;
 
 /// Builds and runs the measuring program with the given arguments.
 pub(crate) fn run(root: &Path, arguments: &[&str]) -> Result<()> {
-    execute(cargo(root, &["run", "--release", "-p", "amberfield-study", "--bin", "bench", "--"]).args(arguments))
+    execute(
+        cargo(root, &["run", "--release", "-p", "amberfield-study", "--bin", "bench", "--"]).args(arguments),
+    )
 }

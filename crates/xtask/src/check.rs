@@ -32,7 +32,17 @@ pub(crate) fn run(root: &Path, with_tests: bool) -> Result<()> {
     step("docs", &|| documentation(root));
     step("deny", &|| deny::run(root));
     step("bench, quick", &|| {
-        let bench = ["run", "-p", "amberfield-study", "--bin", "bench", "--", "--quick", "--out", "target/quick-report"];
+        let bench = [
+            "run",
+            "-p",
+            "amberfield-study",
+            "--bin",
+            "bench",
+            "--",
+            "--quick",
+            "--out",
+            "target/quick-report",
+        ];
         execute(&mut cargo(root, &bench))
     });
     step("leaving out", &|| leaving_out::run(root));
