@@ -175,11 +175,8 @@ pub unsafe extern "C" fn amberfield_host_field(
         for position in positions.iter_mut() {
             *position = scene.domain.wrap(*position);
         }
-        if let Some(solver) = field.far_solver_mut() {
-            solver.at_time(time);
-        }
         let wanted = Wanted { potential: !potential.is_null(), ..Wanted::default() };
-        field.evaluate(positions, charges, wanted, values).map_err(|error| error.to_string())?;
+        field.evaluate_at(time, positions, charges, wanted, values).map_err(|error| error.to_string())?;
         // SAFETY: the caller's promise.
         let out = unsafe { slice_mut::<[f64; 3]>(e.cast(), count) };
         for (out, e) in out.iter_mut().zip(&values.e) {

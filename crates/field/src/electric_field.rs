@@ -56,7 +56,23 @@ impl ElectricField {
         wanted: Wanted,
         out: &mut FieldValues,
     ) -> Result<(), FieldError> {
-        self.method.evaluate(positions, charges, wanted, out)?;
+        self.evaluate_at(0.0, positions, charges, wanted, out)
+    }
+
+    /// Computes E as [`Self::evaluate`] does, at a time [s]. The time is for a field solver of another process,
+    /// which works beside the motion and has to know of when the charges are.
+    ///
+    /// # Errors
+    /// The errors of [`Self::evaluate`].
+    pub fn evaluate_at(
+        &mut self,
+        time_s: f64,
+        positions: &[Vector3<f64>],
+        charges: &[f64],
+        wanted: Wanted,
+        out: &mut FieldValues,
+    ) -> Result<(), FieldError> {
+        self.method.evaluate_at(time_s, positions, charges, wanted, out)?;
         if let Some(outside) = &mut self.outside {
             for (particle, (e, potential)) in outside.evaluate(positions).iter().enumerate() {
                 out.e[particle] += e;
@@ -97,7 +113,7 @@ impl ElectricField {
         self.method.far_solver()
     }
 
-    /// The same, to tell it where and when its next solve is.
+    /// Field solver of another process, to tell it where its next solve starts.
     pub fn far_solver_mut(&mut self) -> Option<&mut FarSolver> {
         self.method.far_solver_mut()
     }

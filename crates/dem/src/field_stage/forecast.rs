@@ -134,7 +134,7 @@ mod tests {
 
     fn members(index: &[u32], count: usize) -> Members {
         let (position, charge) = (vec![Vector3::zeros(); index.len()], vec![2.0; index.len()]);
-        Members { index: index.to_vec(), position, charge, count }
+        Members { index: index.to_vec(), position, charge, count, time_s: 0.0 }
     }
 
     #[test]

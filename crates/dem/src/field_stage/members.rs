@@ -12,6 +12,17 @@ pub(crate) struct Members {
     pub(super) charge: Vec<f64>,
     /// Grains, members or not.
     pub(super) count: usize,
+    /// Time of the last evaluation that the motion sees [s].
+    pub(super) time_s: f64,
+}
+
+/// Moment of an evaluation.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Moment {
+    /// Time of the run [s].
+    pub(crate) time_s: f64,
+    /// Length of the step [s].
+    pub(crate) step_s: f64,
 }
 
 /// Charges for which a field chooses its parameters.

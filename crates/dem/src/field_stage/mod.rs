@@ -18,7 +18,7 @@ mod source;
 mod state;
 
 pub use interval::Intervals;
-pub(crate) use members::Extras;
+pub(crate) use members::{Extras, Moment};
 pub(crate) use state::FieldState;
 
 use crate::error::DemError;
@@ -191,9 +191,10 @@ impl FieldStage {
         grains: &Grains,
         particles: &Particles,
         extras: &Extras,
-        step: f64,
+        moment: Moment,
     ) -> Result<(), DemError> {
         self.members.collect(&self.member, domain, grains, particles, extras);
+        self.members.time_s = moment.time_s;
         self.source.evaluate(domain, &self.settings, &self.members, &mut self.values)?;
         let far = self.source.field.far_solver();
         self.solver_iterations = far.map_or(0, FarSolver::iterations);
@@ -205,7 +206,7 @@ impl FieldStage {
             // A solver that works beside the steps has its own forecast.
             check.rms = check.rms.hypot(missed / scale);
         }
-        self.watch_plasma(grains, step);
+        self.watch_plasma(grains, moment.step_s);
         let FieldSettings { coupling_interval, tolerance, .. } = self.settings;
         self.control.evaluated(check, coupling_interval, tolerance, self.plasma_steps);
         self.travel = 0.0;
@@ -312,6 +313,8 @@ impl FieldStage {
         extras: &Extras,
     ) -> Result<f64, DemError> {
         self.onlookers.collect(&self.member, domain, grains, particles, extras);
+        // A field solver in step with a gas answers no question beyond the gas's time.
+        self.onlookers.time_s = self.members.time_s;
         let looked = self.source.evaluate_aside(domain, &self.settings, &self.onlookers, &mut self.values)?;
         if !looked {
             return Ok(self.forecast_energy());
@@ -352,6 +355,7 @@ mod tests {
 
     const RADIUS: f64 = 1e-3;
     const STEP: f64 = 1e-5;
+    const MOMENT: Moment = Moment { time_s: 0.0, step_s: STEP };
 
     /// Four charges at rest.
     fn stage() -> (FieldStage, Grains, Particles, Domain) {
@@ -374,7 +378,7 @@ mod tests {
         let setup = FieldStageSetup::new(settings, vec![true; 4]);
         let mut stage = FieldStage::new(&domain, setup, &particles, None).expect("a good scene");
         let grains = Grains::new(&particles, vec![0; 4], false);
-        stage.evaluate(&domain, &grains, &particles, &Extras::default(), STEP).expect("a good scene");
+        stage.evaluate(&domain, &grains, &particles, &Extras::default(), MOMENT).expect("a good scene");
         (stage, grains, particles, domain)
     }
 
@@ -387,7 +391,7 @@ mod tests {
     fn grains_that_move_are_due_after_half_a_radius_and_all_under_the_plasma_limit() {
         let (mut stage, grains, particles, domain) = stage();
         let evaluate = |stage: &mut FieldStage| {
-            stage.evaluate(&domain, &grains, &particles, &Extras::default(), STEP).expect("a good scene");
+            stage.evaluate(&domain, &grains, &particles, &Extras::default(), MOMENT).expect("a good scene");
         };
         // The first interval is one step; grains at rest then double theirs up to the plasma limit.
         assert_eq!(interval(&mut stage, 0.0), 1);

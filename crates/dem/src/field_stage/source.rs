@@ -69,15 +69,15 @@ impl Source {
         members: &Members,
         values: &mut FieldValues,
     ) -> Result<(), DemError> {
-        let Members { position, charge, .. } = members;
-        let lost = match self.field.evaluate(position, charge, WANTED, values) {
+        let Members { position, charge, time_s, .. } = members;
+        let lost = match self.field.evaluate_at(*time_s, position, charge, WANTED, values) {
             Err(error) if error.is_of_solver() => error,
             answer => return Ok(answer?),
         };
         let Some(choice) = self.fallback.take() else { return Err(lost.into()) };
         tracing::warn!("{lost}; from here on the internal grid takes the field solver's place");
         self.field = ElectricField::with_choice(domain, settings, &choice)?;
-        Ok(self.field.evaluate(position, charge, WANTED, values)?)
+        Ok(self.field.evaluate_at(*time_s, position, charge, WANTED, values)?)
     }
 
     /// Measures the error on a sample of the grains now and then. Where it has left the tolerance, the
@@ -218,6 +218,7 @@ mod tests {
                 .collect(),
             charge: (0..300).map(|i| if i % 2 == 0 { 1e-12 } else { -1e-12 }).collect(),
             count: 300,
+            time_s: 0.0,
         };
         let charges = Charges { position: &members.position, charge: &members.charge };
         let of =

@@ -6,6 +6,7 @@ use super::state::Progress;
 use super::timing::Stage;
 use crate::charging::{Charging, Facet, Ledger, Round};
 use crate::error::DemError;
+use crate::field_stage::Moment;
 
 impl Simulation {
     /// Follows the areas of contacts, and moves the charge that is due: between grains every few steps, with
@@ -66,10 +67,8 @@ impl Simulation {
             };
             charging.ask_field(&round, speed * step_s, skin_m, extras);
         }
-        if let Some(solver) = field.source.field.far_solver_mut() {
-            solver.at_time(time_s);
-        }
-        field.evaluate(&self.domain, &self.grains, &self.particles, extras, step_s)?;
+        let moment = Moment { time_s, step_s };
+        field.evaluate(&self.domain, &self.grains, &self.particles, extras, moment)?;
         self.limits.set_plasma(field.plasma_limit);
         if let Some(charging) = &mut self.charging {
             charging.take_field(field.beside(), &mut self.contacts, &self.particles.charge);

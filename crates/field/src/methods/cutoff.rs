@@ -62,8 +62,9 @@ impl Cutoff {
 }
 
 impl FieldMethod for Cutoff {
-    fn evaluate(
+    fn evaluate_at(
         &mut self,
+        _time_s: f64,
         positions: &[Vector3<f64>],
         charges: &[f64],
         wanted: Wanted,

@@ -9,13 +9,30 @@ use std::fmt;
 /// A way to compute the field of charges and their images. Potentials and normal fields of the faces and an
 /// external field are not its business, except where a method has them in its own boundary conditions.
 pub trait FieldMethod: fmt::Debug + Send + Sync {
-    /// E [V/m] (and what else is wanted) at every particle, positions in m, charges in C.
+    /// Computes E [V/m] (and what else is wanted) at every particle of charges that stand still, positions in m,
+    /// charges in C.
+    ///
+    /// # Errors
+    /// The errors of [`Self::evaluate_at`].
+    fn evaluate(
+        &mut self,
+        positions: &[Vector3<f64>],
+        charges: &[f64],
+        wanted: Wanted,
+        out: &mut FieldValues,
+    ) -> Result<(), FieldError> {
+        self.evaluate_at(0.0, positions, charges, wanted, out)
+    }
+
+    /// Computes E [V/m] (and what else is wanted) at every particle at a time [s], positions in m, charges in C.
+    /// The time is for a field solver that works beside the motion, and for what it forecasts.
     ///
     /// # Errors
     /// Values that are not finite, grains where the method has no field, two charges in one place, a net charge
     /// that no face takes.
-    fn evaluate(
+    fn evaluate_at(
         &mut self,
+        time_s: f64,
         positions: &[Vector3<f64>],
         charges: &[f64],
         wanted: Wanted,
@@ -27,7 +44,7 @@ pub trait FieldMethod: fmt::Debug + Send + Sync {
         None
     }
 
-    /// The same, to tell it where and when its next solve is.
+    /// Field solver of another process, to tell it where its next solve starts.
     fn far_solver_mut(&mut self) -> Option<&mut FarSolver> {
         None
     }

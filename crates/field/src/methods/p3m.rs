@@ -173,8 +173,9 @@ impl P3m {
 }
 
 impl FieldMethod for P3m {
-    fn evaluate(
+    fn evaluate_at(
         &mut self,
+        time_s: f64,
         positions: &[Vector3<f64>],
         charges: &[f64],
         wanted: Wanted,
@@ -209,7 +210,7 @@ impl FieldMethod for P3m {
         if let Some(far) = &mut self.far {
             let at_walls = self.near_field[count..].iter().zip(&self.grid_field[count..]);
             let short = at_walls.map(|(near, grid)| (k * (near.0 + grid.0), k * (near.1 + grid.1)));
-            far.solve(&self.positions[..count], charges, short)?;
+            far.solve(time_s, &self.positions[..count], charges, short)?;
             self.stopwatch.lap("far");
             far.gather(&self.positions[..count], &mut self.far_field);
             self.stopwatch.lap("far gather");

@@ -111,9 +111,10 @@ impl FarLevel {
         targets
     }
 
-    /// Solves for the far potential of the grains, with the short-ranged E [V/m] and potential [V] at the boundary's faces.
+    /// Solves for the far potential of the grains at a time [s], with the short-ranged E [V/m] and potential [V] at the boundary's faces.
     pub(crate) fn solve(
         &mut self,
+        time_s: f64,
         positions: &[Vector3<f64>],
         charges: &[f64],
         short: impl Iterator<Item = (Vector3<f64>, f64)>,
@@ -129,7 +130,7 @@ impl FarLevel {
             cloud: SourceCloud { radius_m: self.cloud.radius, shape: self.cloud.shape },
             permittivity_f_m: self.permittivity.absolute(),
             neutralising_background: u64::from(self.neutralising_background),
-            time_s: 0.0,
+            time_s,
             tolerance: 0.0,
         };
         let request = FarRequest {

@@ -18,8 +18,6 @@ pub struct FarSolver {
     pub(crate) values: FarValues,
     /// Where the next solve is to start from; empty: where the solver is.
     guess: Vec<f64>,
-    /// Time of the next solve [s].
-    time_s: f64,
     /// `None`: every evaluation waits for its own answer.
     overlap: Option<Box<Overlap>>,
 }
@@ -127,17 +125,17 @@ impl OpenQuestion {
 impl FarSolver {
     pub(crate) fn new(solver: Box<dyn FarField>, overlap: bool) -> Self {
         let overlap = overlap.then(Box::default);
-        Self { solver, values: FarValues::default(), guess: Vec::new(), time_s: 0.0, overlap }
+        Self { solver, values: FarValues::default(), guess: Vec::new(), overlap }
     }
 
     pub(crate) fn mesh(&self) -> &FarMesh {
         self.solver.mesh()
     }
 
-    /// Solves, from where it is to start; the request's own guess and time do not count.
+    /// Solves, from where it is to start; the request's own guess does not count.
     pub(crate) fn solve(&mut self, request: &FarRequest<'_>) -> Result<(), FieldError> {
-        let question = FarQuestion { time_s: self.time_s, ..request.question };
-        let request = FarRequest { question, guess: &self.guess, ..*request };
+        let time_s = request.question.time_s;
+        let request = FarRequest { guess: &self.guess, ..*request };
         match &mut self.overlap {
             Some(overlap) if overlap.begun => {
                 if let Some(asked) = overlap.pending.take() {
@@ -154,12 +152,12 @@ impl FarSolver {
                 }
                 self.solver.ask(&request)?;
                 overlap.pending = Some(OpenQuestion::of(&request));
-                overlap.foresee(&self.values, self.time_s);
+                overlap.foresee(&self.values, time_s);
             }
             Some(overlap) => {
                 self.solver.solve(&request, &mut self.values)?;
                 overlap.begun = true;
-                overlap.latest_s = self.time_s;
+                overlap.latest_s = time_s;
                 overlap.forecast = Answer::of(&self.values);
             }
             None => self.solver.solve(&request, &mut self.values)?,
@@ -225,11 +223,6 @@ impl FarSolver {
             }
         }
         Ok(())
-    }
-
-    /// Says at what time the next solve is [s].
-    pub fn at_time(&mut self, time_s: f64) {
-        self.time_s = time_s;
     }
 }
 

@@ -129,8 +129,9 @@ impl Direct {
 }
 
 impl FieldMethod for Direct {
-    fn evaluate(
+    fn evaluate_at(
         &mut self,
+        _time_s: f64,
         positions: &[Vector3<f64>],
         charges: &[f64],
         wanted: Wanted,

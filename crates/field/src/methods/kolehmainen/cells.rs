@@ -9,9 +9,10 @@ use std::fmt::Debug;
 
 /// Cells that take each charge whole and answer with a potential and a field.
 pub(super) trait Cells: Debug + Send + Sync {
-    /// Finds each charge's cell and solves ∇²φ = −ρ/ε.
+    /// Finds each charge's cell and solves ∇²φ = −ρ/ε for the charges at a time [s].
     fn solve(
         &mut self,
+        time_s: f64,
         positions: &[Vector3<f64>],
         charges: &[f64],
         permittivity: Permittivity,
@@ -47,6 +48,7 @@ pub(super) trait Cells: Debug + Send + Sync {
 impl Cells for Mesh {
     fn solve(
         &mut self,
+        _time_s: f64,
         positions: &[Vector3<f64>],
         charges: &[f64],
         permittivity: Permittivity,
@@ -99,6 +101,7 @@ impl SolverCells {
 impl Cells for SolverCells {
     fn solve(
         &mut self,
+        time_s: f64,
         positions: &[Vector3<f64>],
         charges: &[f64],
         permittivity: Permittivity,
@@ -120,7 +123,7 @@ impl Cells for SolverCells {
             cloud: SourceCloud::nearest_cell(),
             permittivity_f_m: permittivity.absolute(),
             neutralising_background: u64::from(self.neutralising_background),
-            time_s: 0.0,
+            time_s,
             tolerance: 0.0,
         };
         let request = FarRequest {

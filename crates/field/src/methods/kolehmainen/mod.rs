@@ -183,8 +183,9 @@ impl Kolehmainen {
 }
 
 impl FieldMethod for Kolehmainen {
-    fn evaluate(
+    fn evaluate_at(
         &mut self,
+        time_s: f64,
         positions: &[Vector3<f64>],
         charges: &[f64],
         wanted: Wanted,
@@ -196,7 +197,7 @@ impl FieldMethod for Kolehmainen {
         self.stopwatch.restart();
         self.wrapped.clear();
         self.wrapped.extend(positions.iter().map(|position| self.domain.wrap(*position)));
-        self.mesh.solve(&self.wrapped, charges, permittivity, &mut self.cells)?;
+        self.mesh.solve(time_s, &self.wrapped, charges, permittivity, &mut self.cells)?;
         self.stopwatch.lap("mesh");
         self.sum_pairs(charges);
         self.stopwatch.lap("pairs");
