@@ -37,8 +37,8 @@ int main(int argc, char **argv)
 
     uint64_t count = 0;
     while (count < MOST
-        && scanf("%lf %lf %lf %lf", &positions[3 * count], &positions[3 * count + 1], &positions[3 * count + 2],
-                 &charges[count]) == 4) {
+        && scanf("%lf %lf %lf %lf", &positions[3 * count], &positions[3 * count + 1],
+                 &positions[3 * count + 2], &charges[count]) == 4) {
         ++count;
     }
 
@@ -48,7 +48,8 @@ int main(int argc, char **argv)
     }
     /* As a code that moves its particles would: again and again, with one handle. */
     for (int step = 0; step < 3; ++step) {
-        if (amberfield_host_field(host, 1e-6 * step, count, positions, charges, e, potential) != AmberfieldStatus_Ok) {
+        if (amberfield_host_field(host, 1e-6 * step, count, positions, charges, e, potential)
+            != AmberfieldStatus_Ok) {
             return fail(host);
         }
     }

@@ -185,7 +185,7 @@ typedef struct AmberfieldRequest {
 
 // The far field at this rank's cell centres, and how it was found.
 typedef struct AmberfieldFar {
-  // This rank's cells.
+  // Number of this rank's cells.
   uint64_t cells;
   // Potential [V].
   const double *potential;
@@ -212,7 +212,7 @@ typedef struct AmberfieldFlowAnswer {
 
 // The flow at this rank's cell centres. Vectors are three doubles each.
 typedef struct AmberfieldFlow {
-  // This rank's cells.
+  // Number of this rank's cells.
   uint64_t cells;
   // Velocity of the gas [m/s].
   const double *velocity;

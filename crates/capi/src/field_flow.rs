@@ -12,7 +12,7 @@ use amberfield_wire::{Section, WireError};
 #[repr(C)]
 #[derive(Debug)]
 pub struct AmberfieldFlow {
-    /// This rank's cells.
+    /// Number of this rank's cells.
     pub cells: u64,
     /// Velocity of the gas [m/s].
     pub velocity: *const f64,

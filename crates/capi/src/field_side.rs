@@ -49,7 +49,7 @@ pub struct AmberfieldMesh {
 #[repr(C)]
 #[derive(Debug)]
 pub struct AmberfieldFar {
-    /// This rank's cells.
+    /// Number of this rank's cells.
     pub cells: u64,
     /// Potential [V].
     pub potential: *const f64,

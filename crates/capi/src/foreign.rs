@@ -1,4 +1,4 @@
-//! Across the border to C: arrays in, texts out, no panic.
+//! Border to C: arrays come in, texts go out, no panic crosses it.
 
 use crate::status::AmberfieldStatus;
 use std::ffi::CString;
