@@ -60,10 +60,10 @@ fn components_add_up() {
     ]);
     assert_eq!(answer.code, Some(0), "{}", answer.stderr);
     let table = Table::parse(&bench.read("e.csv"));
-    assert_eq!(table.columns.len(), 17);
+    assert_eq!(table.columns.len(), 23);
     let total = table.numbers("ex_V_per_m");
     for (row, total) in total.iter().enumerate() {
-        let sum: f64 = ["near", "middle", "far", "correction"]
+        let sum: f64 = ["near", "middle", "far", "correction", "faces", "external"]
             .iter()
             .map(|part| table.numbers(&format!("{part}_ex_V_per_m"))[row])
             .sum();

@@ -61,7 +61,12 @@ fn errors(faces: [[Boundary; 2]; 3], one_sign: bool) -> (f64, f64) {
         .expect("a good scene");
     for (particle, e) in ours.e.iter().enumerate() {
         let parts = &ours.components;
-        let sum = parts.near[particle] + parts.middle[particle] + parts.far[particle];
+        let sum = parts.near[particle]
+            + parts.middle[particle]
+            + parts.far[particle]
+            + parts.correction[particle]
+            + parts.faces[particle]
+            + parts.external[particle];
         assert!((sum - e).norm() < 1e-12 * e.norm());
     }
     let over = |difference: f64, of: f64| (difference / of).sqrt();

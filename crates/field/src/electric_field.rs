@@ -5,11 +5,14 @@ mod building;
 use crate::choosing::choice::{Choice, Measured};
 use crate::choosing::tuner::Tuner;
 use crate::error::FieldError;
-use crate::geometry::inputs::check_scene;
+use crate::geometry::inputs::{check_result, check_scene};
+use crate::levels::external::ExternalField;
+use crate::levels::faces::FacesLevel;
 use crate::levels::far::FarSolver;
-use crate::levels::outside::Outside;
 use crate::methods::method::FieldMethod;
+use crate::numerics::stopwatch::Stopwatch;
 use crate::plan;
+use crate::sum::{Part, Sum};
 use crate::values::{FieldValues, Wanted};
 use amberfield_core::{Domain, FieldSettings, Plan};
 use nalgebra::Vector3;
@@ -32,7 +35,9 @@ pub struct ElectricField {
     settings: FieldSettings,
     choice: Choice,
     method: Box<dyn FieldMethod>,
-    outside: Option<Outside>,
+    faces: FacesLevel,
+    external: ExternalField,
+    stopwatch: Stopwatch,
     /// Cells of the field solver's mesh; `None` without one.
     mesh_cells: Option<usize>,
     error_estimated: Option<f64>,
@@ -42,8 +47,10 @@ pub struct ElectricField {
 impl ElectricField {
     /// E (and what else is wanted) at every particle, positions in m, charges in C:
     ///
-    /// E = near + middle + far + correction (the charges with their images) + boundary (potentials and normal
-    /// fields of the faces) + external.
+    /// E = near + middle + far + correction + faces + external
+    ///
+    /// Near, middle, far and correction come from the charges and their images, faces from potentials and normal
+    /// fields that are given on faces.
     ///
     /// Allocates nothing once `out` has its size and the number of particles stays.
     ///
@@ -72,19 +79,13 @@ impl ElectricField {
         wanted: Wanted,
         out: &mut FieldValues,
     ) -> Result<(), FieldError> {
-        self.method.evaluate_at(time_s, positions, charges, wanted, out)?;
-        if let Some(outside) = &mut self.outside {
-            for (particle, (e, potential)) in outside.evaluate(positions).iter().enumerate() {
-                out.e[particle] += e;
-                if wanted.potential {
-                    out.potential[particle] += potential;
-                }
-                if wanted.components {
-                    out.components.far[particle] += e;
-                }
-            }
-        }
-        Ok(())
+        let levels = self.method.levels(time_s, positions, charges, wanted)?;
+        self.stopwatch.restart();
+        let faces = Part::new(self.faces.evaluate(positions));
+        self.stopwatch.lap("faces");
+        Sum { levels, faces, external: self.external, positions }.write(wanted, out);
+        self.stopwatch.lap("sum");
+        check_result(&out.e)
     }
 
     /// Measures the error of E on a sample by a second, more exact splitting; `None` for methods that make no
@@ -142,7 +143,7 @@ impl ElectricField {
         Statistics {
             pairs_per_particle: self.method.pairs_per_particle(),
             grid_cells: self.method.grid_cells(),
-            seconds: self.method.seconds().to_vec(),
+            seconds: [self.method.seconds(), self.stopwatch.laps()].concat(),
         }
     }
 

@@ -1,6 +1,10 @@
 //! The electric field at every particle of a scene.
 //!
-//! E = near + far + boundary + external (+ correction), see [`ElectricField::evaluate`].
+//! E = near + middle + far + correction + faces + external
+//!
+//! [`ElectricField::evaluate`] computes the parts; `sum.rs` adds them, and nothing else does. Folders are what is added
+//! up (`levels`), how methods combine it (`methods`), how parameters are chosen (`choosing`), where charges and
+//! images are (`geometry`), and tools (`numerics`).
 
 mod choosing;
 mod electric_field;
@@ -10,6 +14,7 @@ mod levels;
 mod methods;
 mod numerics;
 mod plan;
+mod sum;
 mod values;
 
 pub use choosing::candidates::Candidate;
@@ -23,4 +28,5 @@ pub use methods::direct::Direct;
 pub use methods::kolehmainen::Kolehmainen;
 pub use methods::method::FieldMethod;
 pub use methods::p3m::P3mParameters;
-pub use values::{Components, FieldValues, Wanted};
+pub use sum::{Levels, OwnClouds, Part};
+pub use values::{Components, FieldAt, FieldValues, Wanted};

@@ -1,6 +1,75 @@
-//! What an evaluation returns.
+//! What an evaluation returns, and the arithmetic of a field and its potential at one place.
 
 use nalgebra::Vector3;
+use std::ops::{Add, AddAssign, Mul, Sub, SubAssign};
+
+/// Field and potential at one place; zero by default. Levels that sum over charges leave Coulomb's constant out
+/// (4πε = 1): their E is in C/m² and their potential in C/m until it multiplies them.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct FieldAt {
+    /// E [V/m].
+    pub e: Vector3<f64>,
+    /// Potential [V].
+    pub potential: f64,
+}
+
+impl FieldAt {
+    /// A potential [V] without a field.
+    #[must_use]
+    pub fn of_potential(potential: f64) -> Self {
+        Self { potential, ..Self::default() }
+    }
+}
+
+impl Add for FieldAt {
+    type Output = Self;
+
+    #[inline]
+    fn add(self, other: Self) -> Self {
+        Self { e: self.e + other.e, potential: self.potential + other.potential }
+    }
+}
+
+impl Sub for FieldAt {
+    type Output = Self;
+
+    #[inline]
+    fn sub(self, other: Self) -> Self {
+        Self { e: self.e - other.e, potential: self.potential - other.potential }
+    }
+}
+
+impl AddAssign for FieldAt {
+    #[inline]
+    fn add_assign(&mut self, other: Self) {
+        *self = *self + other;
+    }
+}
+
+impl SubAssign for FieldAt {
+    #[inline]
+    fn sub_assign(&mut self, other: Self) {
+        *self = *self - other;
+    }
+}
+
+impl Mul<f64> for FieldAt {
+    type Output = Self;
+
+    #[inline]
+    fn mul(self, factor: f64) -> Self {
+        Self { e: self.e * factor, potential: self.potential * factor }
+    }
+}
+
+impl Mul<FieldAt> for f64 {
+    type Output = FieldAt;
+
+    #[inline]
+    fn mul(self, field: FieldAt) -> FieldAt {
+        field * self
+    }
+}
 
 /// What an evaluation is asked for beyond E; what is not asked for is not computed.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
@@ -11,17 +80,21 @@ pub struct Wanted {
     pub components: bool,
 }
 
-/// Parts of E by level [V/m], one vector per particle; a level that was not built is zero.
+/// Parts of E [V/m], one vector per particle, in the order of the sum; a part that is not there is zero.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Components {
     /// Pairs (and their images) within the cut-off radius.
     pub near: Vec<Vector3<f64>>,
-    /// Middle grid (only with an external field solver).
+    /// Middle grid, only with a field solver's mesh.
     pub middle: Vec<Vector3<f64>>,
-    /// Everything smooth: the internal grid or mesh, boundary potentials, external field.
+    /// Everything smooth: the internal grid, modes of the box, or a mesh with its boundary conditions.
     pub far: Vec<Vector3<f64>>,
-    /// Corrections: what near and far would count twice.
+    /// What near and far would count twice.
     pub correction: Vec<Vector3<f64>>,
+    /// Potentials and normal fields of the faces; zero where a mesh has them in its boundary conditions.
+    pub faces: Vec<Vector3<f64>>,
+    /// The external field.
+    pub external: Vec<Vector3<f64>>,
 }
 
 /// Field at the particles, in the order in which they were given.
@@ -33,34 +106,4 @@ pub struct FieldValues {
     pub potential: Vec<f64>,
     /// Parts of E; empty vectors unless asked for.
     pub components: Components,
-}
-
-impl FieldValues {
-    /// Forgets all values, keeping their memory.
-    pub(crate) fn clear(&mut self) {
-        self.e.clear();
-        self.potential.clear();
-        for part in self.components.parts() {
-            part.clear();
-        }
-    }
-
-    /// Zeros for what is wanted and no level has filled.
-    pub(crate) fn complete(&mut self, particles: usize, wanted: Wanted) {
-        self.e.resize(particles, Vector3::zeros());
-        if wanted.potential {
-            self.potential.resize(particles, 0.0);
-        }
-        if wanted.components {
-            for part in self.components.parts() {
-                part.resize(particles, Vector3::zeros());
-            }
-        }
-    }
-}
-
-impl Components {
-    fn parts(&mut self) -> [&mut Vec<Vector3<f64>>; 4] {
-        [&mut self.near, &mut self.middle, &mut self.far, &mut self.correction]
-    }
 }

@@ -17,7 +17,7 @@ pub use scene::{
     SolverSettings, parse_scene, read_scene,
 };
 pub use write::{
-    Cell, FacetCell, FieldColumns, FieldReport, FieldReportSeconds, History, PvdSeries, read_checkpoint,
-    read_table, write_atomically, write_checkpoint, write_facets_vtu, write_field_csv, write_json,
-    write_particles_csv, write_table, write_text, write_vtu,
+    Cell, FacetCell, FieldColumns, FieldComponents, FieldReport, FieldReportSeconds, History, PvdSeries,
+    read_checkpoint, read_table, write_atomically, write_checkpoint, write_facets_vtu, write_field_csv,
+    write_json, write_particles_csv, write_table, write_text, write_vtu,
 };

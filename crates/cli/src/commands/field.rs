@@ -7,8 +7,8 @@ use crate::run::{Charges, charges_of, connect_solver, domain_of, field_of, param
 use amberfield_core::{Method, Vector3};
 use amberfield_field::{ElectricField, FieldValues, Wanted};
 use amberfield_scene::{
-    ElectricFieldSettings, FieldColumns, FieldReport, FieldReportSeconds, Purpose, Scene, read_scene,
-    write_field_csv, write_json,
+    ElectricFieldSettings, FieldColumns, FieldComponents, FieldReport, FieldReportSeconds, Purpose, Scene,
+    read_scene, write_field_csv, write_json,
 };
 use std::collections::BTreeMap;
 use std::path::{Path, PathBuf};
@@ -104,12 +104,22 @@ fn write_values(
     }
     let e = vectors(&values.e);
     let parts = &values.components;
-    let parts = [&parts.near, &parts.middle, &parts.far, &parts.correction].map(|part| vectors(part));
+    let (near, middle, far) = (vectors(&parts.near), vectors(&parts.middle), vectors(&parts.far));
+    let (correction, faces) = (vectors(&parts.correction), vectors(&parts.faces));
+    let external = vectors(&parts.external);
+    let parts = FieldComponents {
+        near: &near,
+        middle: &middle,
+        far: &far,
+        correction: &correction,
+        faces: &faces,
+        external: &external,
+    };
     let columns = FieldColumns {
         id: &scene.particles.id,
         e: &e,
         potential: &potential,
-        components: components.then(|| [&parts[0][..], &parts[1], &parts[2], &parts[3]]),
+        components: components.then_some(parts),
     };
     Ok(write_field_csv(out, &columns)?)
 }

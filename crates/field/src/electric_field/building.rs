@@ -7,13 +7,15 @@ use crate::choosing::tuner::Tuner;
 use crate::error::FieldError;
 use crate::geometry::images::{Geometry, images_per_charge};
 use crate::geometry::inputs::{check_finite, check_scene};
+use crate::levels::external::ExternalField;
+use crate::levels::faces::FacesLevel;
 use crate::levels::far::{FarField, FarLevel};
-use crate::levels::outside::Outside;
 use crate::methods::cutoff::Cutoff;
 use crate::methods::direct::Direct;
 use crate::methods::kolehmainen::Kolehmainen;
 use crate::methods::method::FieldMethod;
 use crate::methods::p3m::{P3m, P3mParameters};
+use crate::numerics::stopwatch::Stopwatch;
 use crate::values::{FieldValues, Wanted};
 use amberfield_core::{Domain, FieldSettings, Method};
 use nalgebra::Vector3;
@@ -105,7 +107,9 @@ impl ElectricField {
                 let (permittivity, background) = (settings.permittivity, settings.neutralising_background);
                 let (domain, cells) = (solver.mesh().domain().clone(), solver.mesh().cell_count());
                 Ok(Self {
-                    outside: Outside::new(&domain, settings)?,
+                    faces: FacesLevel::new(&domain, settings)?,
+                    external: ExternalField::new(&domain, settings),
+                    stopwatch: Stopwatch::default(),
                     domain,
                     mesh_cells: Some(cells),
                     settings: settings.clone(),
@@ -136,7 +140,9 @@ impl ElectricField {
         let domain = far.domain_of_grid();
         let alone = FieldSettings { neutralising_background: true, ..settings.clone() };
         Ok(Self {
-            outside: Outside::new(far.mesh().domain(), settings)?,
+            faces: FacesLevel::new(far.mesh().domain(), settings)?,
+            external: ExternalField::new(far.mesh().domain(), settings),
+            stopwatch: Stopwatch::default(),
             domain,
             mesh_cells: Some(far.mesh().cell_count()),
             settings: alone,
@@ -175,7 +181,9 @@ impl ElectricField {
             settings: settings.clone(),
             choice: choice.clone(),
             method,
-            outside: Outside::new(domain, settings)?,
+            faces: FacesLevel::new(domain, settings)?,
+            external: ExternalField::new(domain, settings),
+            stopwatch: Stopwatch::default(),
             mesh_cells: None,
             error_estimated: None,
             error_measured: None,

@@ -1,7 +1,7 @@
 //! What is added up: every level gives one part of E at the particles.
 
+pub(crate) mod external;
 pub(crate) mod faces;
 pub mod far;
 pub(crate) mod grid;
 pub(crate) mod near;
-pub(crate) mod outside;

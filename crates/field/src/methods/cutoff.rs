@@ -3,10 +3,11 @@
 use crate::error::FieldError;
 use crate::geometry::image_cells::ImageCells;
 use crate::geometry::images::ImageLattice;
-use crate::geometry::inputs::{check_finite, check_result};
+use crate::geometry::inputs::check_finite;
 use crate::methods::method::FieldMethod;
 use crate::numerics::stopwatch::Stopwatch;
-use crate::values::{FieldValues, Wanted};
+use crate::sum::{Levels, Part};
+use crate::values::{FieldAt, Wanted};
 use amberfield_core::{Domain, Permittivity};
 use nalgebra::Vector3;
 use rayon::prelude::*;
@@ -24,20 +25,10 @@ pub struct Cutoff {
     radius: f64,
     cells: ImageCells<()>,
     wrapped: Vec<Vector3<f64>>,
-    sums: Vec<CoulombSum>,
+    /// Coulomb's sum at every particle.
+    near: Vec<FieldAt>,
     pairs_per_particle: f64,
     stopwatch: Stopwatch,
-}
-
-/// Coulomb's sum over k_e at one particle.
-#[derive(Clone, Copy, Debug, Default)]
-struct CoulombSum {
-    /// Potential [C/m].
-    potential: f64,
-    /// Field [C/m²].
-    e: Vector3<f64>,
-    /// Number of partners.
-    partners: usize,
 }
 
 impl Cutoff {
@@ -54,7 +45,7 @@ impl Cutoff {
             radius: radius_m,
             cells: ImageCells::default(),
             wrapped: Vec::new(),
-            sums: Vec::new(),
+            near: Vec::new(),
             pairs_per_particle: 0.0,
             stopwatch: Stopwatch::default(),
         })
@@ -62,34 +53,24 @@ impl Cutoff {
 }
 
 impl FieldMethod for Cutoff {
-    fn evaluate_at(
-        &mut self,
+    fn levels<'a>(
+        &'a mut self,
         _time_s: f64,
-        positions: &[Vector3<f64>],
-        charges: &[f64],
-        wanted: Wanted,
-        out: &mut FieldValues,
-    ) -> Result<(), FieldError> {
+        positions: &'a [Vector3<f64>],
+        charges: &'a [f64],
+        _: Wanted,
+    ) -> Result<Levels<'a>, FieldError> {
         check_finite(positions, charges)?;
         self.stopwatch.restart();
         self.wrapped.clear();
         self.wrapped.extend(positions.iter().map(|position| self.domain.wrap(*position)));
         self.cells.build(&self.lattice, &self.wrapped, charges, self.radius, |_, _| ());
-        coulomb_sums(&self.cells, &self.wrapped, &mut self.sums);
-        let k = self.permittivity.coulomb();
-        out.clear();
-        out.e.extend(self.sums.iter().map(|sum| sum.e * k));
-        if wanted.potential {
-            out.potential.extend(self.sums.iter().map(|sum| sum.potential * k));
-        }
-        if wanted.components {
-            out.components.near.extend_from_slice(&out.e);
-        }
-        out.complete(positions.len(), wanted);
-        let partners: usize = self.sums.iter().map(|sum| sum.partners).sum();
-        self.pairs_per_particle = partners as f64 / self.sums.len().max(1) as f64;
+        self.near.resize(positions.len(), FieldAt::default());
+        let partners = sum_pairs(&self.cells, &self.wrapped, &mut self.near);
+        self.pairs_per_particle = partners as f64 / positions.len().max(1) as f64;
         self.stopwatch.lap("near");
-        check_result(&out.e)
+        let coulomb = self.permittivity.coulomb();
+        Ok(Levels { coulomb, near: Part::new(&self.near), ..Levels::default() })
     }
 
     fn pairs_per_particle(&self) -> f64 {
@@ -103,7 +84,7 @@ impl FieldMethod for Cutoff {
     fn memory_bytes(&self) -> usize {
         self.cells.memory_bytes()
             + self.wrapped.capacity() * size_of::<Vector3<f64>>()
-            + self.sums.capacity() * size_of::<CoulombSum>()
+            + self.near.capacity() * size_of::<FieldAt>()
     }
 }
 
@@ -118,23 +99,24 @@ pub(crate) fn check_radius(radius_m: f64) -> Result<(), FieldError> {
 }
 
 /// Potential and field over k_e at distance `d` [m] from a charge.
-pub(crate) fn coulomb(charge: f64, d: &Vector3<f64>) -> (f64, Vector3<f64>) {
+pub(crate) fn coulomb(charge: f64, d: &Vector3<f64>) -> FieldAt {
     let inverse = 1.0 / d.norm();
     let potential = charge * inverse;
-    (potential, d * (potential * inverse * inverse))
+    FieldAt { e: d * (potential * inverse * inverse), potential }
 }
 
-/// Σ q/r within the cells' radius at every particle, itself left out.
-fn coulomb_sums(cells: &ImageCells<()>, positions: &[Vector3<f64>], sums: &mut Vec<CoulombSum>) {
-    sums.resize(positions.len(), CoulombSum::default());
-    sums.par_iter_mut().zip(positions).enumerate().for_each(|(index, (sum, at))| {
-        let mut total = CoulombSum::default();
+/// Σ q/r and its field within the cells' radius at every particle, itself left out. Returns how many partners all
+/// particles have together.
+fn sum_pairs(cells: &ImageCells<()>, positions: &[Vector3<f64>], near: &mut [FieldAt]) -> usize {
+    let all = near.par_iter_mut().zip(positions).enumerate();
+    all.map(|(index, (near, at))| {
+        let (mut total, mut partners) = (FieldAt::default(), 0);
         cells.for_each_partner(index, at, |k, d, _| {
-            let (potential, e) = coulomb(cells.charge[k], &d);
-            total.potential += potential;
-            total.e += e;
-            total.partners += 1;
+            total += coulomb(cells.charge[k], &d);
+            partners += 1;
         });
-        *sum = total;
-    });
+        *near = total;
+        partners
+    })
+    .sum()
 }

@@ -1,7 +1,9 @@
 //! What every way to compute the field of charges offers.
 
 use crate::error::FieldError;
+use crate::geometry::inputs::check_result;
 use crate::levels::far::FarSolver;
+use crate::sum::{Levels, Sum};
 use crate::values::{FieldValues, Wanted};
 use nalgebra::Vector3;
 use std::fmt;
@@ -9,11 +11,24 @@ use std::fmt;
 /// A way to compute the field of charges and their images. Potentials and normal fields of the faces and an
 /// external field are not its business, except where a method has them in its own boundary conditions.
 pub trait FieldMethod: fmt::Debug + Send + Sync {
+    /// Computes the levels of the field at every particle at a time [s], positions in m, charges in C. The time
+    /// is for a field solver that works beside the motion, and for what it forecasts.
+    ///
+    /// # Errors
+    /// Values that are not finite, grains where the method has no field, a net charge that no face takes.
+    fn levels<'a>(
+        &'a mut self,
+        time_s: f64,
+        positions: &'a [Vector3<f64>],
+        charges: &'a [f64],
+        wanted: Wanted,
+    ) -> Result<Levels<'a>, FieldError>;
+
     /// Computes E [V/m] (and what else is wanted) at every particle of charges that stand still, positions in m,
     /// charges in C.
     ///
     /// # Errors
-    /// The errors of [`Self::evaluate_at`].
+    /// The errors of [`Self::levels`]; two charges in one place.
     fn evaluate(
         &mut self,
         positions: &[Vector3<f64>],
@@ -21,23 +36,10 @@ pub trait FieldMethod: fmt::Debug + Send + Sync {
         wanted: Wanted,
         out: &mut FieldValues,
     ) -> Result<(), FieldError> {
-        self.evaluate_at(0.0, positions, charges, wanted, out)
+        let levels = self.levels(0.0, positions, charges, wanted)?;
+        Sum::of_charges(levels, positions).write(wanted, out);
+        check_result(&out.e)
     }
-
-    /// Computes E [V/m] (and what else is wanted) at every particle at a time [s], positions in m, charges in C.
-    /// The time is for a field solver that works beside the motion, and for what it forecasts.
-    ///
-    /// # Errors
-    /// Values that are not finite, grains where the method has no field, two charges in one place, a net charge
-    /// that no face takes.
-    fn evaluate_at(
-        &mut self,
-        time_s: f64,
-        positions: &[Vector3<f64>],
-        charges: &[f64],
-        wanted: Wanted,
-        out: &mut FieldValues,
-    ) -> Result<(), FieldError>;
 
     /// The field solver of another process that has a part in it, and its state.
     fn far_solver(&self) -> Option<&FarSolver> {

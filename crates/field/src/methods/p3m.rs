@@ -10,13 +10,14 @@
 //! the middle grid beyond R.
 
 use crate::error::FieldError;
-use crate::geometry::inputs::{check_charges_in_box, check_finite, check_result};
+use crate::geometry::inputs::{check_charges_in_box, check_finite};
 use crate::levels::far::{FarLevel, FarSolver};
 use crate::levels::grid::level::{GridLevel, GridParameters};
 use crate::levels::near::{NearLevel, NearParameters};
 use crate::methods::method::FieldMethod;
 use crate::numerics::stopwatch::Stopwatch;
-use crate::values::{FieldValues, Wanted};
+use crate::sum::{Levels, OwnClouds, Part, Sum};
+use crate::values::{FieldAt, Wanted};
 use amberfield_core::{Domain, FieldSettings, Permittivity};
 use amberfield_laws::kaiser_bessel_cloud::Cloud;
 use nalgebra::Vector3;
@@ -76,10 +77,10 @@ pub(crate) struct P3m {
     /// The grains; with a far level then places at its walls without charge, then images.
     positions: Vec<Vector3<f64>>,
     charges: Vec<f64>,
-    /// E and potential of each level, at the grains and the places at the walls.
-    near_field: Vec<(Vector3<f64>, f64)>,
-    grid_field: Vec<(Vector3<f64>, f64)>,
-    far_field: Vec<(Vector3<f64>, f64)>,
+    /// Field of each level, at the grains and the places at the walls.
+    near_field: Vec<FieldAt>,
+    grid_field: Vec<FieldAt>,
+    far_field: Vec<FieldAt>,
     stopwatch: Stopwatch,
 }
 
@@ -134,10 +135,17 @@ impl P3m {
         self.near.sort(&self.positions, &self.charges, positions.len());
         self.grid.solve(&self.positions, &self.charges);
         let places: Vec<_> = sample.iter().map(|&particle| self.positions[particle]).collect();
-        let mut far = vec![(Vector3::zeros(), 0.0); sample.len()];
+        let mut far = vec![FieldAt::default(); sample.len()];
         self.grid.gather(&places, &mut far);
         let near = self.near.at(sample);
-        near.iter().zip(&far).map(|(near, far)| self.permittivity.coulomb() * (near + far.0)).collect()
+        let levels = Levels {
+            coulomb: self.permittivity.coulomb(),
+            near: Part::new(&near),
+            far_of_charges: Part::new(&far),
+            ..Levels::default()
+        };
+        let sum = Sum::of_charges(levels, &places);
+        (0..sample.len()).map(|number| sum.at(number).e).collect()
     }
 
     /// Takes the grains, and what a far level adds to them; how many places the field is asked for at.
@@ -150,14 +158,13 @@ impl P3m {
             Some(far) => far.extend(&mut self.positions, &mut self.charges),
             None => positions.len(),
         };
-        let nothing = (Vector3::zeros(), 0.0);
         for (field, length) in [
             (&mut self.near_field, targets),
             (&mut self.grid_field, targets),
             (&mut self.far_field, if self.far.is_some() { positions.len() } else { 0 }),
         ] {
             field.clear();
-            field.resize(length, nothing);
+            field.resize(length, FieldAt::default());
         }
         targets
     }
@@ -173,14 +180,13 @@ impl P3m {
 }
 
 impl FieldMethod for P3m {
-    fn evaluate_at(
-        &mut self,
+    fn levels<'a>(
+        &'a mut self,
         time_s: f64,
-        positions: &[Vector3<f64>],
-        charges: &[f64],
+        positions: &'a [Vector3<f64>],
+        charges: &'a [f64],
         wanted: Wanted,
-        out: &mut FieldValues,
-    ) -> Result<(), FieldError> {
+    ) -> Result<Levels<'a>, FieldError> {
         let permittivity = self.permittivity;
         let background = self.neutralising_background;
         match &self.far {
@@ -205,41 +211,31 @@ impl FieldMethod for P3m {
         self.grid.gather(&self.positions[..targets], &mut self.grid_field);
         self.stopwatch.lap("gather");
 
-        let k = self.permittivity.coulomb();
         let count = positions.len();
         if let Some(far) = &mut self.far {
+            let coulomb = self.permittivity.coulomb();
             let at_walls = self.near_field[count..].iter().zip(&self.grid_field[count..]);
-            let short = at_walls.map(|(near, grid)| (k * (near.0 + grid.0), k * (near.1 + grid.1)));
+            let short = at_walls.map(|(near, middle)| coulomb * (*near + *middle));
             far.solve(time_s, &self.positions[..count], charges, short)?;
             self.stopwatch.lap("far");
             far.gather(&self.positions[..count], &mut self.far_field);
             self.stopwatch.lap("far gather");
         }
-        let far = |particle: usize| self.far_field.get(particle).copied().unwrap_or_default();
-        let levels = || self.near_field[..count].iter().zip(&self.grid_field).enumerate();
-        out.clear();
-        out.e.extend(levels().map(|(i, (near, grid))| k * (near.0 + grid.0) + far(i).0));
-        if wanted.potential {
-            let own_cloud = self.parameters.cloud().potential(0.0);
-            let background = self.background_potential(charges);
-            out.potential.extend(levels().zip(charges).map(|((i, (near, grid)), charge)| {
-                k * (near.1 + grid.1 - charge * own_cloud - background) + far(i).1
-            }));
-        }
-        if wanted.components {
-            let parts = &mut out.components;
-            parts.near.extend(self.near_field[..count].iter().map(|near| k * near.0));
-            let grid = self.grid_field[..count].iter().map(|grid| k * grid.0);
-            if self.far.is_some() {
-                parts.middle.extend(grid);
-                parts.far.extend(self.far_field.iter().map(|far| far.0));
-            } else {
-                parts.far.extend(grid);
-            }
-        }
-        out.complete(positions.len(), wanted);
-        self.stopwatch.lap("sum");
-        check_result(&out.e)
+        let grid = Part::new(&self.grid_field);
+        let (middle, far_of_charges) = match self.far {
+            Some(_) => (grid, Part::default()),
+            None => (Part::default(), grid),
+        };
+        Ok(Levels {
+            coulomb: self.permittivity.coulomb(),
+            near: Part::new(&self.near_field),
+            middle,
+            far_of_charges,
+            far_of_cells: Part::new(&self.far_field),
+            own_clouds: OwnClouds { charges, at_centre: self.parameters.cloud().potential(0.0) },
+            background: self.background_potential(charges),
+            ..Levels::default()
+        })
     }
 
     fn far_solver(&self) -> Option<&FarSolver> {
@@ -263,7 +259,7 @@ impl FieldMethod for P3m {
     }
 
     fn memory_bytes(&self) -> usize {
-        let per_place = size_of::<(Vector3<f64>, f64)>();
+        let per_place = size_of::<FieldAt>();
         let fields = [&self.near_field, &self.grid_field, &self.far_field];
         let fields: usize = fields.iter().map(|field| field.capacity() * per_place).sum();
         let far = self.far.as_ref().map_or(0, FarLevel::memory_bytes);

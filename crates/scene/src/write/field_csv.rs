@@ -16,28 +16,58 @@ pub struct FieldColumns<'a> {
     pub e: &'a [Vector3<f64>],
     /// Potential [V] without the grain's own singular term.
     pub potential: &'a [f64],
-    /// Parts of E [V/m]: near, middle, far, correction.
-    pub components: Option<[&'a [Vector3<f64>]; 4]>,
+    /// Parts of E, where they are asked for.
+    pub components: Option<FieldComponents<'a>>,
 }
 
-/// Writes `id,ex_V_per_m,ey_V_per_m,ez_V_per_m,potential_V` and the components if there are any, 17 significant
-/// digits.
+/// Parts of E [V/m]: E = near + middle + far + correction + faces + external.
+#[derive(Clone, Copy, Debug)]
+pub struct FieldComponents<'a> {
+    /// Pairs, and their images, within the cut-off radius.
+    pub near: &'a [Vector3<f64>],
+    /// Middle grid, only with a field solver.
+    pub middle: &'a [Vector3<f64>],
+    /// Everything smooth.
+    pub far: &'a [Vector3<f64>],
+    /// What near and far would count twice.
+    pub correction: &'a [Vector3<f64>],
+    /// Potentials and normal fields of the faces.
+    pub faces: &'a [Vector3<f64>],
+    /// The external field.
+    pub external: &'a [Vector3<f64>],
+}
+
+impl<'a> FieldComponents<'a> {
+    /// Parts with the names that their columns begin with, in the order of the sum.
+    fn named(&self) -> [(&'static str, &'a [Vector3<f64>]); 6] {
+        [
+            ("near", self.near),
+            ("middle", self.middle),
+            ("far", self.far),
+            ("correction", self.correction),
+            ("faces", self.faces),
+            ("external", self.external),
+        ]
+    }
+}
+
+/// Writes `id,ex_V_per_m,ey_V_per_m,ez_V_per_m,potential_V` with 17 significant digits. Components add three columns
+/// each, `near_ex_V_per_m` and so on, in the order of the sum.
 ///
 /// # Errors
 /// What the system says.
 pub fn write_field_csv(path: &Path, columns: &FieldColumns<'_>) -> Result<(), SceneError> {
+    let components = columns.components.map(|components| components.named());
     write_atomically(path, |writer| {
         write!(writer, "id,ex_V_per_m,ey_V_per_m,ez_V_per_m,potential_V")?;
-        if columns.components.is_some() {
-            for part in ["near", "middle", "far", "correction"] {
-                write!(writer, ",{part}_ex_V_per_m,{part}_ey_V_per_m,{part}_ez_V_per_m")?;
-            }
+        for (part, _) in components.iter().flatten() {
+            write!(writer, ",{part}_ex_V_per_m,{part}_ey_V_per_m,{part}_ez_V_per_m")?;
         }
         writeln!(writer)?;
         for (index, id) in columns.id.iter().enumerate() {
             let e = columns.e[index];
             write!(writer, "{id},{:.16e},{:.16e},{:.16e},{:.16e}", e.x, e.y, e.z, columns.potential[index])?;
-            for part in columns.components.iter().flatten() {
+            for (_, part) in components.iter().flatten() {
                 let part = part[index];
                 write!(writer, ",{:.16e},{:.16e},{:.16e}", part.x, part.y, part.z)?;
             }

@@ -10,7 +10,7 @@ mod vtu;
 
 pub use atomic::{read_table, write_atomically, write_json, write_table, write_text};
 pub use checkpoint::{read_checkpoint, write_checkpoint};
-pub use field_csv::{FieldColumns, FieldReport, FieldReportSeconds, write_field_csv};
+pub use field_csv::{FieldColumns, FieldComponents, FieldReport, FieldReportSeconds, write_field_csv};
 pub use history::{Cell, History};
 pub use particles_csv::write_particles_csv;
 pub use pvd::PvdSeries;

@@ -1,7 +1,7 @@
 //! Result files: columns, digits, structure.
 
 use crate::common::Folder;
-use amberfield_scene::{FieldColumns, write_field_csv, write_vtu};
+use amberfield_scene::{FieldColumns, FieldComponents, write_field_csv, write_vtu};
 use nalgebra::Vector3;
 
 #[test]
@@ -9,7 +9,7 @@ fn field_csv_has_the_columns_of_the_contract_and_all_digits() {
     let folder = Folder::good();
     let path = folder.file("field.csv");
     let e = [Vector3::new(1.0 / 3.0, -2e-300, 0.0), Vector3::new(f64::MIN_POSITIVE, 1e300, 0.1)];
-    let parts = [&e[..]; 4];
+    let parts = FieldComponents { near: &e, middle: &e, far: &e, correction: &e, faces: &e, external: &e };
     let columns = FieldColumns { id: &[9, 3], e: &e, potential: &[0.1, -0.7], components: None };
     write_field_csv(&path, &columns).unwrap();
     let text = std::fs::read_to_string(&path).unwrap();
@@ -20,8 +20,9 @@ fn field_csv_has_the_columns_of_the_contract_and_all_digits() {
     write_field_csv(&path, &FieldColumns { components: Some(parts), ..columns }).unwrap();
     let text = std::fs::read_to_string(&path).unwrap();
     let header: Vec<&str> = text.lines().next().unwrap().split(',').collect();
-    assert_eq!((header.len(), header[5], header[16]), (17, "near_ex_V_per_m", "correction_ez_V_per_m"));
-    assert!(text.lines().all(|line| line.split(',').count() == 17));
+    assert_eq!((header.len(), header[5], header[16]), (23, "near_ex_V_per_m", "correction_ez_V_per_m"));
+    assert_eq!((header[17], header[22]), ("faces_ex_V_per_m", "external_ez_V_per_m"));
+    assert!(text.lines().all(|line| line.split(',').count() == 23));
 }
 
 #[test]

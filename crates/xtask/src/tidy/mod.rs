@@ -9,6 +9,7 @@ mod laws;
 mod length;
 mod links;
 mod source;
+mod sum;
 mod table_of_contents;
 mod tree;
 mod width;
@@ -53,6 +54,7 @@ fn all_problems(tree: &Tree) -> Vec<Problem> {
         laws::problems(tree),
         length::problems(tree),
         links::problems(tree),
+        sum::problems(tree),
         table_of_contents::problems(tree),
         width::problems(tree),
         words::problems(tree),

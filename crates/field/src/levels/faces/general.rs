@@ -14,6 +14,7 @@
 use super::heat::AxisHeat;
 use crate::error::FieldError;
 use crate::geometry::images::{AxisKind, axis_kinds};
+use crate::values::FieldAt;
 use amberfield_core::{Axis, Boundary, Domain, Side};
 use nalgebra::Vector3;
 use std::f64::consts::PI;
@@ -88,7 +89,7 @@ impl General {
     }
 
     /// Field [V/m] and potential [V] at a point.
-    pub(super) fn evaluate(&self, x: &Vector3<f64>) -> (Vector3<f64>, f64) {
+    pub(super) fn evaluate(&self, x: &Vector3<f64>) -> FieldAt {
         let least = (self.max - self.min) * LEAST_DISTANCE;
         let distances = [0, 1, 2].map(|axis| {
             let most = if self.kinds[axis].is_open() {
@@ -107,7 +108,7 @@ impl General {
         let weight = |face: &Face| if face.is_conductor { face.value - reference } else { face.value };
         let active = || self.faces.iter().filter(|face| weight(face) != 0.0);
         let Some(closest) = active().map(distance).min_by(f64::total_cmp) else {
-            return (Vector3::zeros(), reference);
+            return FieldAt::of_potential(reference);
         };
         let (mut e, mut potential) = (Vector3::zeros(), 0.0);
         let (first, last) = self.range(closest, &distances);
@@ -127,7 +128,7 @@ impl General {
                 e[c] -= amount * source * survival_b * slope_c;
             }
         }
-        (e * self.step, reference + potential * self.step)
+        FieldAt { e: e * self.step, potential: reference + potential * self.step }
     }
 
     /// First and last node, t = e^{node·step}.

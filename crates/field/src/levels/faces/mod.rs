@@ -2,12 +2,16 @@
 
 mod general;
 mod heat;
+mod level;
 
 use crate::error::FieldError;
 use crate::geometry::images::{AxisKind, FaceKind, Geometry, axis_kinds};
+use crate::values::FieldAt;
 use amberfield_core::{Axis, Boundary, Domain, Side};
 use general::General;
 use nalgebra::Vector3;
+
+pub(crate) use level::FacesLevel;
 
 /// Relative error of the quadrature.
 const TOLERANCE: f64 = 1e-12;
@@ -91,14 +95,14 @@ impl BoundaryField {
 
     /// E [V/m] and potential [V] at a point [m] of the domain.
     #[must_use]
-    pub fn evaluate(&self, x: &Vector3<f64>) -> (Vector3<f64>, f64) {
+    pub fn evaluate(&self, x: &Vector3<f64>) -> FieldAt {
         match &self.solution {
             Solution::General(general) => general.evaluate(x),
             Solution::Linear(linear) => {
                 let d = x - linear.origin;
                 let e = linear.field + linear.slope.component_mul(&d);
                 let fall = linear.field + 0.5 * linear.slope.component_mul(&d);
-                (e, linear.potential - fall.dot(&d))
+                FieldAt { e, potential: linear.potential - fall.dot(&d) }
             }
         }
     }

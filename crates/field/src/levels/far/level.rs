@@ -12,6 +12,7 @@ use super::mesh::{Condition, FarMesh};
 use super::walls::Walls;
 use super::{FarField, FarRequest, FarSolver, check_net_charge};
 use crate::error::FieldError;
+use crate::values::FieldAt;
 use amberfield_core::{Axis, Boundary, Domain, FarQuestion, FieldSettings, Permittivity, SourceCloud};
 use amberfield_laws::kaiser_bessel_cloud::Cloud;
 use nalgebra::Vector3;
@@ -117,15 +118,15 @@ impl FarLevel {
         time_s: f64,
         positions: &[Vector3<f64>],
         charges: &[f64],
-        short: impl Iterator<Item = (Vector3<f64>, f64)>,
+        short: impl Iterator<Item = FieldAt>,
     ) -> Result<(), FieldError> {
         self.boundary.clear();
-        self.boundary.extend(self.solver.mesh().boundary().iter().zip(short).map(
-            |(face, (e, potential))| match face.condition {
-                Condition::Potential(volts) => volts - potential,
-                Condition::Slope(slope) => slope + face.normal.dot(&e),
-            },
-        ));
+        self.boundary.extend(self.solver.mesh().boundary().iter().zip(short).map(|(face, short)| {
+            match face.condition {
+                Condition::Potential(volts) => volts - short.potential,
+                Condition::Slope(slope) => slope + face.normal.dot(&short.e),
+            }
+        }));
         let question = FarQuestion {
             cloud: SourceCloud { radius_m: self.cloud.radius, shape: self.cloud.shape },
             permittivity_f_m: self.permittivity.absolute(),
@@ -159,7 +160,7 @@ impl FarLevel {
     }
 
     /// E [V/m] and potential [V] at the grains, after [`Self::solve`].
-    pub(crate) fn gather(&self, positions: &[Vector3<f64>], field: &mut [(Vector3<f64>, f64)]) {
+    pub(crate) fn gather(&self, positions: &[Vector3<f64>], field: &mut [FieldAt]) {
         let mesh = self.solver.mesh();
         field.par_iter_mut().zip(positions).zip(&self.cells).for_each(|((field, position), &cell)| {
             *field = self.fits.at(mesh, cell, position);

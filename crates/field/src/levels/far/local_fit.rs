@@ -5,6 +5,7 @@
 //! quadratic potentials on any mesh.
 
 use super::mesh::{Condition, FarMesh, Neighbour};
+use crate::values::FieldAt;
 use nalgebra::{SMatrix, SVector, Vector3};
 use rayon::prelude::*;
 
@@ -100,7 +101,7 @@ impl LocalFits {
     }
 
     /// E [V/m] and φ [V] at a point of a cell.
-    pub(crate) fn at(&self, mesh: &FarMesh, cell: u32, point: &Vector3<f64>) -> (Vector3<f64>, f64) {
+    pub(crate) fn at(&self, mesh: &FarMesh, cell: u32, point: &Vector3<f64>) -> FieldAt {
         let cell = cell as usize;
         let d = (point - mesh.centres()[cell]) / self.size[cell];
         let [x, y, z, xx, yy, zz, xy, xz, yz] = self.fits[cell];
@@ -111,7 +112,7 @@ impl LocalFits {
         );
         let slope = Vector3::new(x, y, z);
         let potential = self.potential[cell] + (slope + 0.5 * bend).dot(&d);
-        (-(slope + bend) / self.size[cell], potential)
+        FieldAt { e: -(slope + bend) / self.size[cell], potential }
     }
 }
 
@@ -248,7 +249,7 @@ mod tests {
         fits.fit(&mesh, &values, &boundary);
         for (cell, centre) in mesh.centres().iter().enumerate() {
             let point = centre + Vector3::new(0.05, -0.03, 0.04);
-            let (e, v) = fits.at(&mesh, cell as u32, &point);
+            let FieldAt { e, potential: v } = fits.at(&mesh, cell as u32, &point);
             assert!((e + slope(&point)).norm() < 1e-5 && (v - potential(&point)).abs() < 1e-6, "{cell} {e}");
         }
     }

@@ -7,6 +7,7 @@ use super::solve::Solver;
 use super::window::{HALO, MAX_ORDER, Weights, Window, first_node};
 use crate::geometry::images::axis_kinds;
 use crate::numerics::processor::{Instructions, Vector, dispatched};
+use crate::values::FieldAt;
 use amberfield_core::{Axis, Domain};
 use amberfield_laws::kaiser_bessel_cloud::Cloud;
 use nalgebra::Vector3;
@@ -106,7 +107,7 @@ impl GridLevel {
     }
 
     /// E and potential of the clouds (4πε = 1) at the given positions, after [`Self::solve`].
-    pub(crate) fn gather(&self, positions: &[Vector3<f64>], field: &mut [(Vector3<f64>, f64)]) {
+    pub(crate) fn gather(&self, positions: &[Vector3<f64>], field: &mut [FieldAt]) {
         by_order!(self.gather_order(positions, field));
     }
 
@@ -138,7 +139,7 @@ impl GridLevel {
         }
     }
 
-    fn gather_order<const P: usize>(&self, positions: &[Vector3<f64>], field: &mut [(Vector3<f64>, f64)]) {
+    fn gather_order<const P: usize>(&self, positions: &[Vector3<f64>], field: &mut [FieldAt]) {
         let (nodes, steps) = (&self.nodes.values[..], self.nodes.steps());
         let inverse = self.axes.each_ref().map(|axis| -1.0 / axis.spacing);
         field.par_chunks_mut(GATHER).zip(positions.par_chunks(GATHER)).for_each(|(field, positions)| {
@@ -148,7 +149,7 @@ impl GridLevel {
                 gather_one::<P>(self.instructions, &self.window, place, steps, nodes, &mut found);
                 let [slope_x, slope_y, slope_z, potential] = found;
                 let e = Vector3::new(slope_x * inverse[0], slope_y * inverse[1], slope_z * inverse[2]);
-                *field = (e, potential);
+                *field = FieldAt { e, potential };
             }
         });
     }

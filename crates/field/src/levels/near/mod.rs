@@ -7,6 +7,7 @@ mod target;
 
 use crate::geometry::images::ImageLattice;
 use crate::numerics::scratch::PerThread;
+use crate::values::FieldAt;
 use amberfield_core::Domain;
 use candidates::Candidates;
 use cells::NearCells;
@@ -102,19 +103,17 @@ impl NearLevel {
     }
 
     /// Adds E and potential (4πε = 1) at every particle to `field`, after [`Self::sort`].
-    pub(crate) fn add_all(&mut self, potential: bool, field: &mut [(Vector3<f64>, f64)]) {
+    pub(crate) fn add_all(&mut self, potential: bool, field: &mut [FieldAt]) {
         let mut sums = std::mem::take(&mut self.sums);
         self.evaluate(&self.targets, potential, &mut sums);
         for (&target, sum) in self.targets.iter().zip(&sums) {
-            let (e, value) = &mut field[self.particle(target)];
-            *e += Vector3::from(sum.field);
-            *value += sum.potential;
+            field[self.particle(target)] += sum.field_at();
         }
         self.sums = sums;
     }
 
     /// E (4πε = 1) at the given particles, after [`Self::sort`].
-    pub(crate) fn at(&self, particles: &[usize]) -> Vec<Vector3<f64>> {
+    pub(crate) fn at(&self, particles: &[usize]) -> Vec<FieldAt> {
         let mut target_of = vec![0; self.targets.len()];
         for &target in &self.targets {
             target_of[self.particle(target)] = target;
@@ -122,7 +121,7 @@ impl NearLevel {
         let targets: Vec<u32> = particles.iter().map(|&particle| target_of[particle]).collect();
         let mut sums = Vec::new();
         self.evaluate(&targets, false, &mut sums);
-        sums.iter().map(|sum| Vector3::from(sum.field)).collect()
+        sums.iter().map(Sum::field_at).collect()
     }
 
     /// Mean number of sources within the cut-off of a sample of targets.

@@ -2,6 +2,7 @@
 
 use super::candidates::Candidates;
 use crate::numerics::processor::{Real, Vector};
+use crate::values::FieldAt;
 
 /// Field (x, y, z) and potential of a target in the kernel's units (4πε = 1), and the square of the distance to the
 /// nearest candidate.
@@ -10,6 +11,13 @@ pub(crate) struct Sum {
     pub(crate) field: [f64; 3],
     pub(crate) potential: f64,
     pub(crate) nearest_squared: f64,
+}
+
+impl Sum {
+    /// Field and potential without the distance.
+    pub(super) fn field_at(&self) -> FieldAt {
+        FieldAt { e: self.field.into(), potential: self.potential }
+    }
 }
 
 /// Polynomials for field and potential.

@@ -7,13 +7,15 @@ mod splitting;
 use crate::error::FieldError;
 use crate::geometry::image_cells::ImageCells;
 use crate::geometry::images::{BoundingBox, Geometry, ImageLattice};
-use crate::geometry::inputs::{check_finite, check_inside, check_net_charge, check_result};
+use crate::geometry::inputs::{check_finite, check_inside, check_net_charge};
 use crate::methods::method::FieldMethod;
 use crate::numerics::stopwatch::Stopwatch;
-use crate::values::{FieldValues, Wanted};
+use crate::sum::{Levels, OwnClouds, Part};
+use crate::values::{FieldAt, Wanted};
 use amberfield_core::{Domain, Permittivity};
 use modes::Modes;
 use nalgebra::Vector3;
+use pairs::PairSum;
 use splitting::Splitting;
 use std::f64::consts::{FRAC_2_SQRT_PI, PI};
 
@@ -36,16 +38,32 @@ pub struct Direct {
     neutralising_background: bool,
     cells: ImageCells<()>,
     wrapped: Vec<Vector3<f64>>,
+    parts: Parts,
     pairs_per_particle: f64,
     stopwatch: Stopwatch,
 }
 
-/// Two parts of the sum over k_e at one particle, and the number of partners.
+/// What the sum is made of, over Coulomb's constant.
+#[derive(Debug, Default)]
 struct Parts {
-    potential: f64,
-    near: Vector3<f64>,
-    far: Vector3<f64>,
+    near: Vec<FieldAt>,
+    far: Vec<FieldAt>,
+    /// Potential of a unit charge's own cloud at its centre [1/m].
+    own_cloud: f64,
+    /// Mean potential of the pairs of a net charge [C/m].
+    background: f64,
+    /// Partners of all particles together.
     partners: usize,
+}
+
+impl Parts {
+    fn of_pairs(sums: Vec<PairSum>) -> Self {
+        Self {
+            partners: sums.iter().map(|sum| sum.partners).sum(),
+            near: sums.into_iter().map(|sum| sum.field).collect(),
+            ..Self::default()
+        }
+    }
 }
 
 impl Direct {
@@ -66,12 +84,13 @@ impl Direct {
             neutralising_background,
             cells: ImageCells::default(),
             wrapped: Vec::new(),
+            parts: Parts::default(),
             pairs_per_particle: 0.0,
             stopwatch: Stopwatch::default(),
         })
     }
 
-    fn sum(&mut self, positions: &[Vector3<f64>], charges: &[f64]) -> Result<Vec<Parts>, FieldError> {
+    fn sum(&mut self, positions: &[Vector3<f64>], charges: &[f64]) -> Result<Parts, FieldError> {
         check_finite(positions, charges)?;
         check_inside(&self.domain, positions)?;
         check_net_charge(&self.domain, self.permittivity, self.neutralising_background, charges)?;
@@ -79,21 +98,18 @@ impl Direct {
         self.wrapped.clear();
         self.wrapped.extend(positions.iter().map(|position| self.domain.wrap(*position)));
         let Some(particles) = BoundingBox::around(&self.wrapped) else {
-            return Ok(Vec::new());
+            return Ok(Parts::default());
         };
         if self.geometry == Geometry::Open {
             let sums = pairs::open(&self.lattice, &self.wrapped, charges);
             self.stopwatch.lap("pairs");
-            return Ok(sums
-                .into_iter()
-                .map(|(potential, near, partners)| Parts { potential, near, far: Vector3::zeros(), partners })
-                .collect());
+            return Ok(Parts::of_pairs(sums));
         }
         let splitting = Splitting::cheapest(&self.domain, self.geometry, &particles, positions.len());
         Ok(self.ewald(charges, &splitting))
     }
 
-    fn ewald(&mut self, charges: &[f64], splitting: &Splitting) -> Vec<Parts> {
+    fn ewald(&mut self, charges: &[f64], splitting: &Splitting) -> Parts {
         self.cells.build(&self.lattice, &self.wrapped, charges, splitting.radius, |_, _| ());
         let near = pairs::short_ranged(&self.cells, &self.wrapped, splitting.alpha);
         self.stopwatch.lap("pairs");
@@ -108,50 +124,33 @@ impl Direct {
             modes = modes.len(),
             "direct sum"
         );
-        // The modes hold each charge's own cloud; and the pairs of a net charge have a mean that is not zero.
-        let own = splitting.alpha * FRAC_2_SQRT_PI;
-        let mean = if self.domain.needs_neutrality() {
+        let background = if self.domain.needs_neutrality() {
             charges.iter().sum::<f64>() * PI / (splitting.alpha.powi(2) * self.domain.volume())
         } else {
             0.0
         };
-        near.into_iter()
-            .zip(far)
-            .zip(charges)
-            .map(|(((potential, near, partners), (far_potential, far)), charge)| Parts {
-                potential: potential + far_potential - own * charge - mean,
-                near,
-                far,
-                partners,
-            })
-            .collect()
+        Parts { far, own_cloud: splitting.alpha * FRAC_2_SQRT_PI, background, ..Parts::of_pairs(near) }
     }
 }
 
 impl FieldMethod for Direct {
-    fn evaluate_at(
-        &mut self,
+    fn levels<'a>(
+        &'a mut self,
         _time_s: f64,
-        positions: &[Vector3<f64>],
-        charges: &[f64],
-        wanted: Wanted,
-        out: &mut FieldValues,
-    ) -> Result<(), FieldError> {
-        let parts = self.sum(positions, charges)?;
-        let k = self.permittivity.coulomb();
-        out.clear();
-        out.e.extend(parts.iter().map(|part| (part.near + part.far) * k));
-        if wanted.potential {
-            out.potential.extend(parts.iter().map(|part| part.potential * k));
-        }
-        if wanted.components {
-            out.components.near.extend(parts.iter().map(|part| part.near * k));
-            out.components.far.extend(parts.iter().map(|part| part.far * k));
-        }
-        out.complete(parts.len(), wanted);
-        let partners: usize = parts.iter().map(|part| part.partners).sum();
-        self.pairs_per_particle = partners as f64 / parts.len().max(1) as f64;
-        check_result(&out.e)
+        positions: &'a [Vector3<f64>],
+        charges: &'a [f64],
+        _: Wanted,
+    ) -> Result<Levels<'a>, FieldError> {
+        self.parts = self.sum(positions, charges)?;
+        self.pairs_per_particle = self.parts.partners as f64 / positions.len().max(1) as f64;
+        Ok(Levels {
+            coulomb: self.permittivity.coulomb(),
+            near: Part::new(&self.parts.near),
+            far_of_charges: Part::new(&self.parts.far),
+            own_clouds: OwnClouds { charges, at_centre: self.parts.own_cloud },
+            background: self.parts.background,
+            ..Levels::default()
+        })
     }
 
     fn pairs_per_particle(&self) -> f64 {
@@ -163,7 +162,10 @@ impl FieldMethod for Direct {
     }
 
     fn memory_bytes(&self) -> usize {
-        self.cells.memory_bytes() + self.wrapped.capacity() * size_of::<Vector3<f64>>()
+        let parts = self.parts.near.capacity() + self.parts.far.capacity();
+        self.cells.memory_bytes()
+            + self.wrapped.capacity() * size_of::<Vector3<f64>>()
+            + parts * size_of::<FieldAt>()
     }
 }
 
@@ -206,11 +208,19 @@ mod tests {
             let best = Splitting::cheapest(&domain, direct.geometry, &particles, charges.len());
             let other = Splitting::new(&domain, direct.geometry, &particles, best.alpha * factor);
             let (one, two) = (direct.ewald(&charges, &best), direct.ewald(&charges, &other));
-            for (one, two) in one.iter().zip(&two) {
-                let (e, potential) = (one.near + one.far, one.potential);
-                let (field, value) = (one.near.norm() + two.near.norm() + 1.0, one.potential.abs() + 10.0 * best.alpha);
-                prop_assert!((e - two.near - two.far).norm() < LEFT_OUT * field * best.alpha.powi(2).max(1.0));
-                prop_assert!((potential - two.potential).abs() < LEFT_OUT * value);
+            for (particle, charge) in charges.iter().enumerate() {
+                let potential = |parts: &Parts| {
+                    parts.near[particle].potential + parts.far[particle].potential
+                        - parts.own_cloud * charge
+                        - parts.background
+                };
+                let near = [one.near[particle].e, two.near[particle].e];
+                let far = [one.far[particle].e, two.far[particle].e];
+                let (field, value) =
+                    (near[0].norm() + near[1].norm() + 1.0, potential(&one).abs() + 10.0 * best.alpha);
+                let difference = (near[0] + far[0]) - near[1] - far[1];
+                prop_assert!(difference.norm() < LEFT_OUT * field * best.alpha.powi(2).max(1.0));
+                prop_assert!((potential(&one) - potential(&two)).abs() < LEFT_OUT * value);
             }
         }
     }

@@ -3,6 +3,7 @@
 //! φ(x) = Σ_abc w_abc ψ_a(x) ψ_b(y) ψ_c(z) Σ_j q_j ψ_a(x_j) ψ_b(y_j) ψ_c(z_j): images come with the functions.
 
 use super::splitting::{AxisBasis, Splitting};
+use crate::values::FieldAt;
 use nalgebra::Vector3;
 use rayon::prelude::*;
 use std::f64::consts::PI;
@@ -35,9 +36,6 @@ pub(crate) struct Modes {
     rows: Vec<Row>,
     weights: Vec<f64>,
 }
-
-/// Potential and field over k_e.
-pub(crate) type Gathered = (f64, Vector3<f64>);
 
 /// Functions and slopes of a block of particles.
 struct Tables {
@@ -134,20 +132,20 @@ impl Modes {
         sums
     }
 
-    /// Potential and field over k_e at every position.
-    pub(crate) fn gather(&self, amplitudes: &[f64], positions: &[Vector3<f64>]) -> Vec<Gathered> {
+    /// Field and potential over Coulomb's constant at every position.
+    pub(crate) fn gather(&self, amplitudes: &[f64], positions: &[Vector3<f64>]) -> Vec<FieldAt> {
         positions.par_chunks(BLOCK).map(|block| self.gather_block(amplitudes, block)).flatten_iter().collect()
     }
 
-    fn gather_block(&self, amplitudes: &[f64], positions: &[Vector3<f64>]) -> Vec<Gathered> {
+    fn gather_block(&self, amplitudes: &[f64], positions: &[Vector3<f64>]) -> Vec<FieldAt> {
         let mut tables = self.tables();
         self.fill(positions, &mut tables);
         let stride = self.inner_stride();
-        let mut out = vec![(0.0, Vector3::zeros()); positions.len()];
+        let mut out = vec![FieldAt::default(); positions.len()];
         for row in &self.rows {
             let amplitude = &amplitudes[row.offset..row.offset + row.len];
             let [outer, middle] = [row.outer * BLOCK, row.middle * BLOCK];
-            for (j, (potential, e)) in out.iter_mut().enumerate() {
+            for (j, FieldAt { e, potential }) in out.iter_mut().enumerate() {
                 let value = dot(amplitude, &tables.inner[0][j * stride..]);
                 let slope = dot(amplitude, &tables.inner[1][j * stride..]);
                 let [a, da] = [0, 1].map(|kind| tables.outer[kind][outer + j]);

@@ -3,14 +3,21 @@
 use crate::geometry::image_cells::ImageCells;
 use crate::geometry::images::ImageLattice;
 use crate::numerics::processor::{Instructions, Vector, dispatched};
+use crate::values::FieldAt;
 use libm::erfc;
 use nalgebra::Vector3;
 use rayon::prelude::*;
 use std::f64::consts::FRAC_2_SQRT_PI;
 use std::ops::Range;
 
-/// Potential and field over k_e, and the number of partners.
-pub(crate) type PairSum = (f64, Vector3<f64>, usize);
+/// Sum over the partners of one particle.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub(crate) struct PairSum {
+    /// Field and potential, over Coulomb's constant.
+    pub(crate) field: FieldAt,
+    /// How many partners there are, images included.
+    pub(crate) partners: usize,
+}
 
 /// Σ q erfc(αr)/r and its field at every particle, over all images within the cells' radius but the particle itself.
 pub(crate) fn short_ranged(cells: &ImageCells<()>, positions: &[Vector3<f64>], alpha: f64) -> Vec<PairSum> {
@@ -29,7 +36,7 @@ pub(crate) fn short_ranged(cells: &ImageCells<()>, positions: &[Vector3<f64>], a
                 e += d * ((value + cells.charge[k] * gaussian * (-u * u).exp()) * inverse * inverse);
                 partners += 1;
             });
-            (potential, e, partners)
+            PairSum { field: FieldAt { e, potential }, partners }
         })
         .collect()
 }
@@ -74,7 +81,11 @@ pub(crate) fn open(lattice: &ImageLattice, positions: &[Vector3<f64>], charges: 
             let below = coulomb(instructions, &sources, 0..own.start, at);
             let above = coulomb(instructions, &sources, own.end..count * images, at);
             let sum: [f64; 4] = std::array::from_fn(|k| below[k] + above[k]);
-            (sum[0], Vector3::new(sum[1], sum[2], sum[3]), count * images - own.len())
+            let [potential, ex, ey, ez] = sum;
+            PairSum {
+                field: FieldAt { e: Vector3::new(ex, ey, ez), potential },
+                partners: count * images - own.len(),
+            }
         })
         .collect()
 }

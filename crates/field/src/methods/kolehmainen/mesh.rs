@@ -203,7 +203,8 @@ impl Mesh {
 
     /// Potential of a cell [V].
     pub(super) fn potential_of(&self, cell: [usize; 3]) -> f64 {
-        self.solved(cell) + self.faces.as_ref().map_or(0.0, |faces| faces.evaluate(&self.centre_of(cell)).1)
+        self.solved(cell)
+            + self.faces.as_ref().map_or(0.0, |faces| faces.evaluate(&self.centre_of(cell)).potential)
     }
 
     /// E = −∇φ of a cell [V/m], by Gauss' theorem with linear interpolation to the faces.
@@ -213,7 +214,7 @@ impl Mesh {
         });
         match &self.faces {
             None => solved,
-            Some(faces) => solved + faces.evaluate(&self.centre_of(cell)).0,
+            Some(faces) => solved + faces.evaluate(&self.centre_of(cell)).e,
         }
     }
 

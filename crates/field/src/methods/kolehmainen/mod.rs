@@ -8,12 +8,13 @@ mod mesh;
 use crate::error::FieldError;
 use crate::geometry::image_cells::ImageCells;
 use crate::geometry::images::ImageLattice;
-use crate::geometry::inputs::{check_charges_in_box, check_result};
+use crate::geometry::inputs::check_charges_in_box;
 use crate::levels::far::{FarField, FarSolver};
 use crate::methods::cutoff::{check_radius, coulomb};
 use crate::methods::method::FieldMethod;
 use crate::numerics::stopwatch::Stopwatch;
-use crate::values::{FieldValues, Wanted};
+use crate::sum::{Levels, Part};
+use crate::values::{FieldAt, Wanted};
 use amberfield_core::{Domain, Permittivity};
 use cells::{Cells, SolverCells};
 use mesh::Mesh;
@@ -47,23 +48,16 @@ pub struct Kolehmainen {
     images: ImageCells<InCell>,
     wrapped: Vec<Vector3<f64>>,
     cells: Vec<u32>,
-    sums: Vec<PairSums>,
+    /// Pairs, the field of the cells and the correction at every particle.
+    near: Vec<FieldAt>,
+    far: Vec<FieldAt>,
+    correction: Vec<FieldAt>,
     pairs_per_particle: f64,
     stopwatch: Stopwatch,
 }
 
 /// An image's cell, and by how many periods it is moved.
 type InCell = (u32, [i32; 3]);
-
-/// Sums over the partners of one particle, over k_e.
-#[derive(Clone, Copy, Debug, Default)]
-struct PairSums {
-    near: Vector3<f64>,
-    near_potential: f64,
-    correction: Vector3<f64>,
-    correction_potential: f64,
-    partners: usize,
-}
 
 impl Kolehmainen {
     /// The hybrid with cut-off radius `radius_m` [m]; `cells` per axis, or cubes of nearly `radius_m`/1.75.
@@ -123,7 +117,9 @@ impl Kolehmainen {
             images: ImageCells::default(),
             wrapped: Vec::new(),
             cells: Vec::new(),
-            sums: Vec::new(),
+            near: Vec::new(),
+            far: Vec::new(),
+            correction: Vec::new(),
             pairs_per_particle: 0.0,
             stopwatch: Stopwatch::default(),
         }
@@ -136,61 +132,52 @@ impl Kolehmainen {
             (cells[index], image.periods)
         });
         let (images, mesh, extent) = (&self.images, &self.mesh, self.domain.extent());
-        self.sums.resize(self.wrapped.len(), PairSums::default());
-        self.sums.par_iter_mut().zip(&self.wrapped).zip(cells).enumerate().for_each(
-            |(index, ((sums, at), &own))| {
+        let particles = self.wrapped.len();
+        self.near.resize(particles, FieldAt::default());
+        self.correction.resize(particles, FieldAt::default());
+        let sums = self.near.par_iter_mut().zip(&mut self.correction);
+        let places = self.wrapped.par_iter().zip(cells);
+        let partners: usize = sums
+            .zip(places)
+            .enumerate()
+            .map(|(index, ((near, correction), (at, &own)))| {
                 let here = mesh.centre(own);
-                let mut total = PairSums::default();
+                let (mut of_pairs, mut of_centres, mut partners) =
+                    (FieldAt::default(), FieldAt::default(), 0);
                 images.for_each_partner(index, at, |k, d, _| {
-                    total.partners += 1;
-                    let (potential, e) = coulomb(images.charge[k], &d);
-                    total.near_potential += potential;
-                    total.near += e;
+                    partners += 1;
+                    of_pairs += coulomb(images.charge[k], &d);
                     let (other, periods) = images.extra[k];
                     if (other, periods) != (own, [0; 3]) {
                         let moved = Vector3::from(periods.map(f64::from)).component_mul(&extent);
                         let d = here - mesh.centre(other) - moved;
-                        let (potential, e) = coulomb(images.charge[k], &d);
-                        total.correction_potential -= potential;
-                        total.correction -= e;
+                        of_centres -= coulomb(images.charge[k], &d);
                     }
                 });
-                *sums = total;
-            },
-        );
-        let partners: usize = self.sums.iter().map(|sums| sums.partners).sum();
-        self.pairs_per_particle = partners as f64 / self.sums.len().max(1) as f64;
+                (*near, *correction) = (of_pairs, of_centres);
+                partners
+            })
+            .sum();
+        self.pairs_per_particle = partners as f64 / particles.max(1) as f64;
     }
 
-    fn fill(&self, wanted: Wanted, out: &mut FieldValues) {
-        let k = self.permittivity.coulomb();
+    /// Field and potential of every particle's cell.
+    fn gather(&mut self) {
         let mesh = &self.mesh;
-        let particles = || self.sums.iter().zip(&self.cells);
-        out.clear();
-        out.e.extend(particles().map(|(sums, cell)| mesh.field(*cell) + (sums.near + sums.correction) * k));
-        if wanted.potential {
-            out.potential.extend(particles().map(|(sums, cell)| {
-                mesh.potential(*cell) + (sums.near_potential + sums.correction_potential) * k
-            }));
-        }
-        if wanted.components {
-            out.components.near.extend(self.sums.iter().map(|sums| sums.near * k));
-            out.components.far.extend(self.cells.iter().map(|cell| mesh.field(*cell)));
-            out.components.correction.extend(self.sums.iter().map(|sums| sums.correction * k));
-        }
-        out.complete(self.sums.len(), wanted);
+        self.far.resize(self.cells.len(), FieldAt::default());
+        let all = self.far.par_iter_mut().zip(&self.cells);
+        all.for_each(|(far, &cell)| *far = FieldAt { e: mesh.field(cell), potential: mesh.potential(cell) });
     }
 }
 
 impl FieldMethod for Kolehmainen {
-    fn evaluate_at(
-        &mut self,
+    fn levels<'a>(
+        &'a mut self,
         time_s: f64,
-        positions: &[Vector3<f64>],
-        charges: &[f64],
-        wanted: Wanted,
-        out: &mut FieldValues,
-    ) -> Result<(), FieldError> {
+        positions: &'a [Vector3<f64>],
+        charges: &'a [f64],
+        _: Wanted,
+    ) -> Result<Levels<'a>, FieldError> {
         let permittivity = self.permittivity;
         let background = self.neutralising_background;
         check_charges_in_box(&self.domain, permittivity, background, positions, charges)?;
@@ -198,11 +185,17 @@ impl FieldMethod for Kolehmainen {
         self.wrapped.clear();
         self.wrapped.extend(positions.iter().map(|position| self.domain.wrap(*position)));
         self.mesh.solve(time_s, &self.wrapped, charges, permittivity, &mut self.cells)?;
+        self.gather();
         self.stopwatch.lap("mesh");
         self.sum_pairs(charges);
         self.stopwatch.lap("pairs");
-        self.fill(wanted, out);
-        check_result(&out.e)
+        Ok(Levels {
+            coulomb: self.permittivity.coulomb(),
+            near: Part::new(&self.near),
+            far_of_cells: Part::new(&self.far),
+            correction: Part::new(&self.correction),
+            ..Levels::default()
+        })
     }
 
     fn far_solver(&self) -> Option<&FarSolver> {
@@ -230,7 +223,7 @@ impl FieldMethod for Kolehmainen {
             + self.images.memory_bytes()
             + self.wrapped.capacity() * size_of::<Vector3<f64>>()
             + self.cells.capacity() * size_of::<u32>()
-            + self.sums.capacity() * size_of::<PairSums>()
+            + (self.near.capacity() + self.far.capacity() + self.correction.capacity()) * size_of::<FieldAt>()
     }
 }
 

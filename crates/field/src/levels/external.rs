@@ -1,0 +1,25 @@
+//! The uniform external field that a scene gives.
+
+use crate::values::FieldAt;
+use amberfield_core::{Domain, FieldSettings};
+use nalgebra::Vector3;
+
+/// A uniform field, whose potential is zero at the domain's centre: V = −E·(x − centre).
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub(crate) struct ExternalField {
+    e: Vector3<f64>,
+    centre: Vector3<f64>,
+}
+
+impl ExternalField {
+    /// The external field of a scene.
+    pub(crate) fn new(domain: &Domain, settings: &FieldSettings) -> Self {
+        Self { e: settings.external_field_v_m, centre: domain.centre() }
+    }
+
+    /// E [V/m] and potential [V] at a position [m].
+    #[inline]
+    pub(crate) fn at(&self, position: &Vector3<f64>) -> FieldAt {
+        FieldAt { e: self.e, potential: -self.e.dot(&(position - self.centre)) }
+    }
+}
