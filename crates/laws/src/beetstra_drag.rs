@@ -1,7 +1,14 @@
-//! Drag in beds from lattice-Boltzmann simulations: β = 3πμd ε F(ε, Re), Re = ρ d ε|w|/μ,
-//! F = 10(1−ε)/ε² + ε²(1 + 1.5√(1−ε)) + (0.413 Re/(24 ε²)) (1/ε + 3ε(1−ε) + 8.4 Re^{−0.343})/(1 + 10^{3(1−ε)} Re^{−(1+4(1−ε))/2}).
+//! Drag in dense beds from lattice-Boltzmann simulations: β = 3πμd ε F(ε, Re), Re = ρ d ε|w|/μ.
 //!
-//! Per grain, as the coefficient β [kg/s] of F = β (u − v) beside the force of the pressure gradient (model A). Range: Re < 1000, grains of one size.
+//! ```text
+//! F(ε, Re) = 10(1−ε)/ε² + ε²(1 + 1.5√(1−ε))
+//!          + (0.413 Re/(24 ε²)) (1/ε + 3ε(1−ε) + 8.4 Re^{−0.343})/(1 + 10^{3(1−ε)} Re^{−(1+4(1−ε))/2})
+//! ```
+//!
+//! The force on one grain is F = β (u − v) [N], beside the force of the pressure gradient (model A). β drag
+//! coefficient [kg/s]; ε void fraction; w = u − v velocity of the fluid less that of the grain [m/s]; d
+//! diameter of the grain [m]; ρ density [kg/m³] and μ viscosity [Pa·s] of the fluid.
+//! Range: Re < 1000, grains of one size.
 //! Source: Beetstra, van der Hoef & Kuipers, AIChE J. 53, 489 (2007).
 //!
 //! ```
@@ -12,21 +19,23 @@
 use crate::particle_reynolds::Slip;
 use crate::stokes_drag;
 
-/// β [kg/s].
+/// Drag coefficient β [kg/s] of one grain.
 #[must_use]
 pub fn coefficient(slip: &Slip) -> f64 {
     let stokes = stokes_drag::coefficient(slip.diameter, slip.viscosity);
     stokes * slip.void_fraction * factor(slip.void_fraction, slip.superficial_reynolds())
 }
 
-/// F of void fraction and superficial Reynolds number: the drag over 3πμd ε|w|.
+/// Factor F of void fraction ε and superficial Reynolds number Re: the drag over 3πμd ε|w|.
 #[must_use]
 pub fn factor(void_fraction: f64, reynolds: f64) -> f64 {
     let (eps, solid) = (void_fraction, 1.0 - void_fraction);
     let creeping = 10.0 * solid / (eps * eps) + eps * eps * (1.0 + 1.5 * solid.sqrt());
+    // Re^{−0.343} is infinite at rest, though the inertial term vanishes there.
     if reynolds == 0.0 {
         return creeping;
     }
+
     let shape = 1.0 / eps + 3.0 * eps * solid + 8.4 * reynolds.powf(-0.343);
     let damped = 1.0 + 10_f64.powf(3.0 * solid) * reynolds.powf(-0.5 * (1.0 + 4.0 * solid));
     creeping + 0.413 * reynolds / (24.0 * eps * eps) * shape / damped

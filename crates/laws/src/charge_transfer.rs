@@ -1,22 +1,31 @@
-//! Charge traded while a contact area grows: dT/dA = ε [(W_i − W_j)/(δe) + E_c·n_ij] = β − αT.
+//! Charge transfer while a contact area grows: dT/dA = ε [(W_i − W_j)/(δe) + E_c·n_ij] = β − αT.
 //!
-//! T charge moved from i to j since first touch [C]: q_i −= T, q_j += T; A contact area [m²]; W work functions [J]; δ cut-off
-//! distance of the transfer [m]; e elementary charge; E_c field at the contact [V/m], the colliders' own included; n_ij from i to j. With
-//! E_x the field of everything else and r the radii,
+//! T charge moved from i to j since first touch [C], so that q_i −= T and q_j += T; A contact area [m²]; ε
+//! permittivity [F/m]; W work functions [J]; δ cut-off distance of the transfer [m]; e elementary charge [C];
+//! E_c field at the contact [V/m], which includes that of the two colliding bodies; n_ij unit vector from i
+//! to j. With E_x the field of everything else [V/m], r the radii [m], A_f the area [m²] and Q_f the charge
+//! [C] of a facet,
 //!
 //! ```text
-//! two grains               α = (1/r_i² + 1/r_j²)/(4π)      β = ε(W_i − W_j)/(δe) + q_i/(4πr_i²) − q_j/(4πr_j²) + ε E_x·n_ij
-//! grain, grounded wall     α = 1/(2πr²)                    β = ε(W_p − W_w)/(δe) + q/(2πr²) + ε E_x·n_pw
-//! grain, insulating facet  α = 1/(4πr²) + 1/(2A_f)         β = ε(W_p − W_w)/(δe) + q/(4πr²) − Q_f/(2A_f) + ε E_x·n_pw
+//! two grains               α = (1/r_i² + 1/r_j²)/(4π)
+//!                          β = ε(W_i − W_j)/(δe) + q_i/(4πr_i²) − q_j/(4πr_j²) + ε E_x·n_ij
+//! grain, grounded wall     α = 1/(2πr²)
+//!                          β = ε(W_p − W_w)/(δe) + q/(2πr²) + ε E_x·n_pw
+//! grain, insulating facet  α = 1/(4πr²) + 1/(2A_f)
+//!                          β = ε(W_p − W_w)/(δe) + q/(4πr²) − Q_f/(2A_f) + ε E_x·n_pw
 //! ```
 //!
-//! While the area grows by ΔA, T = (β/α)(1 − e^{−αΔA}): exact for one contact and bounded for any ΔA, where βΔA runs away beyond
-//! αΔA = 2. A contact that shrinks moves nothing. The higher work function ends negative. Range: overlaps small against the radii.
-//! Source: J. Kolehmainen, A. Ozel, C. M. Boyce & S. Sundaresan, AIChE J. 63, 1872 (2017), with its signs made consistent.
+//! While the area grows by ΔA, T = (β/α)(1 − e^{−αΔA}). This is exact for a single contact and bounded for
+//! any ΔA, whereas the explicit step βΔA is unstable beyond αΔA = 2. A contact whose area shrinks moves no
+//! charge. The body with the higher work function ends negative.
+//! Range: overlaps small against the radii.
+//! Source: J. Kolehmainen, A. Ozel, C. M. Boyce & S. Sundaresan, AIChE J. 63, 1872 (2017), with its signs
+//! made consistent.
 //!
 //! ```
-//! use amberfield_laws::charge_transfer::{Grain, between_grains};
-//! let (left, right) = (Grain { charge: 1e-13, radius: 75e-6 }, Grain { charge: -1e-13, radius: 75e-6 });
+//! use amberfield_laws::charge_transfer::{ChargedSphere, between_grains};
+//! let left = ChargedSphere { charge: 1e-13, radius: 75e-6 };
+//! let right = ChargedSphere { charge: -1e-13, radius: 75e-6 };
 //! let drive = between_grains(8.854e-12, 0.0, [left, right], 0.0);
 //! let moved = drive.transfer(1e-12);
 //! assert!(moved > 0.0 && moved < 1e-13);
@@ -24,21 +33,30 @@
 
 use std::f64::consts::PI;
 
-/// A grain as far as a contact knows it.
+/// Charge and size of a colliding grain.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Grain {
+pub struct ChargedSphere {
     /// Charge [C].
     pub charge: f64,
     /// Radius [m].
     pub radius: f64,
 }
 
-/// What moves charge through a contact: dT/dA = β − αT.
+/// Charge and area of a facet of an insulating wall.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct ChargedFacet {
+    /// Charge Q_f [C].
+    pub charge: f64,
+    /// Area A_f [m²].
+    pub area: f64,
+}
+
+/// Coefficients of the transfer through one contact: dT/dA = β − αT.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Drive {
-    /// α [1/m²], positive.
+    /// Decay α [1/m²], positive.
     pub decay: f64,
-    /// β at T = 0 [C/m²].
+    /// Drive β [C/m²], the transfer per area at T = 0.
     pub drive: f64,
 }
 
@@ -46,44 +64,51 @@ impl Drive {
     /// Charge moved from i to j [C] while the area grows by `growth` [m²].
     #[must_use]
     pub fn transfer(self, growth: f64) -> f64 {
+        // `exp_m1` keeps all digits where αΔA is small, as in nearly every step.
         -self.drive / self.decay * (-self.decay * growth).exp_m1()
     }
 }
 
-/// ε(W_i − W_j)/(δe) [C/m²] of work functions in eV, permittivity ε [F/m] and cut-off distance δ [m].
+/// Contact potential's share of the drive, ε(W_i − W_j)/(δe) [C/m²]: permittivity ε [F/m], work functions
+/// [eV], cut-off distance δ [m].
 #[must_use]
 pub fn work_term(permittivity: f64, work_functions_ev: [f64; 2], cutoff_m: f64) -> f64 {
     permittivity * (work_functions_ev[0] - work_functions_ev[1]) / cutoff_m
 }
 
-/// Grain i with grain j; `work` is [`work_term`], `field` E_x·n_ij [V/m].
+/// Drive between grain i and grain j: permittivity [F/m], `work` from [`work_term`] [C/m²], `field` =
+/// E_x·n_ij [V/m].
 #[must_use]
-pub fn between_grains(permittivity: f64, work: f64, [i, j]: [Grain; 2], field: f64) -> Drive {
+pub fn between_grains(permittivity: f64, work: f64, [i, j]: [ChargedSphere; 2], field: f64) -> Drive {
     let [per_i, per_j] = [i, j].map(|grain| 1.0 / (4.0 * PI * grain.radius * grain.radius));
     let own = i.charge * per_i - j.charge * per_j;
     Drive { decay: per_i + per_j, drive: work + own + permittivity * field }
 }
 
-/// A grain with a grounded wall; `field` E_x·n_pw [V/m] without the grain's own image.
+/// Drive between a grain and a grounded wall: permittivity [F/m], `work` from [`work_term`] [C/m²], `field` =
+/// E_x·n_pw [V/m] without the grain's own image.
 #[must_use]
-pub fn with_grounded_wall(permittivity: f64, work: f64, grain: Grain, field: f64) -> Drive {
+pub fn with_grounded_wall(permittivity: f64, work: f64, grain: ChargedSphere, field: f64) -> Drive {
+    // The image doubles the grain's own field at the wall: 2πr² instead of 4πr².
     let per_area = 1.0 / (2.0 * PI * grain.radius * grain.radius);
     Drive { decay: per_area, drive: work + grain.charge * per_area + permittivity * field }
 }
 
-/// A grain with a facet of an insulating wall, of an area [m²] that holds a charge [C]; `field` E_x·n_pw [V/m].
+/// Drive between a grain and a facet of an insulating wall: permittivity [F/m], `work` from [`work_term`]
+/// [C/m²], `field` = E_x·n_pw [V/m].
 #[must_use]
 pub fn with_insulating_facet(
     permittivity: f64,
     work: f64,
-    grain: Grain,
-    [area, charge]: [f64; 2],
+    grain: ChargedSphere,
+    facet: ChargedFacet,
     field: f64,
 ) -> Drive {
     let per_area = 1.0 / (4.0 * PI * grain.radius * grain.radius);
-    let facet = 1.0 / (2.0 * area);
-    let own = grain.charge * per_area - charge * facet;
-    Drive { decay: per_area + facet, drive: work + own + permittivity * field }
+    // A charged sheet has the field Q/(2Aε) on either side.
+    let per_facet_area = 1.0 / (2.0 * facet.area);
+    let own = grain.charge * per_area - facet.charge * per_facet_area;
+    Drive { decay: per_area + per_facet_area, drive: work + own + permittivity * field }
 }
 
 #[cfg(test)]
@@ -95,8 +120,8 @@ mod tests {
     /// Round-off of a handful of operations.
     const ROUND_OFF: f64 = 1e-13;
 
-    fn pair(qi: f64, qj: f64) -> [Grain; 2] {
-        [Grain { charge: qi, radius: 1e-4 }, Grain { charge: qj, radius: 3e-4 }]
+    fn pair(qi: f64, qj: f64) -> [ChargedSphere; 2] {
+        [ChargedSphere { charge: qi, radius: 1e-4 }, ChargedSphere { charge: qj, radius: 3e-4 }]
     }
 
     #[test]
@@ -143,7 +168,7 @@ mod tests {
 
     #[test]
     fn one_electronvolt_on_a_grounded_wall() {
-        let grain = Grain { charge: 0.0, radius: 75e-6 };
+        let grain = ChargedSphere { charge: 0.0, radius: 75e-6 };
         let drive = with_grounded_wall(PERMITTIVITY, work_term(PERMITTIVITY, [1.0, 0.0], CUTOFF), grain, 0.0);
         let equilibrium = -drive.transfer(1e3 / drive.decay);
         assert!((equilibrium / -6.2587e-13 - 1.0).abs() < 1e-5, "{equilibrium:e}");
@@ -151,11 +176,14 @@ mod tests {
 
     #[test]
     fn wide_facet_is_an_isolated_grain_and_its_charge_repels() {
-        let grain = Grain { charge: 1e-13, radius: 75e-6 };
-        let wide = with_insulating_facet(PERMITTIVITY, 0.0, grain, [1.0, 0.0], 0.0);
+        let grain = ChargedSphere { charge: 1e-13, radius: 75e-6 };
+        let with_facet = |area: f64, charge: f64| {
+            with_insulating_facet(PERMITTIVITY, 0.0, grain, ChargedFacet { charge, area }, 0.0)
+        };
+        let wide = with_facet(1.0, 0.0);
         assert!((wide.decay * 4.0 * PI * 75e-6_f64.powi(2) - 1.0).abs() < 1e-7);
-        let charged = with_insulating_facet(PERMITTIVITY, 0.0, grain, [1e-8, 1e-13], 0.0);
-        let bare = with_insulating_facet(PERMITTIVITY, 0.0, grain, [1e-8, 0.0], 0.0);
+        let charged = with_facet(1e-8, 1e-13);
+        let bare = with_facet(1e-8, 0.0);
         assert!(charged.drive < bare.drive && charged.decay == bare.decay);
     }
 }

@@ -1,9 +1,14 @@
-//! Area of a Hertz contact, A = πR*δ, and what is left of it in a real, stiffer contact: σ_A = (Y*_soft/Y*_real)^{2/5}(v_real/v_soft)^{4/5}.
+//! Area of a Hertz contact, A = πR*δ, and its correction for stiffness,
+//! σ_A = (Y*_soft/Y*_real)^{2/5} (v_real/v_soft)^{4/5}.
 //!
-//! R* effective radius (at a wall the grain's) [m]; δ overlap [m]; Y* effective moduli [Pa]; v velocities of impact [m/s]. Simulated grains are soft to
-//! allow long steps and overlap too much: the largest overlap of an impact goes as (v²/Y*)^{2/5}, the area with it. Range: σ_A is for impacts; a contact
-//! at rest, whose overlap goes as Y*^{−2/3}, is corrected by the same factor.
-//! Source: Hertz's contact; the correction as in J. Kolehmainen et al., AIChE J. 63, 1872 (2017), with the exponent 4/5 of the velocity.
+//! R* effective radius (at a wall that of the grain) [m]; δ overlap [m]; Y* effective moduli [Pa]; v impact
+//! velocities [m/s]. Simulated grains are soft to allow long steps, so that they overlap too much: the
+//! largest overlap of an impact, and with it the area, goes as (v²/Y*)^{2/5}. σ_A A is the area of the real,
+//! stiffer contact.
+//! Range: σ_A is derived for impacts; a contact at rest, whose overlap goes as Y*^{−2/3}, is corrected by the
+//! same factor.
+//! Source: Johnson, *Contact Mechanics* (1985), ch. 4, for the area; the correction as in J. Kolehmainen et
+//! al., AIChE J. 63, 1872 (2017), with the exponent 4/5 of the velocity.
 //!
 //! ```
 //! use amberfield_laws::contact_area::{correction, hertz};
@@ -13,14 +18,15 @@
 
 use std::f64::consts::PI;
 
-/// A [m²] of an effective radius R* [m] and an overlap δ [m].
+/// Contact area A [m²] for an effective radius R* [m] and an overlap δ [m].
 #[inline(always)]
 #[must_use]
 pub fn hertz(effective_radius: f64, overlap: f64) -> f64 {
     PI * effective_radius * overlap
 }
 
-/// σ_A of the effective moduli Y* simulated and real [Pa] and v_real/v_soft.
+/// Area correction σ_A for the simulated (`soft`) and the real effective modulus Y* [Pa] and the ratio
+/// v_real/v_soft.
 #[must_use]
 pub fn correction(soft: f64, real: f64, velocity_ratio: f64) -> f64 {
     (soft / real).powf(0.4) * velocity_ratio.powf(0.8)

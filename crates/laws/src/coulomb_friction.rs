@@ -1,7 +1,8 @@
 //! Coulomb friction: |F_t| ≤ μ F_n.
 //!
-//! F_t tangential force [N]; F_n normal force [N], positive when it pushes the bodies apart; a contact that
-//! pulls (F_n < 0) carries no friction; μ friction coefficient, ≥ 0. Static and sliding friction are equal.
+//! F_t tangential force [N]; F_n normal force [N], positive when it pushes the bodies apart; μ friction
+//! coefficient, ≥ 0. A contact that pulls (F_n < 0) carries no friction. Static and sliding friction are
+//! equal.
 //! Source: Cundall & Strack, Géotechnique 29, 47 (1979).
 //!
 //! ```
@@ -14,14 +15,14 @@
 
 use nalgebra::Vector3;
 
-/// Largest tangential force [N]: μ max(F_n, 0).
+/// Largest tangential force μ max(F_n, 0) [N] that friction can carry.
 #[inline]
 #[must_use]
 pub fn largest(friction: f64, normal_force: f64) -> f64 {
     friction * normal_force.max(0.0)
 }
 
-/// The trial tangential force [N], shortened to the largest that friction can carry.
+/// Tangential force [N]: the trial force, shortened to the largest that friction can carry.
 #[inline]
 #[must_use]
 pub fn limited(trial: Vector3<f64>, friction: f64, normal_force: f64) -> Vector3<f64> {
@@ -30,7 +31,7 @@ pub fn limited(trial: Vector3<f64>, friction: f64, normal_force: f64) -> Vector3
     if size2 <= bound * bound { trial } else { trial * (bound / size2.sqrt()) }
 }
 
-/// Friction coefficient of two materials: the smaller one, the rougher surface slides on the smoother.
+/// Friction coefficient between two materials: the smaller of their two coefficients.
 #[must_use]
 pub fn mixed(friction_i: f64, friction_j: f64) -> f64 {
     friction_i.min(friction_j)

@@ -1,18 +1,26 @@
-//! Drag in a suspension: β = (π/8) C_d ρ d² |w| ε^{2−χ}, C_d = (0.63 + 4.8/√(ε Re))², χ = 3.7 − 0.65 exp(−(1.5 − log₁₀(ε Re))²/2).
+//! Drag in a suspension: β = (π/8) C_d ρ d² |w| ε^{2−χ}.
 //!
-//! Per grain, as the coefficient β [kg/s] of F = β (u − v) beside the force of the pressure gradient (model A). Range: any ε and Re of sedimentation and fluidisation.
-//! Source: Di Felice, Int. J. Multiphase Flow 20, 153 (1994), with C_d of Dalla Valle, *Micromeritics* (1948).
+//! C_d = (0.63 + 4.8/√(ε Re))² drag coefficient; χ = 3.7 − 0.65 exp(−(1.5 − log₁₀(ε Re))²/2) exponent of the
+//! voidage function.
+//!
+//! The force on one grain is F = β (u − v) [N], beside the force of the pressure gradient (model A). β
+//! coefficient [kg/s]; ε void fraction; w = u − v velocity of the fluid less that of the grain [m/s]; d
+//! diameter of the grain [m]; ρ density of the fluid [kg/m³]; Re Reynolds number of the grain.
+//! Range: any ε and Re of sedimentation and fluidisation.
+//! Source: Di Felice, Int. J. Multiphase Flow 20, 153 (1994), with C_d of Dalla Valle, *Micromeritics*
+//! (1948).
 //!
 //! ```
 //! use amberfield_laws::{di_felice_drag, particle_reynolds::Slip, stokes_drag};
 //! let slip = Slip { speed: 1e-7, void_fraction: 1.0, diameter: 1e-4, density: 1.2, viscosity: 1.8e-5 };
-//! assert!((di_felice_drag::coefficient(&slip) / stokes_drag::coefficient(1e-4, 1.8e-5) - 0.96).abs() < 1e-3);
+//! let over_stokes = di_felice_drag::coefficient(&slip) / stokes_drag::coefficient(1e-4, 1.8e-5);
+//! assert!((over_stokes - 0.96).abs() < 1e-3);
 //! ```
 
 use crate::particle_reynolds::Slip;
 use std::f64::consts::PI;
 
-/// β [kg/s].
+/// Drag coefficient β [kg/s] of one grain.
 #[must_use]
 pub fn coefficient(slip: &Slip) -> f64 {
     // C_d |w| is written without a division by |w|: finite at rest.
@@ -23,7 +31,7 @@ pub fn coefficient(slip: &Slip) -> f64 {
     PI / 8.0 * resistance * slip.density * slip.diameter * slip.diameter * voidage
 }
 
-/// χ of the superficial Reynolds number ε Re; 3.7 at rest.
+/// Exponent χ of the voidage function for a superficial Reynolds number ε Re; 3.7 at rest.
 #[must_use]
 pub fn exponent(reynolds: f64) -> f64 {
     3.7 - 0.65 * (-0.5 * (1.5 - reynolds.log10()).powi(2)).exp()

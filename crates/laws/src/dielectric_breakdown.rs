@@ -1,8 +1,10 @@
-//! No transfer may raise the field at its contact beyond breakdown: |E_c·n − αT/ε| ≤ max(E_bd, |E_c·n|).
+//! Dielectric breakdown as a limit on charge transfer: |E_c·n − αT/ε| ≤ max(E_bd, |E_c·n|).
 //!
-//! E_c·n field at the contact along n_ij before the transfer [V/m]; T charge moved from i to j [C], which lowers it by αT/ε (α as in
-//! [`crate::charge_transfer`], ε [F/m]); E_bd breakdown field [V/m], 3 MV/m in air. A transfer that would go further ends where the bound is reached; a
-//! contact beyond the bound already may only be relieved. Range: a limit on charging, no model of the discharge itself.
+//! E_c·n field at the contact along n_ij before the transfer [V/m]; T charge moved from i to j [C], which
+//! lowers the field by αT/ε (α from [`crate::charge_transfer`] [1/m²], ε permittivity [F/m]); E_bd breakdown
+//! field [V/m], 3 MV/m in air. A transfer that would raise the field beyond E_bd ends where the bound is
+//! reached; where the field is beyond the bound already, only transfers that lower it are left.
+//! Range: a limit on charging, not a model of the discharge itself.
 //! Source: S. Matsusaka, H. Maruyama, T. Matsuyama & M. Ghadiri, Chem. Eng. Sci. 65, 5781 (2010), §2.
 //!
 //! ```
@@ -12,7 +14,9 @@
 //! assert_eq!(bounded(9e6, 2e6, 1.0, 3e6), 5e6);
 //! ```
 
-/// What is left of a transfer of T [C] at a normal field [V/m]; `field_per_charge` = α/ε [V/(m·C)].
+/// Transfer [C] that breakdown leaves of a transfer T [C].
+///
+/// `normal_field` = E_c·n [V/m], `field_per_charge` = α/ε [V/(m·C)], `breakdown` = E_bd [V/m].
 #[must_use]
 pub fn bounded(transfer: f64, normal_field: f64, field_per_charge: f64, breakdown: f64) -> f64 {
     let most = breakdown.max(normal_field.abs());

@@ -1,6 +1,7 @@
-//! The drag law that a scene names: F = β (u − v), beside the force of the pressure gradient (model A).
+//! Drag by the law that a scene names: F = β (u − v), beside the force of the pressure gradient (model A).
 //!
-//! Range and source: the law's own file.
+//! F force on one grain [N]; β drag coefficient [kg/s]; u velocity of the fluid, v of the grain [m/s]. Range
+//! and source stand in the file of each law.
 //!
 //! ```
 //! use amberfield_core::DragLaw;
@@ -13,7 +14,7 @@ use crate::particle_reynolds::Slip;
 use crate::{beetstra_drag, di_felice_drag, gidaspow_drag, schiller_naumann_drag, stokes_drag};
 use amberfield_core::DragLaw;
 
-/// β [kg/s].
+/// Drag coefficient β [kg/s] of one grain by the given law.
 #[must_use]
 pub fn coefficient(law: DragLaw, slip: &Slip) -> f64 {
     match law {

@@ -1,29 +1,40 @@
-//! Drag in a bed: Ergun's below ε = 0.8, Wen and Yu's above.
+//! Drag in a bed, by Ergun below a void fraction of 0.8 and by Wen and Yu above: F = β (u − v).
 //!
-//! Per grain, as the coefficient β [kg/s] of F = β (u − v) beside the force of the pressure gradient (model A), V = πd³/6:
-//! ε < 0.8: β = V [150 (1 − ε) μ/(ε d²) + 1.75 ρ|w|/d]; ε ≥ 0.8: β = V (3/4) C_d ε ρ|w| ε^{−2.65}/d, C_d |w| from Schiller and Naumann at ε Re. The two differ at ε = 0.8, as published.
-//! With a fixed bed the first gives Ergun's pressure drop, ∇p ε = −β (1 − ε) U/(V ε). Range: beds of spheres. Source: Gidaspow, *Multiphase Flow and Fluidization*, Academic Press, 1994, §2; Ergun,
-//! Chem. Eng. Prog. 48, 89 (1952); Wen & Yu, Chem. Eng. Prog. Symp. Ser. 62, 100 (1966).
+//! ```text
+//! ε < 0.8: β = V [150 (1 − ε) μ/(ε d²) + 1.75 ρ|w|/d]
+//! ε ≥ 0.8: β = V (3/4) C_d ε ρ|w| ε^{−2.65}/d, C_d |w| from Schiller and Naumann at ε Re
+//! ```
+//!
+//! The force on one grain is F = β (u − v) [N], beside the force of the pressure gradient (model A). β
+//! coefficient [kg/s]; V = πd³/6 volume of the grain [m³]; ε void fraction; w = u − v velocity of the fluid
+//! less that of the grain [m/s]; d diameter of the grain [m]; ρ density [kg/m³] and μ viscosity [Pa·s] of the
+//! fluid. The two forms differ at ε = 0.8, as published. In a fixed bed the first form gives Ergun's pressure
+//! drop, ∇p ε = −β (1 − ε) U/(V ε).
+//! Range: beds of spheres.
+//! Source: Gidaspow, *Multiphase Flow and Fluidization*, Academic Press, 1994, §2; Ergun, Chem. Eng. Prog.
+//! 48, 89 (1952); Wen & Yu, Chem. Eng. Prog. Symp. Ser. 62, 100 (1966).
 //!
 //! ```
 //! use amberfield_laws::{gidaspow_drag, particle_reynolds::Slip, stokes_drag};
 //! let slip = Slip { speed: 0.0, void_fraction: 1.0, diameter: 1e-4, density: 1.2, viscosity: 1.8e-5 };
-//! assert!((gidaspow_drag::coefficient(&slip) / stokes_drag::coefficient(1e-4, 1.8e-5) - 1.0).abs() < 1e-12);
+//! let over_stokes = gidaspow_drag::coefficient(&slip) / stokes_drag::coefficient(1e-4, 1.8e-5);
+//! assert!((over_stokes - 1.0).abs() < 1e-12);
 //! ```
 
 use crate::particle_reynolds::Slip;
 use crate::schiller_naumann_drag;
 use std::f64::consts::PI;
 
-/// Void fraction from which on grains are alone rather than a bed.
+/// Void fraction above which grains count as dispersed, no longer as a bed.
 const DILUTE: f64 = 0.8;
 
-/// β [kg/s].
+/// Drag coefficient β [kg/s] of one grain.
 #[must_use]
 pub fn coefficient(slip: &Slip) -> f64 {
     if slip.void_fraction < DILUTE { ergun(slip) } else { wen_yu(slip) }
 }
 
+/// Drag coefficient β [kg/s] by Ergun, for dense beds.
 fn ergun(slip: &Slip) -> f64 {
     let Slip { speed, void_fraction, diameter, density, viscosity } = *slip;
     let viscous = 150.0 * (1.0 - void_fraction) * viscosity / (void_fraction * diameter * diameter);
@@ -31,9 +42,10 @@ fn ergun(slip: &Slip) -> f64 {
     PI / 6.0 * diameter.powi(3) * (viscous + inertial)
 }
 
+/// Drag coefficient β [kg/s] by Wen and Yu, for dispersed grains.
 fn wen_yu(slip: &Slip) -> f64 {
     let Slip { void_fraction, diameter, viscosity, .. } = *slip;
-    // (3/4) C_d ε ρ|w|/d = 18 μ f/d² with C_d = 24 f/(ε Re).
+    // (3/4) C_d ε ρ|w|/d = 18 μ f/d² with C_d = 24 f/(ε Re): no division by |w|, so finite at rest.
     let factor = schiller_naumann_drag::factor(slip.superficial_reynolds());
     PI / 6.0 * diameter * 18.0 * viscosity * factor * void_fraction.powf(-2.65)
 }

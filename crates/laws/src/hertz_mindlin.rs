@@ -1,83 +1,84 @@
 //! Hertz–Mindlin contact: F_n = (4/3) Y* √R* δ^{3/2} − γ_n v_n, dF_t = −S_t v_t dt, γ = 2√(5/6) β √(S m*).
 //!
 //! δ overlap [m]; Y* effective Young's modulus [Pa], 1/Y* = (1−ν_i²)/Y_i + (1−ν_j²)/Y_j; G* effective shear
-//! modulus [Pa], 1/G* = (2−ν_i)/G_i + (2−ν_j)/G_j, G = Y/2(1+ν); R* effective radius [m],
-//! 1/R* = 1/r_i + 1/r_j (wall: R* = r); m* effective mass [kg], likewise; S_n = 2Y*√(R*δ) and
-//! S_t = 8G*√(R*δ) stiffnesses [N/m]; β damping ratio (see `restitution`); γ damping coefficient [N·s/m];
-//! v_n, v_t relative velocity of the surfaces [m/s]. F_n > 0 pushes the bodies apart.
+//! modulus [Pa], 1/G* = (2−ν_i)/G_i + (2−ν_j)/G_j, G = Y/2(1+ν); R* effective radius [m], 1/R* = 1/r_i +
+//! 1/r_j (wall: R* = r); m* effective mass [kg], defined likewise; S_n = 2Y*√(R*δ) and S_t = 8G*√(R*δ)
+//! stiffnesses [N/m]; β damping ratio (see [`crate::restitution`]); γ damping coefficient [N·s/m]; v_n, v_t
+//! relative velocity of the surfaces [m/s]. F_n > 0 pushes the bodies apart.
 //! Range: δ ≪ r, smooth, elastic. The contact ends at δ = 0, where the damped force pulls slightly.
 //! Sources: Johnson, *Contact Mechanics* (1985), ch. 4 and 7; Tsuji, Tanaka & Ishida, Powder Technol. 71, 239
 //! (1992); Antypov & Elliott, EPL 94, 50004 (2011).
 //!
 //! ```
 //! use amberfield_laws::hertz_mindlin::{effective_young, normal_force, normal_stiffness};
-//! let y = effective_young(1e7, 0.3, 1e7, 0.3);
-//! let (r, delta) = (5e-4, 1e-6);
+//! let young = effective_young(1e7, 0.3, 1e7, 0.3);
+//! let (radius, overlap) = (5e-4, 1e-6);
 //! // F = (2/3) S_n δ
-//! assert!((normal_force(y, r, delta) / (2.0 / 3.0 * normal_stiffness(y, r, delta) * delta) - 1.0).abs() < 1e-14);
+//! let expected = 2.0 / 3.0 * normal_stiffness(young, radius, overlap) * overlap;
+//! assert!((normal_force(young, radius, overlap) / expected - 1.0).abs() < 1e-14);
 //! ```
 
-/// 2√(5/6), the factor of the Hertz contact's damping.
+/// Factor 2√(5/6) of the damping of a Hertz contact.
 pub const DAMPING_FACTOR: f64 = 1.825_741_858_350_553_8;
 
 /// Factor of the elastic contact time: 2 ∫₀¹ dx/√(1 − x^{5/2}) · (15/16)^{2/5} = 2.868….
 pub const CONTACT_TIME_FACTOR: f64 = 2.868_265_699_480_853;
 
-/// Half of the harmonic sum: 1/(1/a + 1/b), for radii and masses.
+/// Effective radius [m] or mass [kg] of two bodies: 1/(1/a + 1/b).
 #[inline]
 #[must_use]
 pub fn effective(a: f64, b: f64) -> f64 {
     a * b / (a + b)
 }
 
-/// Y* [Pa] of Young's moduli [Pa] and Poisson ratios.
+/// Effective modulus Y* [Pa] of two bodies with Young's moduli [Pa] and Poisson ratios.
 #[must_use]
 pub fn effective_young(young_i: f64, poisson_i: f64, young_j: f64, poisson_j: f64) -> f64 {
     1.0 / ((1.0 - poisson_i * poisson_i) / young_i + (1.0 - poisson_j * poisson_j) / young_j)
 }
 
-/// G = Y/(2(1 + ν)) [Pa].
+/// Shear modulus G = Y/(2(1 + ν)) [Pa] of an isotropic solid.
 #[must_use]
 pub fn shear_modulus(young: f64, poisson: f64) -> f64 {
     young / (2.0 * (1.0 + poisson))
 }
 
-/// G* [Pa] of Young's moduli [Pa] and Poisson ratios.
+/// Effective shear modulus G* [Pa] of two bodies with Young's moduli [Pa] and Poisson ratios.
 #[must_use]
 pub fn effective_shear(young_i: f64, poisson_i: f64, young_j: f64, poisson_j: f64) -> f64 {
     let (g_i, g_j) = (shear_modulus(young_i, poisson_i), shear_modulus(young_j, poisson_j));
     1.0 / ((2.0 - poisson_i) / g_i + (2.0 - poisson_j) / g_j)
 }
 
-/// S_n = 2Y*√(R*δ) [N/m].
+/// Normal stiffness S_n = 2Y*√(R*δ) [N/m].
 #[inline]
 #[must_use]
 pub fn normal_stiffness(young: f64, radius: f64, overlap: f64) -> f64 {
     2.0 * young * (radius * overlap).sqrt()
 }
 
-/// S_t = 8G*√(R*δ) [N/m].
+/// Tangential stiffness S_t = 8G*√(R*δ) [N/m].
 #[inline]
 #[must_use]
 pub fn tangential_stiffness(shear: f64, radius: f64, overlap: f64) -> f64 {
     8.0 * shear * (radius * overlap).sqrt()
 }
 
-/// Elastic normal force (4/3)Y*√R* δ^{3/2} [N].
+/// Elastic normal force (4/3) Y*√R* δ^{3/2} [N].
 #[inline]
 #[must_use]
 pub fn normal_force(young: f64, radius: f64, overlap: f64) -> f64 {
     4.0 / 3.0 * young * (radius * overlap).sqrt() * overlap
 }
 
-/// Elastic energy of the normal spring (8/15)Y*√R* δ^{5/2} [J].
+/// Elastic energy (8/15) Y*√R* δ^{5/2} [J] of the normal spring.
 #[inline]
 #[must_use]
 pub fn normal_energy(young: f64, radius: f64, overlap: f64) -> f64 {
     8.0 / 15.0 * young * (radius * overlap).sqrt() * overlap * overlap
 }
 
-/// γ = 2√(5/6) β √(S m*) [N·s/m].
+/// Damping coefficient γ = 2√(5/6) β √(S m*) [N·s/m].
 #[inline]
 #[must_use]
 pub fn damping(damping_ratio: f64, stiffness: f64, mass: f64) -> f64 {
@@ -98,7 +99,7 @@ pub fn largest_overlap(young: f64, radius: f64, mass: f64, speed: f64) -> f64 {
 
 /// Largest overlap [m] of a damped head-on collision, 0 ≤ β < 1:
 /// δ_max^{5/4} = (v/ω) exp(−(β/√(1−β²)) acos β), ω = √(4k/(5m*)), k = (4/3)Y*√R*
-/// (Antypov & Elliott map the contact on a damped linear oscillator).
+/// (Antypov & Elliott map the contact onto a damped linear oscillator).
 #[must_use]
 pub fn largest_overlap_damped(young: f64, radius: f64, mass: f64, speed: f64, damping_ratio: f64) -> f64 {
     let k = 4.0 / 3.0 * young * radius.sqrt();
@@ -113,7 +114,7 @@ mod tests {
 
     /// Round-off through a power.
     const ROUND_OFF: f64 = 1e-13;
-    /// Central difference with relative step 1e-5.
+    /// Error of a central difference with relative step 1e-5.
     const DIFFERENCE: f64 = 1e-8;
 
     #[test]

@@ -1,8 +1,10 @@
-//! Charge before a plane wall: grounded F = −q²/(16πεd²), towards the wall; insulating (E·n = 0) the opposite.
+//! Charge before a plane wall: F = −q²/(16πεd²) for a grounded wall, F = +q²/(16πεd²) for an insulating one.
 //!
-//! The wall is replaced by an image charge at the mirror point: −q behind a grounded conductor, +q behind an
-//! ideal insulator. q charge [C]; d distance of the charge from the wall [m], d > 0; ε [F/m]. The
-//! force's sign is along the normal that points from the wall to the charge. Range: infinite plane.
+//! The wall is replaced by an image charge at the mirror point: −q behind a grounded conductor (V = 0), +q
+//! behind an ideal insulator (E·n = 0). F force on the charge along the normal that points from the wall to
+//! the charge [N], so that a negative force pulls towards the wall; q charge [C]; d distance of the charge
+//! from the wall [m], d > 0; ε permittivity [F/m].
+//! Range: infinite plane.
 //! Source: Jackson, *Classical Electrodynamics*, 3rd ed., §2.1.
 //!
 //! ```
@@ -14,17 +16,17 @@
 
 use nalgebra::Vector3;
 
-/// What the plane does to the field.
+/// Boundary condition of the plane wall.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum PlaneWall {
-    /// V = 0.
+    /// Grounded conductor: V = 0.
     Grounded,
-    /// E·n = 0.
+    /// Ideal insulator: E·n = 0.
     Insulating,
 }
 
 impl PlaneWall {
-    /// Image charge over the charge: −1 or +1.
+    /// Ratio of the image charge to the charge: −1 or +1.
     #[must_use]
     pub fn image_factor(self) -> f64 {
         match self {
@@ -40,13 +42,14 @@ pub fn mirror_point(position: Vector3<f64>, point: Vector3<f64>, normal: Vector3
     position - normal * (2.0 * (position - point).dot(&normal))
 }
 
-/// Normal field [V/m] that the image makes at its charge, distance d [m], k = 1/(4πε) [V·m/C].
+/// Normal field [V/m] of the image at the charge [C], for a distance d [m] and k = 1/(4πε) [V·m/C].
 #[must_use]
 pub fn field_at_charge(coulomb_constant: f64, charge: f64, distance: f64, wall: PlaneWall) -> f64 {
     wall.image_factor() * coulomb_constant * charge / (4.0 * distance * distance)
 }
 
-/// Normal force [N] on the charge, distance d [m], k = 1/(4πε) [V·m/C]; negative pulls to the wall.
+/// Normal force [N] on the charge [C], for a distance d [m] and k = 1/(4πε) [V·m/C]; a negative force pulls
+/// towards the wall.
 #[must_use]
 pub fn force_on_charge(coulomb_constant: f64, charge: f64, distance: f64, wall: PlaneWall) -> f64 {
     charge * field_at_charge(coulomb_constant, charge, distance, wall)
@@ -58,7 +61,7 @@ mod tests {
 
     /// Round-off of a handful of operations.
     const ROUND_OFF: f64 = 1e-14;
-    /// Central difference.
+    /// Error of a central difference.
     const DIFFERENCE: f64 = 1e-8;
 
     #[test]

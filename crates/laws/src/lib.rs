@@ -1,6 +1,7 @@
-//! One closed-form physical law per file: pure functions, few scalars in, few out.
+//! Closed-form physical laws, one per file: pure functions of a few scalars.
 //!
-//! SI units. Electric field points away from positive charge. Unit vectors n point from i to j.
+//! All quantities are in SI units. The electric field points away from positive charge. Unit vectors n point
+//! from body i to body j.
 #![forbid(unsafe_code)]
 
 pub mod beetstra_drag;

@@ -1,7 +1,9 @@
-//! Lift of a spinning grain: F = (π/8) ρ d³ (Ω − ω/2) × (v − u).
+//! Magnus lift of a spinning grain: F = (π/8) ρ d³ (Ω − ω/2) × (v − u).
 //!
-//! Ω angular velocity of the grain, ω = ∇ × u vorticity of the fluid [1/s]; v − u velocity of the grain relative to the fluid [m/s]; d diameter [m]; ρ density of the fluid [kg/m³].
-//! Range: Re of order 1 and below. Source: Rubinow & Keller, J. Fluid Mech. 11, 447 (1961), F = πa³ρ Ω × V.
+//! F force on the grain [N]; Ω angular velocity of the grain [rad/s]; ω = ∇ × u vorticity of the fluid [1/s];
+//! v − u velocity of the grain relative to the fluid [m/s]; d diameter [m]; ρ density of the fluid [kg/m³].
+//! Range: Re of order 1 and below.
+//! Source: Rubinow & Keller, J. Fluid Mech. 11, 447 (1961), F = πa³ρ Ω × V.
 //!
 //! ```
 //! use amberfield_laws::magnus_lift::force;
@@ -14,7 +16,9 @@
 use nalgebra::Vector3;
 use std::f64::consts::PI;
 
-/// F [N] on a grain of velocity `relative` = v − u.
+/// Lift force F [N] on a grain.
+///
+/// `relative` = v − u [m/s], `spin` = Ω [rad/s], `vorticity` = ω [1/s], diameter [m], density [kg/m³].
 #[must_use]
 pub fn force(
     relative: Vector3<f64>,

@@ -1,7 +1,9 @@
-//! Reynolds number of a grain in a fluid: Re = ρ d |w|/μ, and that of the superficial slip, ε Re.
+//! Reynolds number of a grain in a fluid: Re = ρ d |w|/μ; with the superficial slip, ε Re.
 //!
-//! ρ density [kg/m³] and μ viscosity [Pa·s] of the fluid; d diameter of the grain [m]; w = u − v velocity of the fluid less that of the grain
-//! [m/s]; ε void fraction, 0 < ε ≤ 1. Source: Crowe, Schwarzkopf, Sommerfeld & Tsuji, *Multiphase Flows with Droplets and Particles*, 2nd ed., §2.
+//! ρ density [kg/m³] and μ viscosity [Pa·s] of the fluid; d diameter of the grain [m]; w = u − v velocity of
+//! the fluid less that of the grain [m/s]; ε void fraction, 0 < ε ≤ 1.
+//! Source: Crowe, Schwarzkopf, Sommerfeld & Tsuji, *Multiphase Flows with Droplets and Particles*, 2nd ed.,
+//! §2.
 //!
 //! ```
 //! use amberfield_laws::particle_reynolds::Slip;
@@ -9,29 +11,29 @@
 //! assert!((slip.reynolds() - 6.667).abs() < 1e-3);
 //! ```
 
-/// What the drag laws know of the fluid at a grain.
+/// State of the fluid at a grain, the input of the drag laws.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Slip {
-    /// |u − v| [m/s].
+    /// Slip speed |w| = |u − v| [m/s].
     pub speed: f64,
-    /// ε, the fluid's share of the volume.
+    /// Void fraction ε, the fluid's share of the volume.
     pub void_fraction: f64,
-    /// d [m].
+    /// Diameter d of the grain [m].
     pub diameter: f64,
-    /// ρ [kg/m³].
+    /// Density ρ of the fluid [kg/m³].
     pub density: f64,
-    /// μ [Pa·s].
+    /// Viscosity μ of the fluid [Pa·s].
     pub viscosity: f64,
 }
 
 impl Slip {
-    /// ρ d |w|/μ.
+    /// Reynolds number Re = ρ d |w|/μ.
     #[must_use]
     pub fn reynolds(&self) -> f64 {
         self.density * self.diameter * self.speed / self.viscosity
     }
 
-    /// ρ d ε|w|/μ.
+    /// Superficial Reynolds number ε Re = ρ d ε|w|/μ.
     #[must_use]
     pub fn superficial_reynolds(&self) -> f64 {
         self.void_fraction * self.reynolds()

@@ -1,9 +1,9 @@
 //! Field of a point charge: E = q r̂/(4πεr²), V = q/(4πεr).
 //!
-//! q charge [C]; r distance [m], r > 0; r̂ unit vector from the charge to the point; ε = ε₀εr [F/m].
-//! E [V/m] points away from positive charge. Functions take k = 1/(4πε) [V·m/C]
-//! (`amberfield_core::Permittivity::coulomb`) so that a sum multiplies by it once.
-//! Range: any r > 0; the caller skips the charge itself by index.
+//! q charge [C]; r distance [m], r > 0; r̂ unit vector from the charge to the point; ε = ε₀εr permittivity
+//! [F/m]. E [V/m] points away from positive charge. The functions take k = 1/(4πε) [V·m/C]
+//! (`amberfield_core::Permittivity::coulomb`), so that a sum over charges multiplies by it once.
+//! Range: any r > 0; the caller skips the charge itself by its index.
 //! Source: Jackson, *Classical Electrodynamics*, 3rd ed., §1.2.
 //!
 //! ```
@@ -17,7 +17,7 @@
 
 use nalgebra::Vector3;
 
-/// E [V/m] at the point `offset` = point − charge [m], k = 1/(4πε) [V·m/C].
+/// Field E [V/m] of a charge [C] at `offset` = point − charge [m], with k = 1/(4πε) [V·m/C].
 #[inline]
 #[must_use]
 pub fn field(coulomb_constant: f64, charge: f64, offset: Vector3<f64>) -> Vector3<f64> {
@@ -25,7 +25,7 @@ pub fn field(coulomb_constant: f64, charge: f64, offset: Vector3<f64>) -> Vector
     offset * (coulomb_constant * charge / (r2 * r2.sqrt()))
 }
 
-/// V [V] at distance r [m], k = 1/(4πε) [V·m/C].
+/// Potential V [V] of a charge [C] at a distance r [m], with k = 1/(4πε) [V·m/C].
 #[inline]
 #[must_use]
 pub fn potential(coulomb_constant: f64, charge: f64, distance: f64) -> f64 {
@@ -38,7 +38,7 @@ mod tests {
 
     /// Round-off of a handful of operations.
     const ROUND_OFF: f64 = 1e-14;
-    /// Central difference with step 1e-5 of the distance: truncation 1e-10.
+    /// Error of a central difference with step 1e-5 of the distance: truncation 1e-10.
     const DIFFERENCE: f64 = 1e-8;
 
     #[test]

@@ -1,9 +1,9 @@
 //! Damping ratio of a coefficient of restitution: β = −ln e/√(ln²e + π²).
 //!
-//! e rebound speed over approach speed, 0 < e ≤ 1; β damping ratio, 0 ≤ β < 1. Exact for the linear contact
-//! and for the Hertz contact damped by γ = 2√(5/6) β √(S_n m*) that ends when the overlap returns to zero
-//! (the last part of the rebound then pulls). Source: Antypov & Elliott, EPL 94, 50004 (2011);
-//! Tsuji, Tanaka & Ishida, Powder Technol. 71, 239 (1992).
+//! e rebound speed over approach speed, 0 < e ≤ 1; β damping ratio, 0 ≤ β < 1.
+//! Range: exact for the linear contact, and for the Hertz contact with the damping γ = 2√(5/6) β √(S_n m*)
+//! that ends when the overlap returns to zero (the last part of the rebound then pulls).
+//! Source: Antypov & Elliott, EPL 94, 50004 (2011); Tsuji, Tanaka & Ishida, Powder Technol. 71, 239 (1992).
 //!
 //! ```
 //! use amberfield_laws::restitution::damping_ratio;
@@ -13,7 +13,7 @@
 
 use std::f64::consts::PI;
 
-/// β of e in (0, 1].
+/// Damping ratio β for a coefficient of restitution e in (0, 1].
 #[must_use]
 pub fn damping_ratio(restitution: f64) -> f64 {
     let log = restitution.ln();
@@ -21,16 +21,18 @@ pub fn damping_ratio(restitution: f64) -> f64 {
     (-log / (log * log + PI * PI).sqrt()).abs()
 }
 
-/// e of β in [0, 1): e = exp(−πβ/√(1 − β²)).
+/// Coefficient of restitution e = exp(−πβ/√(1 − β²)) for a damping ratio β in [0, 1).
 #[must_use]
 pub fn restitution_of(damping_ratio: f64) -> f64 {
     (-PI * damping_ratio / (1.0 - damping_ratio * damping_ratio).sqrt()).exp()
 }
 
-/// Restitution of two materials: their geometric mean √(e_i e_j), the rule of LAMMPS' and LIGGGHTS' tables of
-/// mixed coefficients when only the solids' own values are known.
+/// Coefficient of restitution between two materials: the geometric mean √(e_i e_j) of their own values.
+///
+/// LAMMPS and LIGGGHTS use the same rule where no value for the pair is given.
 #[must_use]
 pub fn mixed(restitution_i: f64, restitution_j: f64) -> f64 {
+    // The root of a square may be off by one rounding; equal materials keep their value.
     if restitution_i == restitution_j { restitution_i } else { (restitution_i * restitution_j).sqrt() }
 }
 

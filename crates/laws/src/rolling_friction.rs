@@ -1,14 +1,19 @@
 //! Rolling friction, elastic–plastic spring and dashpot: M_k ← M_k − k_r ω_r Δt, |M_k| ≤ μ_r R* F_n,
 //! M_d = −C_r ω_r.
 //!
-//! M [N·m] torque on i, −M on j; ω_r relative angular velocity ω_i − ω_j [rad/s], rolling and twist about the
-//! normal alike, else a grain could spin like a top forever (with μ_r = 0 it may: a point contact has no drilling torque); k_r = 2.25 S_n (μ_r R*)² rolling stiffness [N·m/rad]; S_n normal stiffness [N/m]; R* effective
-//! radius [m]; μ_r rolling friction coefficient; F_n normal force [N]; C_r = 2 η √(I_r k_r) [N·m·s],
-//! I_r reduced moment of inertia about the contact [kg·m²], η = 0.3. The dashpot acts only while the spring
-//! is below its limit. A constant directional torque (type A) would chatter about zero in a heap at rest; the
-//! spring gives rest without creeping energy. Source: Ai, Chen, Rotter & Ooi, Powder Technol. 206, 269 (2011),
-//! type C; Iwashita & Oda, J. Eng. Mech. 124, 285 (1998).
-//! A number may be one contact's or, side by side, those of several.
+//! M torque on i [N·m], −M on j; ω_r relative angular velocity ω_i − ω_j [rad/s]; k_r = 2.25 S_n (μ_r R*)²
+//! rolling stiffness [N·m/rad]; S_n normal stiffness [N/m]; R* effective radius [m]; μ_r rolling friction
+//! coefficient; F_n normal force [N]; C_r = 2 η √(I_r k_r) damping [N·m·s/rad]; I_r reduced moment of inertia
+//! about the contact [kg·m²]; η = 0.3 damping ratio.
+//!
+//! ω_r holds rolling as well as twist about the normal; otherwise a grain could spin like a top forever.
+//! (With μ_r = 0 it may: a point contact has no drilling torque.) The dashpot acts only while the spring is
+//! below its limit. A constant torque against the motion (type A) would chatter about zero in a heap at rest,
+//! whereas the spring lets the heap rest without creeping.
+//! Source: Ai, Chen, Rotter & Ooi, Powder Technol. 206, 269 (2011), type C; Iwashita & Oda, J. Eng. Mech.
+//! 124, 285 (1998).
+//!
+//! Each number may be that of one contact, or of several contacts side by side.
 //!
 //! ```
 //! use amberfield_laws::rolling_friction::{largest, stiffness};
@@ -21,7 +26,7 @@ use nalgebra::{SimdRealField, Vector3};
 /// Damping ratio η of the rolling dashpot, the value that Ai et al. recommend.
 pub const ROLLING_DAMPING_RATIO: f64 = 0.3;
 
-/// k_r [N·m/rad] for S_n [N/m], μ_r and R* [m].
+/// Rolling stiffness k_r [N·m/rad] for a normal stiffness S_n [N/m], a coefficient μ_r and a radius R* [m].
 #[inline]
 #[must_use]
 pub fn stiffness<T: SimdRealField<Element = f64> + Copy>(
@@ -33,7 +38,7 @@ pub fn stiffness<T: SimdRealField<Element = f64> + Copy>(
     T::splat(2.25) * normal_stiffness * arm * arm
 }
 
-/// Largest rolling torque [N·m]: μ_r R* max(F_n, 0).
+/// Largest rolling torque μ_r R* max(F_n, 0) [N·m].
 #[inline]
 #[must_use]
 pub fn largest<T: SimdRealField<Element = f64> + Copy>(
@@ -44,15 +49,26 @@ pub fn largest<T: SimdRealField<Element = f64> + Copy>(
     rolling_friction * effective_radius * normal_force.simd_max(T::zero())
 }
 
-/// C_r [N·m·s/rad] for the reduced inertia [kg·m²] and k_r [N·m/rad].
+/// Rolling damping C_r [N·m·s/rad] for a reduced inertia I_r [kg·m²] and a stiffness k_r [N·m/rad].
 #[inline]
 #[must_use]
 pub fn damping<T: SimdRealField<Element = f64> + Copy>(reduced_inertia: T, stiffness: T) -> T {
     T::splat(2.0 * ROLLING_DAMPING_RATIO) * (reduced_inertia * stiffness).simd_sqrt()
 }
 
-/// One step of the spring: new spring torque and total torque on i [N·m]. `turn` = ω_r Δt [rad],
-/// `rolling_velocity` = ω_r [rad/s], `bound` as [`largest`] gives it.
+/// Rolling torques on body i after a step.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct RollingTorque<T> {
+    /// Torque M_k of the spring [N·m], which the contact remembers.
+    pub spring: Vector3<T>,
+    /// Total torque M_k + M_d [N·m].
+    pub total: Vector3<T>,
+}
+
+/// Advances the spring by one step.
+///
+/// `spring` M_k before the step [N·m], `turn` = ω_r Δt [rad], `rolling_velocity` = ω_r [rad/s], `stiffness`
+/// k_r [N·m/rad], `damping` C_r [N·m·s/rad], `bound` from [`largest`] [N·m].
 #[inline]
 #[must_use]
 pub fn advance<T: SimdRealField<Element = f64> + Copy>(
@@ -62,16 +78,17 @@ pub fn advance<T: SimdRealField<Element = f64> + Copy>(
     stiffness: T,
     damping: T,
     bound: T,
-) -> (Vector3<T>, Vector3<T>) {
+) -> RollingTorque<T> {
     let trial = spring - turn * stiffness;
     let size2 = trial.norm_squared();
     let sticking = size2.simd_lt(bound * bound);
+    // A trial torque of zero is kept too: shortening it would divide by zero.
     let kept = sticking | size2.simd_eq(T::zero());
     let new = trial * T::one().select(kept, bound / size2.simd_sqrt());
-    (new, new - rolling_velocity * damping.select(sticking, T::zero()))
+    RollingTorque { spring: new, total: new - rolling_velocity * damping.select(sticking, T::zero()) }
 }
 
-/// Rolling friction coefficient of two materials: the smaller one, as for sliding.
+/// Rolling friction coefficient between two materials: the smaller of their two coefficients.
 #[must_use]
 pub fn mixed(rolling_friction_i: f64, rolling_friction_j: f64) -> f64 {
     rolling_friction_i.min(rolling_friction_j)
@@ -87,16 +104,17 @@ mod tests {
     #[test]
     fn spring_opposes_rolling_and_saturates() {
         let turn: Vector3<f64> = Vector3::new(0.1, 0.0, 0.0);
-        let (spring, torque) = advance(Vector3::zeros(), turn, Vector3::zeros(), 2.0, 0.0, 1.0);
-        assert!((spring.x + 0.2).abs() < ROUND_OFF && torque == spring);
-        let (spring, torque) = advance(Vector3::zeros(), turn * 100.0, turn, 2.0, 5.0, 1.0);
-        assert!((spring.x + 1.0).abs() < ROUND_OFF && torque == spring);
+        let sticking = advance(Vector3::zeros(), turn, Vector3::zeros(), 2.0, 0.0, 1.0);
+        assert!((sticking.spring.x + 0.2).abs() < ROUND_OFF && sticking.total == sticking.spring);
+        let slipping = advance(Vector3::zeros(), turn * 100.0, turn, 2.0, 5.0, 1.0);
+        assert!((slipping.spring.x + 1.0).abs() < ROUND_OFF && slipping.total == slipping.spring);
     }
 
     #[test]
     fn derivative_of_the_elastic_torque_is_the_stiffness() {
         let at = |angle: f64| {
-            advance(Vector3::zeros(), Vector3::new(angle, 0.0, 0.0), Vector3::zeros(), 3.0, 0.0, 9.0).1.x
+            let turn = Vector3::new(angle, 0.0, 0.0);
+            advance(Vector3::zeros(), turn, Vector3::zeros(), 3.0, 0.0, 9.0).total.x
         };
         assert!(((at(0.1 + 1e-4) - at(0.1 - 1e-4)) / 2e-4 + 3.0).abs() < 1e-9);
     }
@@ -104,10 +122,10 @@ mod tests {
     #[test]
     fn odd_and_zero_without_load() {
         let turn = Vector3::new(0.1, 0.2, -0.1);
-        let (a, _) = advance(Vector3::zeros(), turn, turn, 1.0, 1.0, 0.1);
-        let (b, _) = advance(Vector3::zeros(), -turn, -turn, 1.0, 1.0, 0.1);
-        assert_eq!(a, -b);
-        assert_eq!(advance(turn, turn, turn, 1.0, 1.0, 0.0).1, Vector3::zeros());
+        let there = advance(Vector3::zeros(), turn, turn, 1.0, 1.0, 0.1);
+        let back = advance(Vector3::zeros(), -turn, -turn, 1.0, 1.0, 0.1);
+        assert_eq!(there.spring, -back.spring);
+        assert_eq!(advance(turn, turn, turn, 1.0, 1.0, 0.0).total, Vector3::zeros());
         assert_eq!(largest(0.1, 1.0, -1.0), 0.0);
         assert!((damping(4.0, 9.0) - 3.6_f64).abs() < ROUND_OFF);
         assert_eq!(mixed(0.2, 0.1), 0.1);

@@ -1,7 +1,17 @@
-//! Lift in a shear flow: F = 1.615 d² √(ρμ/|ω|) (w × ω) times Mei's factor.
+//! Saffman lift in a shear flow: F = 1.615 d² √(ρμ/|ω|) (w × ω) times Mei's factor.
 //!
-//! w = u − v slip [m/s]; ω = ∇ × u vorticity of the fluid [1/s]; d diameter [m]; ρ density [kg/m³]; μ viscosity [Pa·s]. Mei's factor, with Re = ρ d |w|/μ and γ = d|ω|/(2|w|): Re ≤ 40:
-//! (1 − 0.3314 √γ) exp(−Re/10) + 0.3314 √γ; beyond: 0.0524 √(γ Re). Range: 0.005 < γ < 0.4, Re < 100. Source: Saffman, J. Fluid Mech. 22, 385 (1965) and 31, 624 (1968); Mei, Int. J. Multiphase Flow 18, 145 (1992).
+//! F force on the grain [N]; w = u − v velocity of the fluid less that of the grain [m/s]; ω = ∇ × u
+//! vorticity of the fluid [1/s]; d diameter [m]; ρ density [kg/m³]; μ viscosity [Pa·s]. With Re = ρ d |w|/μ
+//! and γ = d|ω|/(2|w|), Mei's factor is
+//!
+//! ```text
+//! Re ≤ 40: (1 − 0.3314 √γ) exp(−Re/10) + 0.3314 √γ
+//! Re > 40: 0.0524 √(γ Re)
+//! ```
+//!
+//! Range: 0.005 < γ < 0.4, Re < 100.
+//! Source: Saffman, J. Fluid Mech. 22, 385 (1965) and 31, 624 (1968); Mei, Int. J. Multiphase Flow 18, 145
+//! (1992).
 //!
 //! ```
 //! use amberfield_laws::saffman_lift::force;
@@ -13,10 +23,12 @@
 
 use nalgebra::Vector3;
 
-/// Where Mei's factor changes its form.
+/// Reynolds number at which Mei's factor changes its form.
 const REYNOLDS: f64 = 40.0;
 
-/// F [N]; zero without slip or vorticity.
+/// Lift force F [N] on a grain; zero without slip or vorticity.
+///
+/// `slip` = w [m/s], `vorticity` = ω [1/s], diameter [m], density [kg/m³], viscosity [Pa·s].
 #[must_use]
 pub fn force(
     slip: Vector3<f64>,
@@ -26,15 +38,17 @@ pub fn force(
     viscosity: f64,
 ) -> Vector3<f64> {
     let (speed, rotation) = (slip.norm(), vorticity.norm());
+    // Both stand in denominators, though the force vanishes with either.
     if speed == 0.0 || rotation == 0.0 {
         return Vector3::zeros();
     }
+
     let reynolds = density * diameter * speed / viscosity;
     let saffman = 1.615 * diameter * diameter * (density * viscosity / rotation).sqrt();
     slip.cross(&vorticity) * (saffman * factor(reynolds, 0.5 * diameter * rotation / speed))
 }
 
-/// Mei's factor of Re and γ.
+/// Mei's factor for a Reynolds number Re and a dimensionless shear rate γ.
 #[must_use]
 pub fn factor(reynolds: f64, shear: f64) -> f64 {
     if reynolds > REYNOLDS {

@@ -1,7 +1,11 @@
-//! Drag on a sphere alone: β = 3πμd f, f = 1 + 0.15 Re^0.687 up to Re = 1000, then f = 0.44 Re/24.
+//! Drag on a single sphere: β = 3πμd f, f = 1 + 0.15 Re^0.687 up to Re = 1000, then f = 0.44 Re/24.
 //!
-//! Per grain, as the coefficient β [kg/s] of F = β (u − v); C_d = 24 f/Re. Range: Re < 3·10⁵; at Re = 1000 the two branches differ by 0.8 %, as published. The void fraction plays no part.
-//! Source: Schiller & Naumann, Z. Ver. Dtsch. Ing. 77, 318 (1933), as in Crowe et al., *Multiphase Flows with Droplets and Particles*, 2nd ed., §4.
+//! The force on one grain is F = β (u − v) [N]; the void fraction plays no part. β coefficient [kg/s]; f
+//! factor of the drag over that of Stokes, C_d = 24 f/Re; d diameter of the grain [m]; μ viscosity of the
+//! fluid [Pa·s]; Re Reynolds number of the grain.
+//! Range: Re < 3·10⁵; at Re = 1000 the two branches differ by 0.8 %, as published.
+//! Source: Schiller & Naumann, Z. Ver. Dtsch. Ing. 77, 318 (1933), as in Crowe et al.,
+//! *Multiphase Flows with Droplets and Particles*, 2nd ed., §4.
 //!
 //! ```
 //! use amberfield_laws::schiller_naumann_drag::factor;
@@ -11,16 +15,16 @@
 use crate::particle_reynolds::Slip;
 use crate::stokes_drag;
 
-/// Where the coefficient of drag becomes constant.
+/// Reynolds number above which C_d is constant (Newton's regime).
 const NEWTON: f64 = 1000.0;
 
-/// β [kg/s].
+/// Drag coefficient β [kg/s] of one grain.
 #[must_use]
 pub fn coefficient(slip: &Slip) -> f64 {
     stokes_drag::coefficient(slip.diameter, slip.viscosity) * factor(slip.reynolds())
 }
 
-/// f, the drag over that of Stokes.
+/// Factor f for a Reynolds number: the drag over that of Stokes.
 #[must_use]
 pub fn factor(reynolds: f64) -> f64 {
     if reynolds < NEWTON { 1.0 + 0.15 * reynolds.powf(0.687) } else { 0.44 / 24.0 * reynolds }

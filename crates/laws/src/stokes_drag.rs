@@ -1,7 +1,10 @@
-//! Drag in creeping flow: F = 3πμd (u − v).
+//! Drag in creeping flow: F = β (u − v), β = 3πμd.
 //!
-//! Per grain, as the coefficient β [kg/s] of F = β (u − v). Range: Re ≪ 1, a grain alone. Source: Stokes, Trans. Cambridge Philos. Soc. 9, 8 (1851); Crowe et al.,
-//! *Multiphase Flows with Droplets and Particles*, 2nd ed., §4.
+//! F force on one grain [N]; β coefficient [kg/s]; u velocity of the fluid, v of the grain [m/s]; d diameter
+//! of the grain [m]; μ viscosity of the fluid [Pa·s].
+//! Range: Re ≪ 1, a single grain.
+//! Source: Stokes, Trans. Cambridge Philos. Soc. 9, 8 (1851); Crowe et al., *Multiphase Flows with Droplets
+//! and Particles*, 2nd ed., §4.
 //!
 //! ```
 //! use amberfield_laws::stokes_drag::coefficient;
@@ -10,7 +13,7 @@
 
 use std::f64::consts::PI;
 
-/// β [kg/s] of a grain of diameter d [m] in a fluid of viscosity μ [Pa·s].
+/// Drag coefficient β [kg/s] of a grain of diameter d [m] in a fluid of viscosity μ [Pa·s].
 #[must_use]
 pub fn coefficient(diameter: f64, viscosity: f64) -> f64 {
     3.0 * PI * viscosity * diameter

@@ -6,7 +6,7 @@ use crate::contacts::memory::Grown;
 use crate::contacts::neighbours::{ChunkList, Listed, Neighbours};
 use crate::motion::chunks::CHUNK;
 use amberfield_core::Vector3;
-use amberfield_laws::charge_transfer::{Drive, Grain, between_grains};
+use amberfield_laws::charge_transfer::{ChargedSphere, Drive, between_grains};
 use rayon::prelude::*;
 
 impl ChunkList {
@@ -195,8 +195,8 @@ impl Charging {
         let materials = self.table.get(grains.material[i], grains.material[j]);
         let field =
             list.foreseen[pair.entry].unwrap_or_else(|| self.unforeseen(traders, shifts, pair, [of_i, of_j]));
-        let colliders =
-            [(of_i, i), (of_j, j)].map(|(charge, grain)| Grain { charge, radius: grains.centre[grain][3] });
+        let colliders = [(of_i, i), (of_j, j)]
+            .map(|(charge, grain)| ChargedSphere { charge, radius: grains.centre[grain][3] });
         let drive = between_grains(self.permittivity, materials.work, colliders, field);
         Some(Trading {
             drive,

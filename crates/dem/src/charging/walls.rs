@@ -6,7 +6,9 @@ use super::{Charging, LAG_SEEN, Traders};
 use crate::contacts::neighbours::Neighbours;
 use crate::contacts::walls::{ContactWalls, Touch};
 use amberfield_core::{Vector3, WallCharging};
-use amberfield_laws::charge_transfer::{Grain, with_grounded_wall, with_insulating_facet};
+use amberfield_laws::charge_transfer::{
+    ChargedFacet, ChargedSphere, with_grounded_wall, with_insulating_facet,
+};
 
 impl Charging {
     /// Moves what is due between grains and walls. `charge` is by the set-up's order [C].
@@ -65,12 +67,13 @@ impl Charging {
             // A grounded wall mirrors the charges around, and doubles their normal field at its surface.
             field += gained * if touch.charging == WallCharging::Grounded { 2.0 } else { 1.0 };
         }
-        let grain = Grain { charge: charge[a], radius: grains.centre[touch.grain][3] };
+        let grain = ChargedSphere { charge: charge[a], radius: grains.centre[touch.grain][3] };
         let facet = self.facets.get(number);
         let (permittivity, work) = (self.permittivity, materials.work);
         let drive = match touch.charging {
             WallCharging::Insulating => {
-                with_insulating_facet(permittivity, work, grain, [facet.area_m2, facet.charge], field)
+                let facet = ChargedFacet { charge: facet.charge, area: facet.area_m2 };
+                with_insulating_facet(permittivity, work, grain, facet, field)
             }
             _ => with_grounded_wall(permittivity, work, grain, field),
         };

@@ -115,10 +115,10 @@ where
         let dashpot =
             rolling_friction::damping(T::splat(CONTACT_INERTIA) / contact.inverse_moment, stiffness);
         let bound = rolling_friction::largest(pair.rolling, radius, load);
-        let (new, torque) =
+        let torque =
             rolling_friction::advance(history.rolling, turning * step, turning, stiffness, dashpot, bound);
-        history.rolling = new;
-        response.rolling = torque;
+        history.rolling = torque.spring;
+        response.rolling = torque.total;
     }
     response
 }

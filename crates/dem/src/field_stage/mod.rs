@@ -249,10 +249,10 @@ impl FieldStage {
                 None => grains.for_each(|(i, total)| *total += forecast.force(i, age)),
                 Some(largest) => grains.for_each(|(i, total)| {
                     let force = forecast.force(i, age);
-                    let (limited, cut) = force_limit::limited(force, largest(i));
-                    found[0].grains += u64::from(cut);
+                    let limited = force_limit::limited(force, largest(i));
+                    found[0].grains += u64::from(limited.shortened);
                     found[0].largest = found[0].largest.max(force.norm());
-                    *total += limited;
+                    *total += limited.force;
                 }),
             }
         });
@@ -267,7 +267,7 @@ impl FieldStage {
         let largest = largest_force(self.settings.force_limit, grains, skin, step);
         let force = |i| {
             let force = self.forecast.force(i, self.control.age as f64);
-            largest.as_ref().map_or(force, |largest| force_limit::limited(force, largest(i)).0)
+            largest.as_ref().map_or(force, |largest| force_limit::limited(force, largest(i)).force)
         };
         (0..grains.len()).map(force).collect()
     }

@@ -112,9 +112,12 @@ fn touching(run: &Simulation) -> Vec<(usize, Grown, usize, usize)> {
     run.contacts.neighbours.touching().map(listed).collect()
 }
 
-fn grain_of(run: &Simulation, i: usize) -> charge_transfer::Grain {
+fn grain_of(run: &Simulation, i: usize) -> charge_transfer::ChargedSphere {
     let original = run.grains.original[i].index();
-    charge_transfer::Grain { charge: run.particles.charge[original], radius: run.particles.radius[original] }
+    charge_transfer::ChargedSphere {
+        charge: run.particles.charge[original],
+        radius: run.particles.radius[original],
+    }
 }
 
 fn work(run: &Simulation, cutoff_m: f64, work_functions: &[f64], i: usize, j: usize) -> f64 {
