@@ -1,10 +1,11 @@
-//! A ball of uniform charge density in free space.
+//! Ball of uniform charge density in free space.
 
 use nalgebra::Vector3;
 use std::f64::consts::PI;
 
-/// Uniformly charged ball in free space, centred at the origin (Griffiths, Introduction to Electrodynamics,
-/// 4th ed., problem 2.12): E = k Q r/R³ inside, k Q r/|r|³ outside.
+/// Uniformly charged ball in free space, centred at the origin: E = k Q r/R³ inside, k Q r/|r|³ outside.
+///
+/// Source: Griffiths, *Introduction to Electrodynamics*, 4th ed., problem 2.12.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct ChargedBall {
     /// Coulomb's constant k = 1/(4πε) [V·m/C].
@@ -44,11 +45,13 @@ impl ChargedBall {
 
 /// Points spread evenly through a ball [m]: concentric shells of equal thickness, golden spirals on each.
 ///
-/// Every point stands for the same volume, so equal charges on them make a discrete uniformly charged ball.
-/// `count` points in total, ball of the given radius [m] at the origin. The order is from the centre outwards.
+/// Each point stands for the same volume, so that equal charges on them make a discrete, uniformly charged
+/// ball. There are `count` points in a ball of the given radius [m] around the origin, ordered from the
+/// centre outwards.
 #[must_use]
 pub fn ball_points(count: usize, radius: f64) -> Vec<Vector3<f64>> {
-    // Shell s of n covers s³/n³ to (s + 1)³/n³ of the volume; n makes shells as thick as points are apart.
+    // Shell s of n covers s³/n³ to (s + 1)³/n³ of the volume. With this n a shell is as thick as the points
+    // are apart.
     let shells = ((count as f64 * 3.0 / (4.0 * PI)).cbrt().round() as usize).max(1);
     let golden_angle = PI * (3.0 - 5.0_f64.sqrt());
     let mut points = Vec::with_capacity(count);
@@ -57,7 +60,7 @@ pub fn ball_points(count: usize, radius: f64) -> Vec<Vector3<f64>> {
         let end = (outer * count as f64).round() as usize;
         let in_shell = end - points.len();
         let volume_radius = |volume: f64| (volume / count as f64).cbrt() * radius;
-        // The radius that halves the shell's volume.
+        // The points lie on the sphere that halves the shell's volume.
         let shell_radius = volume_radius(points.len() as f64 + 0.5 * in_shell as f64);
         for index in 0..in_shell {
             let height = 1.0 - (2.0 * index as f64 + 1.0) / in_shell as f64;
@@ -75,7 +78,7 @@ mod tests {
     use crate::point_charge::{coulomb_field, coulomb_potential};
 
     const BALL: ChargedBall = ChargedBall { coulomb_constant: 2.0, charge: 3.0, radius: 0.5 };
-    /// Central differences at step 1e-5 of a quadratic or of 1/r near 1.
+    /// Error of central differences at step 1e-5 of a quadratic or of 1/r near 1.
     const DIFFERENCES: f64 = 1e-6;
 
     #[test]

@@ -2,24 +2,27 @@
 
 use std::f64::consts::PI;
 
-/// Elastic head-on impact of Hertz spheres (Johnson, Contact Mechanics, §11.4): F = (4/3) Y* √R* δ^{3/2}.
+/// Elastic head-on impact of two spheres with Hertz's contact force F = (4/3) Y* √R* δ^{3/2}.
+///
+/// Source: Johnson, *Contact Mechanics* (1985), §11.4.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct HertzImpact {
-    /// Reduced mass m* [kg].
+    /// Reduced mass m*, 1/m* = 1/m_i + 1/m_j [kg].
     pub reduced_mass: f64,
-    /// Reduced radius R* [m].
+    /// Reduced radius R*, 1/R* = 1/r_i + 1/r_j [m].
     pub reduced_radius: f64,
     /// Reduced modulus Y* [Pa].
     pub reduced_young: f64,
-    /// Relative speed before the impact v [m/s].
+    /// Relative speed v before the impact [m/s].
     pub speed: f64,
 }
 
-/// 2√π Γ(7/5)/Γ(9/10) = 2 ∫₀¹ dx/√(1 − x^{5/2}).
+/// Factor of the contact time: 2√π Γ(7/5)/Γ(9/10) = 2 ∫₀¹ dx/√(1 − x^{5/2}).
 const HERTZ_TIME: f64 = 2.943_275_128;
 
 impl HertzImpact {
-    /// Two equal spheres of radius [m], density [kg/m³], modulus Y [Pa], Poisson ratio, relative speed [m/s].
+    /// Impact of two equal spheres: radius [m], density [kg/m³], Young's modulus [Pa], Poisson ratio,
+    /// relative speed [m/s].
     #[must_use]
     pub fn equal_spheres(radius: f64, density: f64, young: f64, poisson: f64, speed: f64) -> Self {
         Self {
@@ -50,13 +53,16 @@ impl HertzImpact {
     }
 }
 
-/// The same impact with the usual damping 2√(5/6) β √(S_n m*) v_n, S_n = 2 Y* √(R* δ).
+/// Head-on impact of two spheres with Hertz's force and the damping 2√(5/6) β √(S_n m*) v_n, S_n = 2 Y* √(R*
+/// δ).
 ///
-/// x = δ^{5/4} is then a damped linear oscillator of frequency ω = √(4k/(5 m*)) in its own time, k = (4/3) Y* √R*:
-/// δ_max^{5/4} = (v/ω) exp(−(β/√(1 − β²)) acos β), β = −ln e/√(ln²e + π²).
+/// The variable x = δ^{5/4} is then a damped linear oscillator of frequency ω = √(4k/(5 m*)) in its own time,
+/// with k = (4/3) Y* √R*: δ_max^{5/4} = (v/ω) exp(−(β/√(1 − β²)) acos β), β = −ln e/√(ln²e + π²).
+///
+/// Source: Antypov & Elliott, EPL 94, 50004 (2011).
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct DampedHertzImpact {
-    /// The impact without damping.
+    /// Impact without the damping.
     pub elastic: HertzImpact,
     /// Coefficient of restitution e in (0, 1].
     pub restitution: f64,
@@ -71,19 +77,20 @@ impl DampedHertzImpact {
         let damping = -log / (log * log + PI * PI).sqrt();
         let stiffness = 4.0 / 3.0 * elastic.reduced_young * elastic.reduced_radius.sqrt();
         let frequency = (0.8 * stiffness / elastic.reduced_mass).sqrt();
-        let lost = (-(damping / (1.0 - damping * damping).sqrt()) * damping.acos()).exp();
-        (elastic.speed / frequency * lost).powf(0.8)
+        // Share of the amplitude that is left at the turning point.
+        let left = (-(damping / (1.0 - damping * damping).sqrt()) * damping.acos()).exp();
+        (elastic.speed / frequency * left).powf(0.8)
     }
 
-    /// Charge [C] that moves between equal spheres of radius r [m] with charges +q and −q [C], equal work
-    /// functions and no field but their own: q (1 − e^{−δ_max/(4r)}).
+    /// Charge q (1 − e^{−δ_max/(4r)}) [C] that moves between equal spheres of radius r [m] with charges +q
+    /// and −q [C], equal work functions and no field but their own.
     #[must_use]
     pub fn charge_moved(&self, radius: f64, charge: f64) -> f64 {
         -charge * (-self.largest_overlap() / (4.0 * radius)).exp_m1()
     }
 }
 
-/// One row of [`COLLISION_CHARGES`].
+/// Row of [`COLLISION_CHARGES`].
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct CollisionCharge {
     /// Coefficient of restitution e.
@@ -94,8 +101,10 @@ pub struct CollisionCharge {
     pub charge: f64,
 }
 
-/// Charge that one head-on impact moves: r = 75 µm, ρ = 1000 kg/m³, ν = 0.3, q = ±1e-13 C, equal work
-/// functions, relative speed 0.1 m/s, electric force off.
+/// Charges [C] that one head-on impact moves between two equal spheres.
+///
+/// Radius 75 µm, density 1000 kg/m³, Poisson ratio 0.3, charges ±1e-13 C, equal work functions, relative
+/// speed 0.1 m/s, electric force off.
 pub const COLLISION_CHARGES: [CollisionCharge; 12] = [
     row(1.0, 1e5, 1.1934e-15),
     row(1.0, 1e6, 4.7681e-16),
@@ -115,8 +124,9 @@ const fn row(restitution: f64, young: f64, charge: f64) -> CollisionCharge {
     CollisionCharge { restitution, young, charge }
 }
 
-/// Charge that a grain of radius 75 µm tends to on a grounded wall, Q_eq = −2πr²ε(W_p − W_w)/(δe), for each
-/// electronvolt of W_p − W_w and δ = 500 nm [C/eV].
+/// Equilibrium charge of a grain on a grounded wall per electronvolt of W_p − W_w [C/eV].
+///
+/// Q_eq = −2πr²ε(W_p − W_w)/(δe) for a radius r = 75 µm and a cut-off distance δ = 500 nm.
 pub const EQUILIBRIUM_CHARGE_PER_EV: f64 = -6.2587e-13;
 
 #[cfg(test)]

@@ -1,15 +1,15 @@
-//! Point charges in a closed grounded cylinder: a Fourier–Bessel series.
+//! Point charges in a closed grounded cylinder, by a Fourier–Bessel series.
 
 use crate::point_charge::coulomb_field;
 use nalgebra::Vector3;
 use std::f64::consts::PI;
 
-/// Terms along the axis and around it are summed up to exponents of this size.
+/// Largest exponent up to which terms along the axis and around it are summed: e⁻¹⁴ is below 1e-6.
 const EXPONENT: f64 = 14.0;
-/// Images in the two ends to either side.
+/// Number of images in the two ends, to either side.
 const ENDS: i32 = 300;
 
-/// A cylinder around the z axis from z = 0 to z = L, grounded all around.
+/// Cylinder around the z axis from z = 0 to z = L, grounded on its mantle and both ends.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct GroundedCylinder {
     /// Coulomb's constant k = 1/(4πε) [V·m/C].
@@ -22,24 +22,50 @@ pub struct GroundedCylinder {
 
 /// Place of a charge in cylindrical coordinates.
 #[derive(Clone, Copy)]
-struct Place {
+struct CylindricalPoint {
+    /// Distance from the axis [m].
     r: f64,
+    /// Angle around the axis [rad].
     angle: f64,
+    /// Height along the axis [m].
     z: f64,
 }
 
+/// Logarithms of Bessel functions that one wave number κ needs.
+struct Tables {
+    /// ln I_m(κr) for each charge, m = 0 … `around` + 1.
+    charges: Vec<Vec<f64>>,
+    /// ln I_m(κR), m = 0 … `around`.
+    wall_i: Vec<f64>,
+    /// ln K_m(κR), m = 0 … `around`.
+    wall_k: Vec<f64>,
+}
+
+/// Sums over m of the three components of one wave number's field.
+#[derive(Clone, Copy, Default)]
+struct Components {
+    radial: f64,
+    tangential: f64,
+    axial: f64,
+}
+
 impl GroundedCylinder {
-    /// E [V/m] at every charge, of all others and of all that the walls make of it and them. Positions [m] off the axis,
-    /// charges [C].
+    /// Field E [V/m] at each charge [C]: that of all other charges and of the charges induced on the walls.
     ///
-    /// Between plates the field is that of image charges along z; what the mantle adds to the potential at r of a charge at r' is
-    /// −(4kq/L) Σ_n sin κz sin κz' Σ_m cos m(φ−φ') I_m(κr) I_m(κr') K_m(κR)/I_m(κR), κ = nπ/L, m from −∞ to ∞
-    /// (Jackson, Classical Electrodynamics, 3rd ed., §3.11). Relative accuracy some 1e-5.
+    /// Positions [m] lie off the axis. Between the two ends the field is that of image charges along z. The
+    /// mantle adds to the potential of a charge at r' −(4kq/L) Σ_n sin κz sin κz' Σ_m cos m(φ−φ') I_m(κr)
+    /// I_m(κr') K_m(κR)/I_m(κR), κ = nπ/L, m from −∞ to ∞. Relative accuracy about 1e-5.
+    ///
+    /// Source: Jackson, *Classical Electrodynamics*, 3rd ed., §3.11.
     #[must_use]
     pub fn field(&self, positions: &[Vector3<f64>], charges: &[f64]) -> Vec<Vector3<f64>> {
-        let places: Vec<Place> =
-            positions.iter().map(|p| Place { r: p.x.hypot(p.y), angle: p.y.atan2(p.x), z: p.z }).collect();
+        let places: Vec<CylindricalPoint> = positions
+            .iter()
+            .map(|p| CylindricalPoint { r: p.x.hypot(p.y), angle: p.y.atan2(p.x), z: p.z })
+            .collect();
         let mut e = self.between_plates(positions, charges);
+
+        // Terms decay as e^{−2κ gap} and e^{−2m gap/R}: the charge nearest to the mantle needs most of them.
         let gap = places.iter().fold(f64::INFINITY, |gap, place| gap.min(self.radius - place.r));
         #[expect(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "some hundred terms")]
         let (along, around) = (
@@ -48,38 +74,32 @@ impl GroundedCylinder {
         );
         for n in 1..=along {
             let kappa = n as f64 * PI / self.length;
-            let tables: Vec<_> = places.iter().map(|place| ln_i(kappa * place.r, around + 1)).collect();
-            let (wall_i, wall_k) = (ln_i(kappa * self.radius, around), ln_k(kappa * self.radius, around));
+            let tables = Tables {
+                charges: places.iter().map(|place| ln_i(kappa * place.r, around + 1)).collect(),
+                wall_i: ln_i(kappa * self.radius, around),
+                wall_k: ln_k(kappa * self.radius, around),
+            };
             for (at, e) in e.iter_mut().enumerate() {
                 for (from, charge) in charges.iter().enumerate() {
                     let amplitude = 4.0 * self.coulomb_constant * charge / self.length;
                     let (here, there) = (&places[at], &places[from]);
                     let turn = here.angle - there.angle;
-                    let (mut radial, mut tangential, mut axial) = (0.0, 0.0, 0.0);
-                    for m in 0..=around {
-                        let share = if m == 0 { 1.0 } else { 2.0 };
-                        let order = m as f64;
-                        let ln = tables[at][m] + tables[from][m] + wall_k[m] - wall_i[m];
-                        let term = share * ln.exp();
-                        // I_m' = I_{m+1} + m/x I_m.
-                        let slope =
-                            kappa * ((tables[at][m + 1] - tables[at][m]).exp() + order / (kappa * here.r));
-                        radial += term * slope * (order * turn).cos();
-                        tangential -= term * order / here.r * (order * turn).sin();
-                        axial += term * kappa * (order * turn).cos();
-                    }
+                    let sum = tables.sum(kappa, [at, from], here.r, turn);
+
                     let source = (kappa * there.z).sin();
                     let (sine, cosine) = (kappa * here.z).sin_cos();
                     let (s, c) = here.angle.sin_cos();
-                    let out = Vector3::new(c, s, 0.0) * radial + Vector3::new(-s, c, 0.0) * tangential;
-                    *e += amplitude * source * (out * sine + Vector3::z() * axial * cosine);
+                    let outwards = Vector3::new(c, s, 0.0) * sum.radial;
+                    let around_axis = Vector3::new(-s, c, 0.0) * sum.tangential;
+                    let across = outwards + around_axis;
+                    *e += amplitude * source * (across * sine + Vector3::z() * sum.axial * cosine);
                 }
             }
         }
         e
     }
 
-    /// E at every charge between the two ends alone.
+    /// Field E [V/m] at each charge between the two ends alone, without the mantle.
     fn between_plates(&self, positions: &[Vector3<f64>], charges: &[f64]) -> Vec<Vector3<f64>> {
         let field = |at: usize| {
             let mut e = Vector3::zeros();
@@ -89,6 +109,7 @@ impl GroundedCylinder {
                     let mut add = |image: Vector3<f64>, charge: f64| {
                         e += coulomb_field(self.coulomb_constant, charge, positions[at] - image);
                     };
+                    // A charge does not act on itself, but all its images do.
                     if from != at || j != 0 {
                         add(place + shift, charge);
                     }
@@ -101,16 +122,39 @@ impl GroundedCylinder {
     }
 }
 
-/// ln I_m(x) for m = 0 … `most`: ratios by continued fractions from above, I_0 by its series or asymptote.
+impl Tables {
+    /// Sum over m for the field at charge `at` of charge `from`, at radius `r` [m], `turn` = φ − φ' [rad].
+    fn sum(&self, kappa: f64, [at, from]: [usize; 2], r: f64, turn: f64) -> Components {
+        let (here, there) = (&self.charges[at], &self.charges[from]);
+        let mut sum = Components::default();
+        for m in 0..self.wall_i.len() {
+            // Orders m and −m contribute alike.
+            let share = if m == 0 { 1.0 } else { 2.0 };
+            let order = m as f64;
+            // The functions overflow long before their product does; so their logarithms are added.
+            let ln = here[m] + there[m] + self.wall_k[m] - self.wall_i[m];
+            let term = share * ln.exp();
+            // I_m' = I_{m+1} + m/x I_m.
+            let slope = kappa * ((here[m + 1] - here[m]).exp() + order / (kappa * r));
+
+            sum.radial += term * slope * (order * turn).cos();
+            sum.tangential -= term * order / r * (order * turn).sin();
+            sum.axial += term * kappa * (order * turn).cos();
+        }
+        sum
+    }
+}
+
+/// Logarithms ln I_m(x) for m = 0 … `most`, by ratios I_m/I_{m−1} as continued fractions from above.
 fn ln_i(x: f64, most: usize) -> Vec<f64> {
     let beyond = most + 30 + x.ceil().max(0.0) as usize;
     let mut ratio = vec![0.0; beyond + 1];
-    // I_m / I_{m−1}
+    // ratio[m] = I_m/I_{m−1}. The recurrence is stable only downwards.
     for m in (1..=beyond).rev() {
         let next = ratio.get(m + 1).copied().unwrap_or(0.0);
         ratio[m] = 1.0 / (2.0 * m as f64 / x + next);
     }
-    // e^x = I_0 + 2 Σ I_m.
+    // I_0 from e^x = I_0 + 2 Σ I_m.
     let mut sum = 1.0;
     let mut relative = 1.0;
     for ratio in &ratio[1..] {
@@ -124,7 +168,8 @@ fn ln_i(x: f64, most: usize) -> Vec<f64> {
     ln
 }
 
-/// ln K_m(x) for m = 0 … `most`: K_0 and K_1 by their integrals ∫ e^{−x cosh t} cosh mt dt, the rest by recurrence.
+/// Logarithms ln K_m(x) for m = 0 … `most`: K_0 and K_1 by their integrals ∫ e^{−x cosh t} cosh mt dt, the
+/// rest by recurrence.
 fn ln_k(x: f64, most: usize) -> Vec<f64> {
     let step = 1.0 / 64.0;
     let integral = |order: f64| {
@@ -146,7 +191,7 @@ fn ln_k(x: f64, most: usize) -> Vec<f64> {
 mod tests {
     use super::*;
 
-    /// Abramowitz & Stegun, tables 9.8 and 9.9.
+    /// Source of the values: Abramowitz & Stegun, tables 9.8 and 9.9.
     #[test]
     fn bessel_functions_are_those_of_the_tables() {
         for (x, i, k) in [
@@ -177,8 +222,7 @@ mod tests {
         assert!((end.z * 4.0 * 0.01 + 1.0).abs() < 0.01, "{}", end.z);
     }
 
-    /// A charge feels the same whichever way a pair is turned, and two charges at the mirror places of the middle plane
-    /// feel mirrored fields.
+    /// Turning a pair about the axis turns its field, and mirroring it in the middle plane mirrors its field.
     #[test]
     fn field_has_the_cylinders_symmetry() {
         let cylinder = GroundedCylinder { coulomb_constant: 1.0, radius: 1.0, length: 2.0 };

@@ -1,11 +1,13 @@
-//! A point charge over a grounded plane: the image is −q, mirrored.
+//! Point charge over a grounded plane, with the mirror image −q.
 
 use crate::point_charge::{coulomb_field, coulomb_potential};
 use nalgebra::Vector3;
 
-/// Charge q [C] at height d [m] over the grounded plane z = 0; field in z > 0.
+/// Charge q [C] at a height d [m] over the grounded plane z = 0; the field is that in z > 0.
 ///
-/// F = −k q²/(4d²), towards the plane (Jackson, Classical Electrodynamics, 3rd ed., §2.1), k = 1/(4πε).
+/// The force is F = −k q²/(4d²), towards the plane, with k = 1/(4πε).
+///
+/// Source: Jackson, *Classical Electrodynamics*, 3rd ed., §2.1.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct GroundedPlane {
     /// Coulomb's constant k = 1/(4πε) [V·m/C].

@@ -1,4 +1,4 @@
-//! A point charge and a grounded sphere: Kelvin's image.
+//! Point charge and a grounded sphere, by Kelvin's image.
 
 use crate::point_charge::{coulomb_field, coulomb_potential};
 use nalgebra::Vector3;
@@ -6,7 +6,9 @@ use nalgebra::Vector3;
 /// Charge q [C] at distance s [m] from the centre of a grounded sphere of radius R [m], inside (a cavity) or
 /// outside; the sphere's centre is the origin and the charge lies on the z axis.
 ///
-/// The image is −qR/s at R²/s (Jackson, Classical Electrodynamics, 3rd ed., §2.2).
+/// The image is −qR/s at R²/s.
+///
+/// Source: Jackson, *Classical Electrodynamics*, 3rd ed., §2.2.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct GroundedSphere {
     /// Coulomb's constant k = 1/(4πε) [V·m/C].
@@ -19,10 +21,18 @@ pub struct GroundedSphere {
     pub radius: f64,
 }
 
+/// Image charge of a sphere.
+struct Image {
+    /// Charge [C].
+    charge: f64,
+    /// Place [m].
+    place: Vector3<f64>,
+}
+
 impl GroundedSphere {
-    fn image(&self) -> (f64, Vector3<f64>) {
+    fn image(&self) -> Image {
         let ratio = self.radius / self.distance;
-        (-self.charge * ratio, Vector3::z() * (self.radius * ratio))
+        Image { charge: -self.charge * ratio, place: Vector3::z() * (self.radius * ratio) }
     }
 
     fn place(&self) -> Vector3<f64> {
@@ -32,15 +42,15 @@ impl GroundedSphere {
     /// Field of the charge's own image at the charge, along z (outwards) [V/m].
     #[must_use]
     pub fn self_field(&self) -> f64 {
-        let (charge, place) = self.image();
-        coulomb_field(self.coulomb_constant, charge, self.place() - place).z
+        let image = self.image();
+        coulomb_field(self.coulomb_constant, image.charge, self.place() - image.place).z
     }
 
     /// Potential of the charge's own image at the charge [V].
     #[must_use]
     pub fn self_potential(&self) -> f64 {
-        let (charge, place) = self.image();
-        coulomb_potential(self.coulomb_constant, charge, self.place() - place)
+        let image = self.image();
+        coulomb_potential(self.coulomb_constant, image.charge, self.place() - image.place)
     }
 
     /// Force on the charge along z (outwards) [N].
@@ -49,7 +59,8 @@ impl GroundedSphere {
         self.charge * self.self_field()
     }
 
-    /// Force [N] when the sphere is isolated and without net charge (charge outside): +qR/s at the centre too.
+    /// Force [N] when the sphere is isolated and without net charge, the charge outside: a second image +qR/s
+    /// lies at the centre.
     #[must_use]
     pub fn force_isolated(&self) -> f64 {
         let centre = self.charge * self.radius / self.distance;
@@ -59,22 +70,24 @@ impl GroundedSphere {
     /// Field [V/m] at a point [m] on the charge's side of the sphere that is not the charge itself.
     #[must_use]
     pub fn field(&self, point: Vector3<f64>) -> Vector3<f64> {
-        let (charge, place) = self.image();
+        let image = self.image();
         coulomb_field(self.coulomb_constant, self.charge, point - self.place())
-            + coulomb_field(self.coulomb_constant, charge, point - place)
+            + coulomb_field(self.coulomb_constant, image.charge, point - image.place)
     }
 
     /// Potential [V] at a point [m] on the charge's side of the sphere that is not the charge itself.
     #[must_use]
     pub fn potential(&self, point: Vector3<f64>) -> f64 {
-        let (charge, place) = self.image();
+        let image = self.image();
         coulomb_potential(self.coulomb_constant, self.charge, point - self.place())
-            + coulomb_potential(self.coulomb_constant, charge, point - place)
+            + coulomb_potential(self.coulomb_constant, image.charge, point - image.place)
     }
 }
 
-/// E [V/m] at every charge [C] in a grounded spherical cavity of a radius [m] around the origin, of all others and of all
-/// Kelvin images, its own included. Positions [m], none at the centre.
+/// Field E [V/m] at each charge [C] in a grounded spherical cavity of a radius [m] around the origin.
+///
+/// The field is that of all other charges and of all Kelvin images, the charge's own included. Positions are
+/// in [m]; none is at the centre.
 #[must_use]
 pub fn grounded_cavity(
     coulomb_constant: f64,

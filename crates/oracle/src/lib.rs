@@ -1,6 +1,6 @@
 //! Exact and manufactured solutions, reference fields, norms and observed orders of convergence.
 //!
-//! Nothing here shares code with what it judges: this crate never uses the laws or the field.
+//! The crate shares no code with what it judges: it uses neither `laws` nor `field`.
 #![forbid(unsafe_code)]
 
 mod charged_ball;
@@ -22,8 +22,8 @@ pub use collision::{
 pub use grounded_cylinder::GroundedCylinder;
 pub use grounded_plane::GroundedPlane;
 pub use grounded_sphere::{GroundedSphere, grounded_cavity};
-pub use madelung::{MADELUNG_NACL, rock_salt};
+pub use madelung::{Lattice, MADELUNG_NACL, rock_salt};
 pub use manufactured::Manufactured;
 pub use norms::{ErrorNorms, field_scale, observed_order, rms, rms_difference, rms_scalar};
 pub use parallel_plates::ParallelPlates;
-pub use point_charge::{coulomb_field, coulomb_potential, open_sum};
+pub use point_charge::{ExactField, coulomb_field, coulomb_potential, open_sum};

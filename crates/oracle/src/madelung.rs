@@ -1,24 +1,28 @@
-//! Rock salt: the one periodic lattice that everybody knows to many digits.
+//! Rock salt, the periodic lattice whose potential is known to many digits.
 
 use nalgebra::Vector3;
 
-/// Madelung constant of NaCl: q φ a/(k q²) = −M at every ion, a the distance of neighbours (OEIS A085469).
+/// Madelung constant M of NaCl: q φ a/(k q²) = −M at each ion, a the distance of neighbours (OEIS A085469).
 pub const MADELUNG_NACL: f64 = 1.747_564_594_633_182_2;
 
-/// Rock salt in a periodic cube: positions [m] and charges [C].
+/// Ions of a lattice.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Lattice {
+    /// Positions [m].
+    pub positions: Vec<Vector3<f64>>,
+    /// Charges [C].
+    pub charges: Vec<f64>,
+}
+
+/// Lattice of rock salt in a periodic cube with the edge `cells`·`spacing`.
 ///
-/// `cells` neighbours' distances along each edge (even, so that the lattice repeats), `spacing` a [m], ±`charge`
-/// [C], whole lattice moved by `offset` [m]. The cube's edge is `cells`·`spacing`.
+/// `cells` is the number of ions along an edge (even, so that the lattice repeats), `spacing` the distance a
+/// of neighbours [m], ±`charge` the charges [C]; the whole lattice is moved by `offset` [m].
 ///
 /// # Panics
 /// When `cells` is odd or 0.
 #[must_use]
-pub fn rock_salt(
-    cells: usize,
-    spacing: f64,
-    charge: f64,
-    offset: Vector3<f64>,
-) -> (Vec<Vector3<f64>>, Vec<f64>) {
+pub fn rock_salt(cells: usize, spacing: f64, charge: f64, offset: Vector3<f64>) -> Lattice {
     assert!(cells > 0 && cells.is_multiple_of(2), "rock salt repeats after an even number of ions");
     let mut positions = Vec::with_capacity(cells.pow(3));
     let mut charges = Vec::with_capacity(cells.pow(3));
@@ -30,7 +34,7 @@ pub fn rock_salt(
             }
         }
     }
-    (positions, charges)
+    Lattice { positions, charges }
 }
 
 #[cfg(test)]
@@ -38,7 +42,7 @@ mod tests {
     use super::*;
     use crate::reference;
 
-    /// The set's own bound on φ.
+    /// Bound on the error of φ that the reference set states.
     const REFERENCE_ERROR: f64 = 2e-14;
 
     #[test]
@@ -71,7 +75,7 @@ mod tests {
 
     #[test]
     fn lattice_is_neutral() {
-        let (positions, charges) = rock_salt(4, 0.5, 2.0, Vector3::repeat(0.25));
+        let Lattice { positions, charges } = rock_salt(4, 0.5, 2.0, Vector3::repeat(0.25));
         assert_eq!(positions.len(), 64);
         assert_eq!(charges.iter().sum::<f64>(), 0.0);
     }

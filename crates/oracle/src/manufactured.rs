@@ -1,24 +1,32 @@
-//! Potentials made up to satisfy a box's boundary conditions, with the charge density that belongs to them.
+//! Manufactured potentials that satisfy a box's boundary conditions, with the charge density that belongs to
+//! them.
 
 use amberfield_core::{Axis, Boundary, Domain};
 use nalgebra::Vector3;
 use std::f64::consts::PI;
 
-/// V = A Π sin or cos(k_a (x_a − min_a)) with ρ = ε |k|² V: one eigenfunction of the box.
+/// Eigenfunction of the box: V = A Π_a sin or cos(k_a (x_a − min_a)), with ρ = ε |k|² V.
 ///
-/// Sine with k = mπ/L between two conductors, cosine with k = mπ/L between two insulating faces, half-integer
-/// m between one of each, cosine with k = 2πm/L along a periodic axis; all face values zero.
+/// Along an axis it is a sine with k = mπ/L between two conductors, a cosine with k = mπ/L between two
+/// insulating faces, a sine or cosine with half-integer m between one of each, and a cosine with k = 2πm/L
+/// where the axis is periodic. All face values are zero.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Manufactured {
+    /// Amplitude A [V].
     amplitude: f64,
+    /// Wave numbers k [1/m].
     wave_number: Vector3<f64>,
+    /// Flag of a sine, per axis; the other axes have a cosine.
     sine: [bool; 3],
+    /// Lower corner of the box [m].
     min: Vector3<f64>,
 }
 
 impl Manufactured {
-    /// The eigenfunction with the given mode numbers and amplitude A [V]; face values (potentials, normal
-    /// fields) are taken as zero. `None` when a face is open or the mode number of a sine is 0.
+    /// Eigenfunction with the given mode numbers and amplitude A [V].
+    ///
+    /// Face values (potentials, normal fields) are taken as zero. `None` when a face is open or the mode
+    /// number of a sine is 0.
     #[must_use]
     pub fn new(domain: &Domain, modes: [u32; 3], amplitude: f64) -> Option<Self> {
         let mut wave_number = Vector3::zeros();
@@ -42,11 +50,13 @@ impl Manufactured {
         Some(Self { amplitude, wave_number, sine, min: domain.min() })
     }
 
+    /// Factor of one axis in the product.
     fn factor(&self, axis: usize, point: &Vector3<f64>) -> f64 {
         let phase = self.wave_number[axis] * (point[axis] - self.min[axis]);
         if self.sine[axis] { phase.sin() } else { phase.cos() }
     }
 
+    /// Derivative [1/m] of one axis' factor.
     fn slope(&self, axis: usize, point: &Vector3<f64>) -> f64 {
         let phase = self.wave_number[axis] * (point[axis] - self.min[axis]);
         self.wave_number[axis] * if self.sine[axis] { phase.cos() } else { -phase.sin() }

@@ -1,20 +1,20 @@
-//! How far a computed field is from the exact one.
+//! Norms of the error of a computed field, and observed orders of convergence.
 
 use nalgebra::Vector3;
 
-/// Root of the mean squared length; 0 for an empty slice. Unit of the vectors.
+/// Root of the mean squared length, in the unit of the vectors; 0 for an empty slice.
 #[must_use]
 pub fn rms(vectors: &[Vector3<f64>]) -> f64 {
     mean_root(vectors.iter().map(Vector3::norm_squared), vectors.len())
 }
 
-/// Root of the mean square of the differences; 0 for empty slices. Unit of the vectors.
+/// Root of the mean squared length of the differences, in the unit of the vectors; 0 for empty slices.
 #[must_use]
 pub fn rms_difference(a: &[Vector3<f64>], b: &[Vector3<f64>]) -> f64 {
     mean_root(a.iter().zip(b).map(|(a, b)| (a - b).norm_squared()), a.len())
 }
 
-/// Root of the mean square; 0 for an empty slice. Unit of the values.
+/// Root of the mean square, in the unit of the values; 0 for an empty slice.
 #[must_use]
 pub fn rms_scalar(values: &[f64]) -> f64 {
     mean_root(values.iter().map(|value| value * value), values.len())
@@ -24,7 +24,7 @@ fn mean_root(squares: impl Iterator<Item = f64>, count: usize) -> f64 {
     if count == 0 { 0.0 } else { (squares.sum::<f64>() / count as f64).sqrt() }
 }
 
-/// The scale to which a tolerance refers: max(E_rms, q_rms n^{2/3}/(4πε)) [V/m].
+/// Scale to which a tolerance refers: max(E_rms, q_rms n^{2/3}/(4πε)) [V/m].
 ///
 /// The second term keeps the scale positive where symmetry makes every field vanish, as in rock salt.
 /// `volume` is the domain's volume [m³], n = N/volume, `coulomb_constant` 1/(4πε) [V·m/C].
@@ -37,11 +37,11 @@ pub fn field_scale(exact: &[Vector3<f64>], charges: &[f64], volume: f64, coulomb
 /// Errors of a vector field at a set of particles, each relative to one scale.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct ErrorNorms {
-    /// RMS of |ΔE| over the scale.
+    /// Root mean square of |ΔE|, over the scale.
     pub relative_rms: f64,
-    /// 99th percentile of |ΔE| over the scale.
+    /// 99th percentile of |ΔE|, over the scale.
     pub p99: f64,
-    /// Largest |ΔE| over the scale.
+    /// Largest |ΔE|, over the scale.
     pub worst: f64,
     /// Index of the particle with the largest error.
     pub worst_index: usize,

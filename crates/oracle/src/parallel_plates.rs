@@ -1,6 +1,7 @@
-//! Two parallel conducting plates with a uniform space charge between them.
+//! Parallel conducting plates with a uniform space charge between them.
 
-/// Plates at z = 0 and z = L with potentials V₀ and V_L and charge density ρ between them:
+/// Plates at z = 0 and z = L with potentials V₀ and V_L and a charge density ρ between them.
+///
 /// V = V₀ + (V_L − V₀) z/L + ρ z (L − z)/(2ε), E_z = −dV/dz.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct ParallelPlates {
@@ -32,7 +33,7 @@ impl ParallelPlates {
             - self.charge_density * (self.gap - 2.0 * z) / (2.0 * self.permittivity)
     }
 
-    /// Charge per area [C/m²] that the plate z = 0 carries: ε E_z(0).
+    /// Charge per area ε E_z(0) [C/m²] on the plate z = 0.
     #[must_use]
     pub fn lower_surface_charge(&self) -> f64 {
         self.permittivity * self.field(0.0)

@@ -1,25 +1,27 @@
-//! Reference fields of point charges, known to 1e-9 or better: `reference/*.csv`, see `reference/README.md`.
+//! Reference fields of point charges, known to 1e-9 or better, from `reference/*.csv` (see
+//! `reference/README.md`).
 //!
-//! The files have 4πε₀ = 1 and charges near 1, lengths near 1. The same numbers in SI: take the charges as
-//! coulombs and the lengths as metres, and multiply E and φ by 1/(4πε), see [`ReferenceSet::field_si`].
+//! The files use units with 4πε₀ = 1; charges and lengths are near 1. To have SI values, take the charges as
+//! coulombs and the lengths as metres, and multiply E and φ by 1/(4πε): see [`ReferenceSet::field_si`].
 
 use amberfield_core::{Boundary, Domain};
 use nalgebra::Vector3;
 
-/// One set: particles in a box with the field and potential that act on each.
+/// Reference set: charges in a box with the field and the potential that act on each.
 #[derive(Clone, Debug, PartialEq)]
 pub struct ReferenceSet {
     /// Name of the file without its ending.
     pub name: &'static str,
-    /// The box and its boundary conditions.
+    /// Box and its boundary conditions.
     pub domain: Domain,
-    /// Positions.
+    /// Positions of the charges.
     pub position: Vec<Vector3<f64>>,
     /// Charges.
     pub charge: Vec<f64>,
-    /// Potential at each particle (4πε₀ = 1): all but its own q/r; own images and own periodic copies count.
+    /// Potential at each charge (4πε₀ = 1), without its own q/r but with that of its images and periodic
+    /// copies.
     pub potential: Vec<f64>,
-    /// Field at each particle (4πε₀ = 1).
+    /// Field at each charge (4πε₀ = 1).
     pub e: Vec<Vector3<f64>>,
     /// Bound on the largest error of `e`.
     pub e_bound: f64,
@@ -28,13 +30,15 @@ pub struct ReferenceSet {
 }
 
 impl ReferenceSet {
-    /// E [V/m] when the charges are coulombs and the lengths metres; `coulomb_constant` 1/(4πε) [V·m/C].
+    /// Field E [V/m] when the charges are coulombs and the lengths metres; `coulomb_constant` = 1/(4πε)
+    /// [V·m/C].
     #[must_use]
     pub fn field_si(&self, coulomb_constant: f64) -> Vec<Vector3<f64>> {
         self.e.iter().map(|e| e * coulomb_constant).collect()
     }
 
-    /// Potential [V] when the charges are coulombs and the lengths metres.
+    /// Potential [V] when the charges are coulombs and the lengths metres; `coulomb_constant` = 1/(4πε)
+    /// [V·m/C].
     #[must_use]
     pub fn potential_si(&self, coulomb_constant: f64) -> Vec<f64> {
         self.potential.iter().map(|potential| potential * coulomb_constant).collect()
@@ -51,7 +55,7 @@ impl ReferenceSet {
             .sum::<f64>()
     }
 
-    /// The scale to which a tolerance refers: max(E_rms, q_rms n^{2/3}) (4πε₀ = 1).
+    /// Scale to which a tolerance refers: max(E_rms, q_rms n^{2/3}) (4πε₀ = 1).
     #[must_use]
     pub fn scale(&self) -> f64 {
         crate::field_scale(&self.e, &self.charge, self.domain.volume(), 1.0)
@@ -60,9 +64,11 @@ impl ReferenceSet {
 
 const INSULATING: Boundary = Boundary::Insulating { normal_field_v_m: 0.0 };
 
-struct Source {
+/// File of a reference set, with what the file does not say.
+struct SetFile {
     name: &'static str,
     text: &'static str,
+    /// Edge of the cube.
     edge: f64,
     /// Boundary condition of both faces of each axis.
     axes: [Boundary; 3],
@@ -72,7 +78,7 @@ struct Source {
 
 macro_rules! source {
     ($name:literal, $edge:expr, $axes:expr, $e_bound:expr, $potential_bound:expr) => {
-        Source {
+        SetFile {
             name: $name,
             text: include_str!(concat!("../reference/", $name, ".csv")),
             edge: $edge,
@@ -83,7 +89,7 @@ macro_rules! source {
     };
 }
 
-const SOURCES: [Source; 8] = [
+const SETS: [SetFile; 8] = [
     source!("a_nacl_64", 4.0, [Boundary::Periodic; 3], 5e-14, 2e-14),
     source!("b_periodic_bip_2000", 1.0, [Boundary::Periodic; 3], 1.9e-11, 3e-12),
     source!("c_grounded_box_bip_2000", 1.0, [Boundary::Grounded; 3], 1.7e-11, 1.2e-12),
@@ -109,22 +115,22 @@ const SOURCES: [Source; 8] = [
 /// Names of all sets, in the order of [`all`].
 #[must_use]
 pub fn names() -> Vec<&'static str> {
-    SOURCES.iter().map(|source| source.name).collect()
+    SETS.iter().map(|source| source.name).collect()
 }
 
-/// Every set of particles in a box.
+/// All reference sets.
 #[must_use]
 pub fn all() -> Vec<ReferenceSet> {
-    SOURCES.iter().map(load).collect()
+    SETS.iter().map(load).collect()
 }
 
-/// The set with the given name, if there is one.
+/// Reference set with the given name, if there is one.
 #[must_use]
 pub fn by_name(name: &str) -> Option<ReferenceSet> {
-    SOURCES.iter().find(|source| source.name == name).map(load)
+    SETS.iter().find(|source| source.name == name).map(load)
 }
 
-fn load(source: &Source) -> ReferenceSet {
+fn load(source: &SetFile) -> ReferenceSet {
     let rows = rows::<8>(source.text);
     ReferenceSet {
         name: source.name,
@@ -159,18 +165,18 @@ fn rows<const COLUMNS: usize>(text: &str) -> Vec<[f64; COLUMNS]> {
         .collect()
 }
 
-/// Charge 1 over a grounded plane (4πε₀ = 1).
+/// Row of [`f_plane`]: charge 1 over a grounded plane (4πε₀ = 1).
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct PlaneRow {
     /// Height over the plane.
     pub height: f64,
     /// Potential of the charge's own image at the charge.
     pub potential: f64,
-    /// Force; negative is towards the plane.
+    /// Force on the charge; a negative force is towards the plane.
     pub force: f64,
 }
 
-/// Charge 1 at several heights over a grounded plane.
+/// Forces on a charge 1 at several heights over a grounded plane.
 #[must_use]
 pub fn f_plane() -> Vec<PlaneRow> {
     rows::<3>(include_str!("../reference/f_plane.csv"))
@@ -179,20 +185,20 @@ pub fn f_plane() -> Vec<PlaneRow> {
         .collect()
 }
 
-/// Charge 1 outside a sphere of radius 1 (4πε₀ = 1).
+/// Row of [`f_sphere`]: charge 1 outside a sphere of radius 1 (4πε₀ = 1).
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct SphereRow {
     /// Distance from the centre.
     pub distance: f64,
     /// Potential of the image in the grounded sphere at the charge.
     pub potential_grounded: f64,
-    /// Force by the grounded sphere; negative is towards it.
+    /// Force by the grounded sphere; a negative force is towards it.
     pub force_grounded: f64,
     /// Force by the isolated sphere without net charge.
     pub force_isolated: f64,
 }
 
-/// Charge 1 at several distances from a sphere of radius 1.
+/// Forces on a charge 1 at several distances from a sphere of radius 1.
 #[must_use]
 pub fn f_sphere() -> Vec<SphereRow> {
     rows::<4>(include_str!("../reference/f_sphere.csv"))
@@ -209,22 +215,22 @@ pub fn f_sphere() -> Vec<SphereRow> {
 /// Way along which the single charge of [`f_cube_single`] moves.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum CubePath {
-    /// Above the centre of the face z = 0.
+    /// Line above the centre of the face z = 0.
     Face,
-    /// On the bisector of the edge y = z = 0, at mid-length.
+    /// Bisector of the edge y = z = 0, at mid-length.
     Edge,
-    /// On the diagonal from the corner at the origin.
+    /// Diagonal from the corner at the origin.
     Corner,
 }
 
-/// Charge 1 alone in the grounded unit cube (4πε₀ = 1).
+/// Row of [`f_cube_single`]: charge 1 alone in the grounded unit cube (4πε₀ = 1).
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct CubeRow {
     /// Path on which the charge lies.
     pub path: CubePath,
-    /// Distance from the face(s) of the path.
+    /// Distance from the faces of the path.
     pub height: f64,
-    /// Position.
+    /// Position of the charge.
     pub position: Vector3<f64>,
     /// Potential of all its images at the charge.
     pub potential: f64,
@@ -232,7 +238,7 @@ pub struct CubeRow {
     pub e: Vector3<f64>,
 }
 
-/// A single charge in the grounded unit cube; error of E at most 1.9e-12.
+/// Fields at a single charge in the grounded unit cube; the error of E is at most 1.9e-12.
 #[must_use]
 pub fn f_cube_single() -> Vec<CubeRow> {
     rows::<9>(include_str!("../reference/f_cube_single.csv"))
@@ -251,7 +257,7 @@ pub fn f_cube_single() -> Vec<CubeRow> {
         .collect()
 }
 
-/// The box of [`f_cube_single`]: the unit cube, all faces grounded.
+/// Box of [`f_cube_single`]: the unit cube, all faces grounded.
 #[must_use]
 pub fn f_cube_domain() -> Domain {
     Domain::new(Vector3::zeros(), Vector3::repeat(1.0), [[Boundary::Grounded; 2]; 3])
@@ -294,9 +300,10 @@ mod tests {
     fn open_set_is_the_direct_sum() {
         let set = by_name("e_open_bip_2000").unwrap();
         for at in [0, 977, 1999] {
-            let (e, potential) = open_sum(1.0, &set.position, &set.charge, at);
+            let exact = open_sum(1.0, &set.position, &set.charge, at);
             // Rounding of 2000 terms, the largest near 1/0.04².
-            assert!((e - set.e[at]).norm() < 1e-9 && (potential - set.potential[at]).abs() < 1e-10);
+            assert!((exact.e - set.e[at]).norm() < 1e-9);
+            assert!((exact.potential - set.potential[at]).abs() < 1e-10);
         }
     }
 
