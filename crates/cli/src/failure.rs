@@ -1,4 +1,4 @@
-//! Why a command ends early, and with which exit code.
+//! Failures of commands, with their exit codes.
 
 use crate::print;
 use amberfield_dem::DemError;
@@ -6,16 +6,16 @@ use amberfield_field::FieldError;
 use amberfield_gas::GasError;
 use amberfield_scene::SceneError;
 
-/// Bad input.
+/// Exit code of bad input.
 const EXIT_INPUT: u8 = 2;
-/// A peer that is lost or does not answer.
+/// Exit code of a peer that is lost or does not answer.
 const EXIT_PEER: u8 = 3;
-/// An answer outside its tolerance.
+/// Exit code of an answer outside its tolerance.
 const EXIT_TOLERANCE: u8 = 4;
-/// A bug of ours; the code of a panic.
+/// Exit code of a bug in amberfield, which is that of a panic.
 pub(crate) const EXIT_BUG: u8 = 101;
 
-/// An end with an exit code other than 0.
+/// End of a command with a message and an exit code other than 0.
 #[derive(Debug)]
 pub(crate) struct Failure {
     code: u8,
@@ -23,23 +23,23 @@ pub(crate) struct Failure {
 }
 
 impl Failure {
-    /// Bad input: exit code 2.
+    /// Failure by bad input: exit code 2.
     pub(crate) fn bad_input(message: impl Into<String>) -> Self {
         Self { code: EXIT_INPUT, message: message.into() }
     }
 
-    /// An answer that cannot be trusted: exit code 4.
+    /// Failure by an answer that cannot be trusted: exit code 4.
     pub(crate) fn outside_tolerance(message: impl Into<String>) -> Self {
         Self { code: EXIT_TOLERANCE, message: message.into() }
     }
 
-    /// A study that cannot be read or written.
+    /// Failure of a study that cannot be read or written.
     #[cfg(feature = "plots")]
     pub(crate) fn of_study(error: &amberfield_study::StudyError) -> Self {
         Self::bad_input(error.to_string())
     }
 
-    /// A simulation that cannot start.
+    /// Failure of a simulation that cannot start.
     pub(crate) fn at_start(error: &DemError) -> Self {
         match error {
             DemError::Field(error) => Self::of_field(error),
@@ -48,7 +48,7 @@ impl Failure {
         }
     }
 
-    /// A simulation that cannot go on.
+    /// Failure of a simulation that cannot continue.
     pub(crate) fn while_running(error: &DemError) -> Self {
         match error {
             DemError::Field(error @ FieldError::Solver(_)) => Self::of_field(error),
@@ -57,7 +57,7 @@ impl Failure {
         }
     }
 
-    /// A field that cannot be computed.
+    /// Failure of a field that cannot be computed.
     pub(crate) fn of_field(error: &FieldError) -> Self {
         match error {
             FieldError::Tolerance { .. } => Self::outside_tolerance(error.to_string()),
@@ -66,30 +66,30 @@ impl Failure {
         }
     }
 
-    /// A process that is lost.
+    /// Failure by a lost peer: exit code 3.
     fn of_peer(message: &str) -> Self {
         Self { code: EXIT_PEER, message: message.to_owned() }
     }
 
-    /// The same failure, with more to say.
+    /// Adds a text to the message.
     pub(crate) fn with(mut self, more: &str) -> Self {
         self.message += more;
         self
     }
 
-    /// The message.
+    /// Message of the failure.
     pub(crate) fn message(&self) -> &str {
         &self.message
     }
 
-    /// Prints the message, one line each where there are several.
+    /// Prints the message; each of its lines is an error of its own.
     pub(crate) fn report(&self) {
         for line in self.message.lines() {
             print::error(format_args!("{line}"));
         }
     }
 
-    /// The exit code.
+    /// Exit code of the failure.
     pub(crate) fn code(&self) -> u8 {
         self.code
     }

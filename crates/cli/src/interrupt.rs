@@ -1,27 +1,29 @@
-//! Ctrl-C: once to stop after the step, twice to stop now.
+//! Interrupts by Ctrl-C: the first stops the run after its step, the second at once.
 
 use crate::failure::Failure;
 use crate::print;
 use std::sync::atomic::{AtomicBool, Ordering};
 
-/// Whether the user asked to stop.
+/// Flag that the user asked to stop.
 static ASKED: AtomicBool = AtomicBool::new(false);
-/// Exit code of a program that an interrupt ended, as shells have it.
+/// Exit code of an interrupted program, by the convention of shells.
 const EXIT_INTERRUPTED: i32 = 130;
 
 /// Catches interrupts from now on.
 pub(crate) fn watch() -> Result<(), Failure> {
     ctrlc::set_handler(|| {
         if ASKED.swap(true, Ordering::SeqCst) {
-            print::note(format_args!("stopped at once; the last checkpoint stands"));
+            print::note(format_args!("stopped at once; the last checkpoint remains"));
             std::process::exit(EXIT_INTERRUPTED);
         }
-        print::note(format_args!("stopping after this step with a checkpoint; once more to stop at once"));
+        print::note(format_args!(
+            "stopping after this step with a checkpoint; press Ctrl-C again to stop at once"
+        ));
     })
     .map_err(|error| Failure::bad_input(format!("cannot watch for Ctrl-C: {error}")))
 }
 
-/// Whether the user asked to stop.
+/// Tells whether the user asked to stop.
 pub(crate) fn asked() -> bool {
     ASKED.load(Ordering::Relaxed)
 }

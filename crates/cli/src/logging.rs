@@ -1,4 +1,4 @@
-//! The log: to stderr as the user asked, and whole to `log.jsonl` once a run has a folder.
+//! Log: to stderr at the level that the user chose, and completely to `log.jsonl` once a run has a folder.
 
 use crate::arguments::{Common, LogFormat};
 use crate::progress;
@@ -10,19 +10,21 @@ use tracing::level_filters::LevelFilter;
 use tracing_subscriber::fmt::MakeWriter;
 use tracing_subscriber::{Layer as _, layer::SubscriberExt as _};
 
-/// Where the log's lines go before there is a run folder, and after.
+/// Destination of the log's lines.
 #[derive(Debug)]
 enum Sink {
+    /// Memory, until there is a run folder.
     Waiting(Vec<u8>),
+    /// File in the run folder.
     File(File),
 }
 
-/// The log file, shared with the subscriber.
+/// Log file, shared with the subscriber.
 #[derive(Clone, Debug)]
 pub(crate) struct Log(Arc<Mutex<Sink>>);
 
 impl Log {
-    /// Sends the log, also what it said so far, to a file.
+    /// Sends the log to a file, with all lines that were written so far.
     pub(crate) fn open(&self, path: &Path) -> io::Result<()> {
         let mut file = File::options().create(true).append(true).open(path)?;
         let mut sink = self.0.lock().unwrap_or_else(PoisonError::into_inner);

@@ -1,4 +1,4 @@
-//! The `amberfield` command.
+//! Command `amberfield`.
 #![forbid(unsafe_code)]
 
 mod arguments;
@@ -30,6 +30,7 @@ fn main() -> ExitCode {
     }
 }
 
+/// Calls the function of the command.
 fn dispatch(arguments: &Arguments, log: &logging::Log) -> Result<(), Failure> {
     let common = &arguments.common;
     match &arguments.command {
@@ -43,7 +44,7 @@ fn dispatch(arguments: &Arguments, log: &logging::Log) -> Result<(), Failure> {
     }
 }
 
-/// A panic is our bug, in whichever thread it happens.
+/// Installs a hook that turns a panic in any thread into the message and the exit code of a bug.
 fn install_panic_hook() {
     let default = std::panic::take_hook();
     std::panic::set_hook(Box::new(move |info| {
@@ -56,9 +57,10 @@ fn install_panic_hook() {
     }));
 }
 
-/// This thread is one of them: handing every loop to others and waiting for them would cost a wake-up each.
+/// Starts the threads of the computation.
 fn start_threads(arguments: &Arguments) -> Result<(), Failure> {
     let threads = arguments.common.threads.unwrap_or(0);
+    // This thread is one of them: to give each loop to other threads and wait would cost a wake-up each time.
     rayon::ThreadPoolBuilder::new()
         .num_threads(threads)
         .use_current_thread()

@@ -1,8 +1,8 @@
-//! A plan as text.
+//! Text of a plan.
 
 use amberfield_core::Plan;
 
-/// Lines of a plan: what runs, then what is left out.
+/// Lines of a plan: the stages that run, then those that are left out.
 pub(crate) fn lines(plan: &Plan) -> Vec<String> {
     let width = plan.stages().iter().chain(plan.left_out()).map(|entry| entry.stage.len()).max().unwrap_or(0);
     let mut lines = vec!["runs:".to_owned()];

@@ -1,4 +1,4 @@
-//! Progress: a bar on a terminal, plain lines elsewhere.
+//! Progress of a run: a bar on a terminal, plain lines elsewhere.
 
 use crate::arguments::Common;
 use crate::print;
@@ -9,19 +9,22 @@ use std::time::{Duration, Instant};
 
 /// Time between plain lines.
 const LINE_INTERVAL: Duration = Duration::from_secs(10);
-/// The bar that is drawn now, so that log lines go above it.
+/// Bar that is on the terminal now, so that log lines are written above it.
 static BAR: Mutex<Option<ProgressBar>> = Mutex::new(None);
 
-/// How far a run is.
+/// Display of the progress of a run.
 #[derive(Debug)]
 pub(crate) enum Progress {
+    /// Bar on a terminal.
     Bar(ProgressBar),
+    /// Plain lines: time of the last one, begin of the run, its first and its last step.
     Lines { last: Instant, begun: Instant, from: u64, until: u64 },
+    /// No display.
     Silent,
 }
 
 impl Progress {
-    /// Starts at step `from` on the way to step `until`.
+    /// Starts the display at step `from`, for a run to step `until`.
     pub(crate) fn start(common: &Common, from: u64, until: u64) -> Self {
         if common.no_progress || common.quiet {
             return Self::Silent;
@@ -40,7 +43,7 @@ impl Progress {
         Self::Bar(bar)
     }
 
-    /// Tells the step reached and its time [s].
+    /// Shows the step that is reached and its time [s].
     pub(crate) fn tell(&mut self, step: u64, time_s: f64) {
         match self {
             Self::Bar(bar) => {
@@ -74,7 +77,7 @@ impl Drop for Progress {
     }
 }
 
-/// stderr that steps aside for the bar.
+/// Writer to stderr that hides the bar while it writes.
 #[derive(Debug, Default)]
 pub(crate) struct Stderr;
 

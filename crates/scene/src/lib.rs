@@ -1,6 +1,7 @@
-//! Scene file to validated description; reads particles and STL, writes VTK, CSV and checkpoints.
+//! Reader of scene files, and reader and writer of all other files: particles, STL, VTK, CSV, checkpoints.
 //!
-//! Every bad value is refused with its place, its key, itself and what to do: see [`SceneError`].
+//! A scene file becomes a validated [`Scene`]. A bad value is refused with its place, its key, the value and
+//! what to do: see [`SceneError`].
 #![forbid(unsafe_code)]
 
 mod error;
@@ -13,11 +14,11 @@ mod write;
 
 pub use error::SceneError;
 pub use scene::{
-    ChargeTransferSettings, ElectricFieldSettings, OutputSettings, Purpose, Scene, SolverLoss,
-    SolverSettings, parse_scene, read_scene,
+    ChargeTransferSettings, ElectricFieldSettings, OpenFoamSettings, OutputSettings, Purpose, Scene,
+    SolverLoss, parse_scene, read_scene,
 };
 pub use write::{
-    Cell, FacetCell, FieldColumns, FieldComponents, FieldReport, FieldReportSeconds, History, PvdSeries,
-    read_checkpoint, read_table, write_atomically, write_checkpoint, write_facets_vtu, write_field_csv,
-    write_json, write_particles_csv, write_table, write_text, write_vtu,
+    FacetCell, FieldColumns, FieldComponents, FieldReport, FieldReportSeconds, HistoryFile, HistoryValue,
+    PvdSeries, read_checkpoint, read_table, write_atomically, write_checkpoint, write_facets_vtu,
+    write_field_csv, write_json, write_particles_csv, write_table, write_text, write_vtu,
 };

@@ -1,4 +1,4 @@
-//! `amberfield doctor`.
+//! Command `amberfield doctor`.
 
 use crate::arguments::DoctorOptions;
 use crate::failure::Failure;
@@ -7,7 +7,7 @@ use crate::print::line;
 use crate::run::{is_stale, remove_leftovers};
 use std::path::{Path, PathBuf};
 
-/// Says what the machine offers and which runs were left behind.
+/// Prints what the machine offers, and which runs ended without cleaning up.
 pub(crate) fn doctor(options: &DoctorOptions) -> Result<(), Failure> {
     line(format_args!("amberfield {}", env!("CARGO_PKG_VERSION")));
     let features = machine::cpu_features();
@@ -23,7 +23,8 @@ pub(crate) fn doctor(options: &DoctorOptions) -> Result<(), Failure> {
     }
     match machine::shared_memory() {
         Some((total, free)) => line(format_args!(
-            "shared memory: /dev/shm {}, {} free (a run with a field solver needs some 100 bytes a grain and a cell)",
+            "shared memory: /dev/shm {}, {} free (a run with a field solver needs about 100 bytes \
+             for each grain and each cell)",
             machine::bytes(total),
             machine::bytes(free)
         )),
@@ -37,7 +38,7 @@ pub(crate) fn doctor(options: &DoctorOptions) -> Result<(), Failure> {
     stale_runs(options.clean)
 }
 
-/// Where `OpenFOAM` is: its environment, or an application of it on the path.
+/// Path of `OpenFOAM`, from its environment or from one of its applications on the search path.
 fn openfoam() -> Option<PathBuf> {
     let project = std::env::var_os("WM_PROJECT_DIR").map(PathBuf::from);
     let application = || {
@@ -47,7 +48,7 @@ fn openfoam() -> Option<PathBuf> {
     project.filter(|folder| folder.is_dir()).or_else(application)
 }
 
-/// Which program is the field solver, and runs in shared memory whose DEM process went away.
+/// Prints the programs of the solvers, and the runs in shared memory whose DEM process is gone.
 #[cfg(feature = "coupling")]
 fn solver(clean: bool) {
     line(format_args!("field solver: {}", amberfield_coupling::solver_program(false).display()));
@@ -62,13 +63,13 @@ fn solver(clean: bool) {
     }
 }
 
-/// Without the feature there is none.
+/// Prints that this build has no field solver.
 #[cfg(not(feature = "coupling"))]
 fn solver(_: bool) {
     line(format_args!("field solver: not part of this build"));
 }
 
-/// Run folders here and one level below whose process went away.
+/// Prints the run folders here and one level below whose process is gone.
 fn stale_runs(clean: bool) -> Result<(), Failure> {
     let mut folders = vec![PathBuf::from(".")];
     let entries = std::fs::read_dir(".").into_iter().flatten().flatten();

@@ -1,9 +1,11 @@
-//! `amberfield explain`.
+//! Command `amberfield explain`.
 
 use crate::arguments::ExplainOptions;
 use crate::failure::Failure;
 use crate::print::line;
-use crate::run::{Charges, Solver, charges_of, connect_solver, domain_of, field_of, scene_name, setup_of};
+use crate::run::{
+    Charges, SolverConnections, charges_of, connect_solver, domain_of, field_of, scene_name, setup_of,
+};
 use crate::{machine, plan_text};
 use amberfield_core::{Axis, Boundary, Domain, Side};
 use amberfield_dem::Simulation;
@@ -12,10 +14,11 @@ use amberfield_field::far::Connect;
 use amberfield_scene::{ElectricFieldSettings, Purpose, Scene, read_scene};
 use std::mem::size_of;
 
-/// Bytes that the motion of a grain takes: state, forces, neighbour lists at the usual 8 to 12 partners.
+/// Memory for the motion of a grain [bytes]: state, forces, and neighbour lists with the usual 8 to 12
+/// partners.
 const BYTES_PER_MOVING_GRAIN: usize = 1200;
 
-/// Says what a scene will do.
+/// Prints what a scene will do.
 pub(crate) fn explain(options: &ExplainOptions) -> Result<(), Failure> {
     let mut scene = read_scene(&options.scene, &options.set, Purpose::Explain)?;
     print_scene(&scene_name(&options.scene), &scene);
@@ -29,6 +32,7 @@ pub(crate) fn explain(options: &ExplainOptions) -> Result<(), Failure> {
     if scene.time.is_some() { explain_run(&scene, solver) } else { explain_field(&scene, solver.field) }
 }
 
+/// Prints the content of a scene.
 fn print_scene(name: &str, scene: &Scene) {
     let particles = &scene.particles;
     let range = |values: &[f64]| {
@@ -51,6 +55,7 @@ fn print_scene(name: &str, scene: &Scene) {
     }
 }
 
+/// Text of the boundary conditions.
 fn faces(domain: &Domain) -> String {
     let name = |face: Boundary| match face {
         Boundary::Grounded => "grounded".to_owned(),
@@ -68,6 +73,7 @@ fn faces(domain: &Domain) -> String {
     axes.join(", ")
 }
 
+/// Prints the settings of the electric field in both of their forms.
 fn print_settings(field: &ElectricFieldSettings) {
     line(format_args!("\nelectric field as keys:\n{}", field.as_section()));
     match field.as_command() {
@@ -76,7 +82,8 @@ fn print_settings(field: &ElectricFieldSettings) {
     }
 }
 
-fn explain_run(scene: &Scene, solver: Solver) -> Result<(), Failure> {
+/// Prints the plan, the error, the memory and the step of a run.
+fn explain_run(scene: &Scene, solver: SolverConnections) -> Result<(), Failure> {
     let simulation =
         Simulation::new(setup_of(scene, None, solver)?).map_err(|error| Failure::at_start(&error))?;
     for text in plan_text::lines(simulation.plan()) {
@@ -108,6 +115,7 @@ fn explain_run(scene: &Scene, solver: Solver) -> Result<(), Failure> {
     Ok(())
 }
 
+/// Prints the plan, the error and the memory of a field without motion.
 fn explain_field(scene: &Scene, solver: Option<Connect>) -> Result<(), Failure> {
     let Some(settings) = &scene.electric_field else {
         line(format_args!("nothing to compute: the scene has neither [time] nor [electric_field]"));
@@ -124,6 +132,7 @@ fn explain_field(scene: &Scene, solver: Option<Connect>) -> Result<(), Failure> 
     Ok(())
 }
 
+/// Prints the estimated and the measured error of the field.
 fn print_error(scene: &Scene, field: &ElectricField) {
     let tolerance = scene.electric_field.as_ref().map_or(0.0, |settings| settings.field.tolerance);
     let show =
@@ -135,6 +144,7 @@ fn print_error(scene: &Scene, field: &ElectricField) {
     ));
 }
 
+/// Prints the memory for the grains [bytes] and for the field.
 fn print_memory(grains: usize, field: Option<&ElectricField>) {
     let field = field.map_or(0, ElectricField::memory_bytes);
     line(format_args!(

@@ -1,4 +1,4 @@
-//! One command, one file.
+//! Commands of `amberfield`, one file for each.
 
 mod doctor;
 mod explain;

@@ -1,22 +1,22 @@
-//! `amberfield run`.
+//! Command `amberfield run`.
 
 use crate::arguments::{Common, RunOptions};
 use crate::failure::Failure;
 use crate::logging::Log;
 use crate::progress::Progress;
 use crate::run::{
-    Clock, Ending, Existing, RunFolder, Saved, Session, Solver, checkpoints, connect_solver, draw, histogram,
-    scene_name, setup_of,
+    Clock, EarlierPart, Ending, Existing, RunFolder, Saved, Session, SolverConnections, checkpoints,
+    connect_solver, draw, histogram, scene_name, setup_of,
 };
 use crate::{interrupt, plan_text, print};
 use amberfield_dem::Simulation;
 use amberfield_scene::{Purpose, read_checkpoint, read_scene, write_json, write_text};
 use std::path::{Path, PathBuf};
 
-/// Share of the steps with limited grains above which a run says so loudly.
+/// Share of the steps with limited grains above which a run ends with a warning.
 const LIMITED_SHARE: f64 = 0.1;
 
-/// Simulates.
+/// Runs a simulation.
 pub(crate) fn run(options: &RunOptions, common: &Common, log: &Log) -> Result<(), Failure> {
     let existing = match (&options.resume, options.overwrite) {
         (Some(_), _) => Existing::Resume,
@@ -34,16 +34,18 @@ pub(crate) fn run(options: &RunOptions, common: &Common, log: &Log) -> Result<()
     let saved = options.resume.as_ref().map(|checkpoint| read_saved(checkpoint, scene.hash())).transpose()?;
     let solver = match &saved {
         Some(saved) if scene.solver.is_some() && saved.state.has_lost_solver() => {
-            tracing::warn!("the field solver was lost before this checkpoint; the internal grid goes on");
-            Solver::default()
+            tracing::warn!(
+                "the field solver was lost before this checkpoint; the run continues with the internal grid"
+            );
+            SolverConnections::default()
         }
         _ => connect_solver(&mut scene)?,
     };
     let setup = setup_of(&scene, None, solver)?;
     let (simulation, earlier) = match saved {
         Some(Saved { state, history, wall_s, stage_s }) => {
-            let clock = Clock { wall_s, stages: stage_s };
-            (Simulation::resume(setup, state), Some((history, clock)))
+            let earlier = EarlierPart { history, clock: Clock { wall_s, stages: stage_s } };
+            (Simulation::resume(setup, state), Some(earlier))
         }
         None => (Simulation::new(setup), None),
     };
@@ -69,19 +71,21 @@ pub(crate) fn run(options: &RunOptions, common: &Common, log: &Log) -> Result<()
     finish(&session, &options.scene, first, ending)
 }
 
-/// Reads a checkpoint; where it cannot be used, an older one that can is named.
+/// Reads a checkpoint. If it cannot be used, the message names an older one that can.
 fn read_saved(checkpoint: &Path, hash: u64) -> Result<Saved, Failure> {
     read_checkpoint(checkpoint, hash).map_err(|error| {
         let folder = checkpoint.parent().unwrap_or_else(|| Path::new(""));
         let mut older = checkpoints(folder).into_iter().rev().filter(|other| other.as_path() < checkpoint);
         match older.find(|older| read_checkpoint::<Saved>(older, hash).is_ok()) {
-            Some(older) => Failure::from(error).with(&format!("; go on with --resume {}", older.display())),
+            Some(older) => {
+                Failure::from(error).with(&format!("; continue with --resume {}", older.display()))
+            }
             None => error.into(),
         }
     })
 }
 
-/// The run folder that was named, that the checkpoint lies in, or one named after the scene.
+/// Path of the run folder: the one that was given, that of the checkpoint, or one named after the scene.
 fn out_folder(options: &RunOptions) -> Result<PathBuf, Failure> {
     if let Some(out) = &options.out {
         return Ok(out.clone());
@@ -96,6 +100,7 @@ fn out_folder(options: &RunOptions) -> Result<PathBuf, Failure> {
     })
 }
 
+/// Logs the size of the run and the errors of its field.
 fn announce(simulation: &Simulation) {
     for line in plan_text::lines(simulation.plan()) {
         tracing::debug!("{line}");
@@ -113,12 +118,13 @@ fn announce(simulation: &Simulation) {
                 "electric field: relative error estimated {estimated:.2e}, measured {:.2e}",
                 measured.relative_rms
             ),
-            // An exact or unpromising method, or parameters that a checkpoint brought.
+            // The method is exact or states no error, or the parameters come from a checkpoint.
             _ => tracing::info!("electric field: {:?}", field.choice()),
         }
     }
 }
 
+/// Logs and prints the results of a run, and draws its pictures.
 fn finish(session: &Session<'_>, scene_path: &Path, first: u64, ending: Ending) -> Result<(), Failure> {
     let simulation = &session.simulation;
     warn_about_limits(session, first);
@@ -143,19 +149,19 @@ fn finish(session: &Session<'_>, scene_path: &Path, first: u64, ending: Ending) 
     print::line(format_args!("results: {}", session.folder.path().display()));
     if ending != Ending::Complete {
         print::line(format_args!(
-            "stopped before the end; go on with --resume {}",
+            "stopped before the end; continue with --resume {}",
             session.checkpoint_path().display()
         ));
     }
     Ok(())
 }
 
-/// Says how often the field was evaluated, and what it cost in accuracy not to do so every step.
+/// Logs how often the field was evaluated, and the error of the forecasts between evaluations.
 fn tell_intervals(simulation: &Simulation) {
     if let Some(intervals) = simulation.intervals().filter(|intervals| intervals.checked_steps > 0) {
         tracing::info!(
-            "electric field: evaluated {} times in {} steps; relative error of the forecasts between, measured {:.2e}, \
-             over the worst interval {:.2e}",
+            "electric field: evaluated {} times in {} steps; relative error of the forecasts between, \
+             measured {:.2e}, over the worst interval {:.2e}",
             intervals.evaluations,
             simulation.step_index(),
             intervals.error(),
@@ -164,12 +170,13 @@ fn tell_intervals(simulation: &Simulation) {
     }
 }
 
-/// Says what gas and grains have exchanged, and where the time went.
+/// Logs the momentum that gas and grains have exchanged, and the time of the exchanges.
 fn tell_gas(simulation: &Simulation) {
     if let Some(exchange) = simulation.gas_exchange() {
         let (seconds, given) = (exchange.seconds(), exchange.booked());
         tracing::info!(
-            "gas: gave the grains {:.3e} N s of momentum; exchanges took {:.1} s of flow, {:.1} s of mapping, {:.1} s of the way there and back",
+            "gas: gave the grains {:.3e} N s of momentum; exchanges took {:.1} s for the flow, \
+             {:.1} s for the mapping, {:.1} s for sending and receiving",
             given.norm(),
             seconds.solver,
             seconds.mapping,
@@ -178,7 +185,7 @@ fn tell_gas(simulation: &Simulation) {
     }
 }
 
-/// Says what charge transfer has moved.
+/// Logs the charge that was moved by charge transfer.
 fn tell_charges(simulation: &Simulation) {
     if let Some(ledger) = simulation.ledger() {
         let walls: f64 = ledger.walls.iter().sum();
@@ -189,6 +196,7 @@ fn tell_charges(simulation: &Simulation) {
     }
 }
 
+/// Logs how often the electric force was limited, as a warning where that changes the physics.
 fn warn_about_limits(session: &Session<'_>, first: u64) {
     let simulation = &session.simulation;
     let steps = simulation.step_index();
@@ -198,7 +206,8 @@ fn warn_about_limits(session: &Session<'_>, first: u64) {
     #[expect(clippy::cast_precision_loss, reason = "a share for the eye")]
     let share = limited.steps as f64 / steps as f64;
     let text = format!(
-        "the electric force was limited in {} of {steps} steps ({} grains at the end, largest force {:e} N unlimited)",
+        "the electric force was limited in {} of {steps} steps ({} grains at the end, \
+         largest force {:e} N before the limit)",
         limited.steps, limited.grains, limited.largest_force_n
     );
     if share > LIMITED_SHARE {

@@ -1,4 +1,4 @@
-//! The run folder.
+//! Run folder.
 
 use super::histogram;
 use crate::failure::Failure;
@@ -7,7 +7,7 @@ use std::fs;
 use std::io::Write as _;
 use std::path::{Path, PathBuf};
 
-/// Everything that a run may write.
+/// Files and folders that a run may write.
 const OUTPUTS: [&str; 14] = [
     "scene.toml",
     "log.jsonl",
@@ -24,28 +24,28 @@ const OUTPUTS: [&str; 14] = [
     "summary.json",
     "picture.png",
 ];
-/// Holds the id of the process that writes to the folder.
+/// File with the id of the process that writes to the folder.
 const LOCK: &str = "run.lock";
 
-/// What to do about results that are there already.
+/// Treatment of results that exist already.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) enum Existing {
-    /// Refuse.
+    /// Refuse the folder.
     Refuse,
-    /// Remove them.
+    /// Remove the results.
     Overwrite,
-    /// Go on with them.
+    /// Continue the results.
     Resume,
 }
 
-/// A run folder that this process writes to.
+/// Run folder to which this process writes.
 #[derive(Debug)]
 pub(crate) struct RunFolder {
     path: PathBuf,
 }
 
 impl RunFolder {
-    /// Refuses, before any work, a folder that cannot be used.
+    /// Refuses a folder that cannot be used, before any work is done.
     pub(crate) fn check(path: &Path, existing: Existing, scene: &Path) -> Result<(), Failure> {
         let refuse = |problem: String| Err(Failure::bad_input(format!("{}: {problem}", path.display())));
         if path.exists() && !path.is_dir() {
@@ -59,19 +59,20 @@ impl RunFolder {
         let found = OUTPUTS.iter().find(|name| path.join(name).exists());
         match (existing, found) {
             (Existing::Refuse, Some(name)) => refuse(format!(
-                "the run folder exists ({name} is there); name another with --out, go on with --resume CHECKPOINT, or replace it with --overwrite"
+                "the run folder exists ({name} is there); name another with --out, \
+                 continue it with --resume CHECKPOINT, or replace it with --overwrite"
             )),
             (Existing::Overwrite, _) if is_same(&path.join("scene.toml"), scene) => refuse(
                 "--overwrite would remove the scene file itself; name another folder with --out".to_owned(),
             ),
             (Existing::Resume, None) => {
-                refuse("there is no run to go on with; name its folder with --out".to_owned())
+                refuse("there is no run to continue; name its folder with --out".to_owned())
             }
             _ => Ok(()),
         }
     }
 
-    /// Takes the folder: creates it, removes old results if asked to, and marks it as in use.
+    /// Opens the folder: creates it, removes old results if asked to, and marks it as in use.
     pub(crate) fn open(path: &Path, existing: Existing) -> Result<Self, Failure> {
         let failed = |error: std::io::Error| {
             Failure::bad_input(format!("{}: cannot be used as run folder: {error}", path.display()))
@@ -91,30 +92,30 @@ impl RunFolder {
         }
         fs::create_dir_all(path.join("particles")).map_err(failed)?;
         fs::create_dir_all(path.join("checkpoints")).map_err(failed)?;
-        // What is left belongs to a process that is gone: `check` looked.
+        // Files that are left belong to a process that is gone, since `check` has refused a folder in use.
         remove_leftovers(path).map_err(failed)?;
         let mut file = fs::File::create_new(path.join(LOCK)).map_err(failed)?;
         write!(file, "{}", std::process::id()).map_err(failed)?;
         Ok(Self { path: path.to_path_buf() })
     }
 
-    /// Makes a folder in the folder.
+    /// Makes a folder inside the run folder.
     pub(crate) fn make(&self, name: &str) -> Result<(), Failure> {
         let path = self.path.join(name);
         fs::create_dir_all(&path).map_err(|error| Failure::bad_input(format!("{}: {error}", path.display())))
     }
 
-    /// The newest checkpoint, if there is one.
+    /// Path of the newest checkpoint, if there is one.
     pub(crate) fn newest_checkpoint(&self) -> Option<PathBuf> {
         checkpoints(&self.file("checkpoints")).pop()
     }
 
-    /// A file of the folder.
+    /// Path of a file in the run folder.
     pub(crate) fn file(&self, name: &str) -> PathBuf {
         self.path.join(name)
     }
 
-    /// The folder.
+    /// Path of the run folder.
     pub(crate) fn path(&self) -> &Path {
         &self.path
     }
@@ -126,7 +127,7 @@ impl Drop for RunFolder {
     }
 }
 
-/// The checkpoints in a folder, oldest first.
+/// Paths of the checkpoints in a folder, oldest first.
 pub(crate) fn checkpoints(folder: &Path) -> Vec<PathBuf> {
     let files = fs::read_dir(folder).into_iter().flatten().flatten().map(|file| file.path());
     let mut files: Vec<_> =
@@ -136,20 +137,24 @@ pub(crate) fn checkpoints(folder: &Path) -> Vec<PathBuf> {
     files
 }
 
+/// Id of the process that writes to a run folder.
 fn owner(folder: &Path) -> Option<i32> {
     fs::read_to_string(folder.join(LOCK)).ok()?.trim().parse().ok()
 }
 
+/// Tells whether two paths name the same file.
 fn is_same(one: &Path, other: &Path) -> bool {
     matches!((one.canonicalize(), other.canonicalize()), (Ok(one), Ok(other)) if one == other)
 }
 
-/// Whether a process that wrote to this run folder went away without an end.
+/// Tells whether the process that wrote to a run folder is gone without having removed its mark.
 pub(crate) fn is_stale(folder: &Path) -> bool {
     folder.join(LOCK).is_file() && owner(folder).is_none_or(|process| !machine::is_alive(process))
 }
 
-/// Removes what a process that went away left in its run folder: the mark and half-written files. Results stay.
+/// Removes the files that a process which is gone left in its run folder: its mark and half-written files.
+///
+/// Results stay. Returns the number of removed files.
 pub(crate) fn remove_leftovers(folder: &Path) -> std::io::Result<usize> {
     let mut removed = 0;
     for place in ["", "particles", "walls", "checkpoints"].map(|name| folder.join(name)) {

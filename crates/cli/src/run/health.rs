@@ -1,42 +1,46 @@
-//! Whether a run is still sound: looked at with every row of the history and before every checkpoint.
+//! Checks that the physics of a run is sound, made with each row of the history and before each checkpoint.
 
 use crate::failure::Failure;
 use amberfield_core::{Axis, Vector3};
 use amberfield_dem::{ElectricEnergy, Energies, Simulation};
 use amberfield_scene::Scene;
 
-/// Largest overlap over the smaller radius.
+/// Largest allowed overlap over the smaller radius.
 const DEEPEST: f64 = 0.5;
-/// Kinetic energy over all that was ever there to be released; the field of electrodes is counted by half.
+/// Largest allowed ratio of the kinetic energy to all energy that could have been released. It is wide
+/// because the energy in the field of electrodes is counted by half.
 const ENERGY: f64 = 10.0;
-/// Kinetic energy over the sizes of all energies that may be round-off.
+/// Ratio of the kinetic energy to the sizes of all energies, up to which it may be round-off.
 const ROUND_OFF: f64 = 1e-9;
-/// Change of the charge of grains and walls over the sizes of all charges.
+/// Largest allowed change of the charge of grains and walls, over the sizes of all charges.
 const CHARGE: f64 = 1e-9;
 
-/// What a run had to start with.
+/// Quantities of a run to which later ones are compared.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Health {
+    /// Number of grains.
     grains: usize,
     /// Kinetic energy at the start [J].
     kinetic: f64,
     /// Highest potential energy so far: gravity, contacts, field [J].
     highest: f64,
-    /// Charge of grains and walls [C].
+    /// Charge of grains and walls at the start [C].
     charge: f64,
     allowed: Allowed,
 }
 
-/// What is no sign of trouble in a scene.
+/// Facts that a scene permits, so that they are no sign of an unsound run.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Allowed {
-    /// Deep overlaps.
+    /// Switch for deep overlaps.
     overlap: bool,
-    /// Energy that comes from outside: by contacts that charge, forces that are limited, a gas, or round and round a period.
+    /// Switch for energy from outside: charging contacts, limited forces, a gas, or a force along a periodic
+    /// axis, which does work in each period.
     work: bool,
 }
 
 impl Allowed {
+    /// Facts that a scene permits.
     pub(crate) fn new(scene: &Scene) -> Self {
         let gravity = scene.time.as_ref().map_or_else(Vector3::zeros, |time| time.gravity_m_s2);
         let field = scene.electric_field.as_ref().map(|field| &field.field);
@@ -57,29 +61,29 @@ impl Allowed {
 }
 
 impl Health {
-    /// Of a run that begins or goes on now.
+    /// Quantities of a run that begins or continues now.
     pub(crate) fn new(simulation: &Simulation, energies: &Energies, allowed: Allowed) -> Self {
         Self {
             grains: simulation.len(),
             kinetic: energies.kinetic,
             highest: potential(energies),
-            charge: charge(simulation).0,
+            charge: charge(simulation).net,
             allowed,
         }
     }
 
-    /// Looks at a run; says what is wrong, at which grain. The energies may be forecasts: what looks wrong by them is looked at again.
+    /// Checks a run; the error names the problem and the grain.
+    ///
+    /// The energies may use a forecast of the field. What looks wrong by them is checked again with the field
+    /// itself.
     pub(crate) fn check(&mut self, simulation: &mut Simulation, energies: &Energies) -> Result<(), Failure> {
         if simulation.len() != self.grains {
-            // Grains that left took their energy and charge along.
+            // Grains that left took their energy and charge with them.
             *self = Self::new(simulation, energies, self.allowed);
         }
         let time_s = simulation.time_s();
         if let Some(id) = simulation.not_finite() {
-            return Err(unsound(
-                format!("grain {id} is nowhere: its position or velocity is no number"),
-                time_s,
-            ));
+            return Err(unsound(format!("the position or velocity of grain {id} is not a number"), time_s));
         }
         if let Some(deepest) = simulation.deepest().filter(|d| !self.allowed.overlap && d.share > DEEPEST) {
             let other = deepest.other.map_or_else(|| "a wall".to_owned(), |id| format!("grain {id}"));
@@ -103,7 +107,8 @@ impl Health {
                 let (id, _) = simulation.fastest().unwrap_or_default();
                 return Err(unsound(
                     format!(
-                        "the grains have {:.3e} J of kinetic energy, more than {ENERGY} times the {:.3e} J that were there to be released; the fastest is grain {id} {}",
+                        "the grains have {:.3e} J of kinetic energy, more than {ENERGY} times the {:.3e} J \
+                         that could have been released; the fastest is grain {id} {}",
                         exact.kinetic,
                         self.released(&exact),
                         whereabouts(simulation, id)
@@ -112,21 +117,25 @@ impl Health {
                 ));
             }
         }
-        let (now, sizes) = charge(simulation);
-        if (now - self.charge).abs() > CHARGE * sizes {
+        let now = charge(simulation);
+        if (now.net - self.charge).abs() > CHARGE * now.sizes {
             return Err(unsound(
-                format!("the charge of grains and walls has gone from {:e} C to {now:e} C", self.charge),
+                format!(
+                    "the charge of grains and walls has changed from {:e} C to {:e} C",
+                    self.charge, now.net
+                ),
                 time_s,
             ));
         }
         Ok(())
     }
 
-    /// What the grains had, and could have got by now [J].
+    /// Energy that the grains had at the start or could have gained since then [J].
     fn released(&self, energies: &Energies) -> f64 {
         (self.kinetic + self.highest - potential(energies)).max(0.0)
     }
 
+    /// Tells whether the kinetic energy is larger than the energy that could have been released.
     fn is_too_fast(&self, energies: &Energies) -> bool {
         let sizes = energies.gravity.abs() + energies.contact.abs() + energies.electric.unwrap_or(0.0).abs();
         let most = ENERGY * self.released(energies) + ROUND_OFF * sizes;
@@ -134,13 +143,15 @@ impl Health {
     }
 }
 
+/// Failure of a run that is not sound at a time [s].
 fn unsound(what: String, time_s: f64) -> Failure {
     Failure::outside_tolerance(format!(
-        "at t = {time_s:e} s {what}; the motion is no longer sound: make time.step_s smaller, the grains stiffer, or look at what holds this grain"
+        "at t = {time_s:e} s {what}; the motion is no longer sound: make time.step_s smaller, the grains \
+         stiffer, or check what holds this grain"
     ))
 }
 
-/// Place and velocity of a grain, in words.
+/// Text with the position and the velocity of a grain.
 fn whereabouts(simulation: &Simulation, id: u64) -> String {
     let particles = simulation.particles();
     let index = particles.id.iter().position(|known| *known == id);
@@ -153,15 +164,24 @@ fn whereabouts(simulation: &Simulation, id: u64) -> String {
     })
 }
 
+/// Potential energy [J].
 fn potential(energies: &Energies) -> f64 {
     energies.gravity + energies.contact + energies.electric.unwrap_or(0.0)
 }
 
-/// Charge of grains and walls, and the sizes of all charges [C].
-fn charge(simulation: &Simulation) -> (f64, f64) {
+/// Charges of a run.
+struct ChargeBalance {
+    /// Charge of grains and walls [C].
+    net: f64,
+    /// Sum of the sizes of all charges, also of those that were moved [C].
+    sizes: f64,
+}
+
+/// Charges of grains and walls.
+fn charge(simulation: &Simulation) -> ChargeBalance {
     let particles = simulation.particles();
     let (walls, moved) =
         simulation.ledger().map_or((0.0, 0.0), |ledger| (ledger.walls.iter().sum(), ledger.moved));
     let sizes: f64 = particles.charge.iter().map(|charge| charge.abs()).sum();
-    (particles.net_charge() + walls, sizes + moved)
+    ChargeBalance { net: particles.net_charge() + walls, sizes: sizes + moved }
 }

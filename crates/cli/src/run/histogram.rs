@@ -1,17 +1,17 @@
-//! How charge is spread over the grains: `charge_histogram.csv`, and a plot of it at the end.
+//! Distribution of charge over the grains: `charge_histogram.csv`, and a plot of it at the end.
 
 use super::folder::RunFolder;
 use crate::failure::Failure;
 use amberfield_core::Particles;
-use amberfield_scene::{Cell, History};
+use amberfield_scene::{HistoryFile, HistoryValue};
 
-/// Equal bins between the smallest and the largest value of a frame.
+/// Number of equal bins between the smallest and the largest value of a frame.
 const BINS: usize = 40;
-/// The file.
+/// Name of the file.
 pub(crate) const FILE: &str = "charge_histogram.csv";
-/// The plots of charge, and of charge over mass.
+/// Names of the plots of charge and of charge over mass.
 pub(crate) const PLOTS: [&str; 2] = ["charge_histogram.svg", "charge_to_mass_histogram.svg"];
-/// Its columns: a bin of charges and a bin of charges over masses in each row.
+/// Columns of the file; each row has a bin of charges and a bin of charges over masses.
 const COLUMNS: [&str; 8] = [
     "step",
     "time_s",
@@ -23,36 +23,37 @@ const COLUMNS: [&str; 8] = [
     "grains_by_charge_to_mass",
 ];
 
-/// The file, open.
+/// Open file of histograms.
 #[derive(Debug)]
 pub(crate) struct Histogram {
-    rows: History,
+    rows: HistoryFile,
 }
 
 impl Histogram {
+    /// Creates the file of a new run.
     pub(crate) fn create(folder: &RunFolder) -> Result<Self, Failure> {
-        Ok(Self { rows: History::create(&folder.file(FILE), &COLUMNS.map(str::to_owned))? })
+        Ok(Self { rows: HistoryFile::create(&folder.file(FILE), &COLUMNS.map(str::to_owned))? })
     }
 
-    /// Goes on after a step; frames that are not due are removed.
+    /// Opens the file of a run that is continued after a step; frames that are not due are removed.
     pub(crate) fn resume(
         folder: &RunFolder,
         step: u64,
         is_due: impl Fn(u64) -> bool,
     ) -> Result<Self, Failure> {
-        Ok(Self { rows: History::resume(&folder.file(FILE), &COLUMNS.map(str::to_owned), step, is_due)? })
+        Ok(Self { rows: HistoryFile::resume(&folder.file(FILE), &COLUMNS.map(str::to_owned), step, is_due)? })
     }
 
-    /// Appends a frame.
+    /// Appends the histograms of a frame at a step and a time [s].
     pub(crate) fn append(&mut self, step: u64, time_s: f64, particles: &Particles) -> Result<(), Failure> {
         let per_mass: Vec<f64> =
             particles.charge.iter().enumerate().map(|(i, charge)| charge / particles.mass(i)).collect();
-        let (charges, ratios) = (Bins::of(&particles.charge), Bins::of(&per_mass));
+        let (charges, ratios) = (HistogramBins::of(&particles.charge), HistogramBins::of(&per_mass));
         for bin in 0..BINS {
-            let mut row = vec![Cell::Count(step), Cell::Number(time_s)];
+            let mut row = vec![HistoryValue::Count(step), HistoryValue::Number(time_s)];
             for bins in [&charges, &ratios] {
-                row.extend([bins.edge(bin), bins.edge(bin + 1)].map(Cell::Number));
-                row.push(Cell::Count(bins.counts[bin]));
+                row.extend([bins.edge(bin), bins.edge(bin + 1)].map(HistoryValue::Number));
+                row.push(HistoryValue::Count(bins.counts[bin]));
             }
             self.rows.append(&row)?;
         }
@@ -60,13 +61,17 @@ impl Histogram {
     }
 }
 
-struct Bins {
+/// Histogram of one quantity.
+struct HistogramBins {
+    /// Lower edge of the first bin.
     low: f64,
+    /// Width of a bin; 0 when all values are equal.
     width: f64,
     counts: [u64; BINS],
 }
 
-impl Bins {
+impl HistogramBins {
+    /// Counts values.
     fn of(values: &[f64]) -> Self {
         let low = values.iter().copied().fold(f64::INFINITY, f64::min);
         let high = values.iter().copied().fold(f64::NEG_INFINITY, f64::max);
@@ -79,16 +84,17 @@ impl Bins {
         Self { low: if low.is_finite() { low } else { 0.0 }, width, counts }
     }
 
+    /// Lower edge of a bin.
     fn edge(&self, bin: usize) -> f64 {
         self.low + self.width * bin as f64
     }
 }
 
-/// Plots some of the frames; a plot that fails is a warning, the results stand.
+/// Plots some of the frames. A plot that fails causes a warning only, since the results are complete.
 #[cfg(feature = "plots")]
 pub(crate) fn plot(folder: &RunFolder) {
     use amberfield_draw::{Plot, Scale, Series, write_plot};
-    /// Frames in a plot.
+    /// Number of frames in a plot.
     const CURVES: usize = 5;
     let text = std::fs::read_to_string(folder.file(FILE)).unwrap_or_default();
     let rows: Vec<Vec<f64>> = text
@@ -109,7 +115,7 @@ pub(crate) fn plot(folder: &RunFolder) {
             let name = format!("t = {:.4} s", rows[0][1]);
             Series { name, points: points.collect() }
         };
-        // All grains alike are no curve.
+        // Where all grains are equal there is no curve to draw.
         let differ = |frame: &usize| frames[*frame][0][first] != frames[*frame][0][first + 1];
         let series: Vec<Series> = shown.iter().copied().filter(differ).map(curve).collect();
         if series.is_empty() {
@@ -129,6 +135,6 @@ pub(crate) fn plot(folder: &RunFolder) {
     }
 }
 
-/// Without the feature there is no plot.
+/// Plots nothing in a build without the feature.
 #[cfg(not(feature = "plots"))]
 pub(crate) fn plot(_: &RunFolder) {}

@@ -1,4 +1,4 @@
-//! A run: its folder, its schedule, its records.
+//! Parts of a run: its folder, its schedule, its records.
 
 mod folder;
 mod health;
@@ -17,7 +17,7 @@ pub(crate) use folder::{Existing, RunFolder, checkpoints, is_stale, remove_lefto
 pub(crate) use name::scene_name;
 pub(crate) use picture::draw;
 pub(crate) use record::Clock;
-pub(crate) use session::{Saved, Session};
-pub(crate) use setup::{Charges, Solver, charges_of, domain_of, field_of, parameters, setup_of};
+pub(crate) use session::{EarlierPart, Saved, Session};
+pub(crate) use setup::{Charges, SolverConnections, charges_of, domain_of, field_of, parameters, setup_of};
 pub(crate) use solver::connect_solver;
 pub(crate) use summary::Ending;

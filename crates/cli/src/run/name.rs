@@ -1,8 +1,8 @@
-//! What a scene is called.
+//! Name of a scene.
 
 use std::path::Path;
 
-/// Name of a scene: its file's name without ending, or where that says nothing (`scene.toml`) its folder's.
+/// Name of a scene: that of its file without the ending, or that of its folder when the file is `scene.toml`.
 pub(crate) fn scene_name(path: &Path) -> String {
     let stem = path.file_stem().map(|stem| stem.to_string_lossy().into_owned());
     let folder = || {

@@ -1,4 +1,4 @@
-//! Rows of the history and files of the grains.
+//! Records of a run: rows of the history and files of the grains.
 
 use super::folder::RunFolder;
 use super::histogram::Histogram;
@@ -8,36 +8,40 @@ use crate::failure::Failure;
 use amberfield_core::WallCharging;
 use amberfield_dem::{Energies, Facet, Simulation};
 use amberfield_scene::{
-    Cell, FacetCell, History, PvdSeries, Scene, write_facets_vtu, write_particles_csv, write_vtu,
+    FacetCell, HistoryFile, HistoryValue, PvdSeries, Scene, write_facets_vtu, write_particles_csv, write_vtu,
 };
 
-/// What a run writes while it goes.
+/// Open files of a run.
 #[derive(Debug)]
 pub(crate) struct Record {
-    history: History,
-    columns: Columns,
+    history: HistoryFile,
+    columns: HistoryColumns,
+    /// Files of the grains.
     series: PvdSeries,
-    /// Charge on walls; `None` where no wall takes any.
+    /// Files of the charge on walls; `None` where no wall takes charge.
     walls: Option<PvdSeries>,
-    /// Charges of the grains; `None` where they stay as they are.
+    /// Histograms of the charges; `None` where charges do not change.
     histogram: Option<Histogram>,
+    /// Step of the last row.
     last_row: Option<u64>,
+    /// Step of the last files of the grains.
     last_frame: Option<u64>,
 }
 
-/// Columns beyond those that every run has.
+/// Columns of the history that not every run has.
 #[derive(Clone, Debug)]
-struct Columns {
+struct HistoryColumns {
     gravity: bool,
     field: bool,
     transfer: bool,
     walls: bool,
     limited: bool,
     solver: bool,
+    /// Names of the stages that are timed.
     stages: Vec<&'static str>,
 }
 
-impl Columns {
+impl HistoryColumns {
     fn new(scene: &Scene, simulation: &Simulation) -> Self {
         Self {
             gravity: scene.time.as_ref().is_some_and(|time| time.gravity_m_s2.norm() > 0.0),
@@ -52,6 +56,7 @@ impl Columns {
         }
     }
 
+    /// Names of all columns, in their order.
     fn names(&self) -> Vec<String> {
         let mut names = vec!["step", "time_s", "kinetic_J", "contact_J"];
         names.extend(self.gravity.then_some("gravity_J"));
@@ -69,22 +74,24 @@ impl Columns {
     }
 }
 
-/// Clock readings of a row [s], earlier parts of the run included.
+/// Times that a run took, with earlier parts of it.
 #[derive(Clone, Debug)]
 pub(crate) struct Clock {
+    /// Wall time [s].
     pub(crate) wall_s: f64,
+    /// Wall time of each stage [s].
     pub(crate) stages: Vec<f64>,
 }
 
 impl Record {
-    /// Records of a new run.
+    /// Creates the records of a new run.
     pub(crate) fn create(
         folder: &RunFolder,
         scene: &Scene,
         simulation: &Simulation,
     ) -> Result<Self, Failure> {
-        let columns = Columns::new(scene, simulation);
-        let history = History::create(&folder.file("history.csv"), &columns.names())?;
+        let columns = HistoryColumns::new(scene, simulation);
+        let history = HistoryFile::create(&folder.file("history.csv"), &columns.names())?;
         let series = PvdSeries::new(&folder.file("particles.pvd"));
         let walls = columns.walls.then(|| PvdSeries::new(&folder.file("walls.pvd")));
         if walls.is_some() {
@@ -94,16 +101,18 @@ impl Record {
         Ok(Self { history, columns, series, walls, histogram, last_row: None, last_frame: None })
     }
 
-    /// Records of a run that goes on: what was written after its checkpoint, or beside the schedule, is removed.
+    /// Opens the records of a run that is continued.
+    ///
+    /// What was written after its checkpoint or outside of the schedule is removed.
     pub(crate) fn resume(
         folder: &RunFolder,
         scene: &Scene,
         simulation: &Simulation,
         schedule: &Schedule,
     ) -> Result<Self, Failure> {
-        let columns = Columns::new(scene, simulation);
+        let columns = HistoryColumns::new(scene, simulation);
         let reached = simulation.step_index();
-        let history = History::resume(&folder.file("history.csv"), &columns.names(), reached, |step| {
+        let history = HistoryFile::resume(&folder.file("history.csv"), &columns.names(), reached, |step| {
             schedule.history.is_due(step)
         })?;
         let is_kept =
@@ -116,13 +125,13 @@ impl Record {
         let files = |name: &str| std::fs::read_dir(folder.file(name)).into_iter().flatten().flatten();
         let files = files("particles").chain(files("walls"));
         for file in files.filter(|file| !is_kept(&file.file_name().to_string_lossy())) {
-            // A file that stays only takes room: the series does not name it.
+            // A file that cannot be removed does no harm, since the series does not name it.
             let _ = std::fs::remove_file(file.path());
         }
         Ok(Self { history, columns, series, walls, histogram, last_row: None, last_frame: None })
     }
 
-    /// Appends a row to the history, once per step.
+    /// Appends a row to the history, at most once for each step.
     pub(crate) fn row(
         &mut self,
         simulation: &Simulation,
@@ -134,32 +143,32 @@ impl Record {
             return Ok(());
         }
         let mut row = vec![
-            Cell::Count(step),
-            Cell::Number(simulation.time_s()),
-            Cell::Number(energies.kinetic),
-            Cell::Number(energies.contact),
+            HistoryValue::Count(step),
+            HistoryValue::Number(simulation.time_s()),
+            HistoryValue::Number(energies.kinetic),
+            HistoryValue::Number(energies.contact),
         ];
-        row.extend(self.columns.gravity.then_some(Cell::Number(energies.gravity)));
+        row.extend(self.columns.gravity.then_some(HistoryValue::Number(energies.gravity)));
         if self.columns.field {
-            row.push(Cell::Number(energies.electric.unwrap_or_default()));
-            row.push(Cell::Number(simulation.particles().net_charge()));
+            row.push(HistoryValue::Number(energies.electric.unwrap_or_default()));
+            row.push(HistoryValue::Number(simulation.particles().net_charge()));
         }
         if let Some(ledger) = simulation.ledger() {
-            row.push(Cell::Number(ledger.moved));
-            row.extend(self.columns.walls.then(|| Cell::Number(ledger.walls.iter().sum())));
+            row.push(HistoryValue::Number(ledger.moved));
+            row.extend(self.columns.walls.then(|| HistoryValue::Number(ledger.walls.iter().sum())));
         }
         if self.columns.limited {
-            row.push(Cell::Count(simulation.limited().unwrap_or_default().grains));
+            row.push(HistoryValue::Count(simulation.limited().unwrap_or_default().grains));
         }
-        row.push(Cell::Count(simulation.contacts() as u64));
-        row.extend(simulation.ledger().map(|ledger| Cell::Count(ledger.collisions)));
-        row.extend(self.columns.solver.then(|| Cell::Count(simulation.solver_iterations())));
-        row.push(Cell::Number(clock.wall_s));
-        row.extend(clock.stages.iter().map(|seconds| Cell::Number(*seconds)));
+        row.push(HistoryValue::Count(simulation.contacts() as u64));
+        row.extend(simulation.ledger().map(|ledger| HistoryValue::Count(ledger.collisions)));
+        row.extend(self.columns.solver.then(|| HistoryValue::Count(simulation.solver_iterations())));
+        row.push(HistoryValue::Number(clock.wall_s));
+        row.extend(clock.stages.iter().map(|seconds| HistoryValue::Number(*seconds)));
         Ok(self.history.append(&row)?)
     }
 
-    /// Writes the grains, once per step.
+    /// Writes the files of the grains, at most once for each step.
     pub(crate) fn frame(
         &mut self,
         folder: &RunFolder,
@@ -204,7 +213,7 @@ fn facet_cell(facet: &Facet) -> FacetCell {
     FacetCell { wall, corners, area_m2, charge_c: charge }
 }
 
-/// The step in a file's name.
+/// Step in the name of a file.
 fn step_of(name: &str) -> Option<u64> {
     name.rsplit(['/', '_']).next()?.split('.').next()?.parse().ok()
 }

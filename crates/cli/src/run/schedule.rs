@@ -1,20 +1,23 @@
-//! When a run writes what. Decided by step numbers only, so that a continued run writes what it would have.
+//! Schedule of the outputs of a run.
+//!
+//! It depends on step numbers only, so that a continued run writes what an uninterrupted one would have
+//! written.
 
 use amberfield_core::TimeSettings;
 use amberfield_scene::OutputSettings;
 use serde::{Deserialize, Serialize};
 
-/// Rows of a history whose interval the scene leaves open.
+/// Number of rows of a history for which the scene gives no interval.
 const HISTORY_ROWS: f64 = 1000.0;
-/// Rounding of `end_s/step_s` that does not make another step.
+/// Rounding error of `end_s/step_s` that must not add a step.
 const STEP_ROUND_OFF: f64 = 1e-6;
 
-/// Something that recurs, in steps; not a whole number of them in general.
+/// Interval of a recurring event [steps]; in general not a whole number.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 pub(crate) struct Every(f64);
 
 impl Every {
-    /// Whether it is due at a step; at step 0 always.
+    /// Tells whether the event is due at a step; at step 0 it always is.
     pub(crate) fn is_due(self, step: u64) -> bool {
         let period = |step: f64| ((step + 0.5) / self.0.max(1.0)).floor();
         #[expect(clippy::cast_precision_loss, reason = "steps are below 2^53")]
@@ -23,21 +26,21 @@ impl Every {
     }
 }
 
-/// When a run writes what.
+/// Schedule of the outputs of a run.
 #[derive(Clone, Debug, PartialEq)]
 pub(crate) struct Schedule {
-    /// Steps of the whole run.
+    /// Number of steps of the whole run.
     pub(crate) total: u64,
-    /// Rows of the history.
+    /// Interval of the rows of the history.
     pub(crate) history: Every,
-    /// Particle files; `None`: only at the start and the end.
+    /// Interval of the particle files; `None` for the start and the end only.
     pub(crate) frames: Option<Every>,
-    /// Checkpoints; `None`: only at the end.
+    /// Interval of the checkpoints; `None` for the end only.
     pub(crate) checkpoints: Option<Every>,
 }
 
 impl Schedule {
-    /// The schedule of a scene. `history` is what an earlier part of the run used.
+    /// Schedule of a scene with a step [s]; `history` is the interval of an earlier part of the run.
     pub(crate) fn new(
         time: &TimeSettings,
         output: &OutputSettings,
@@ -61,12 +64,12 @@ impl Schedule {
         }
     }
 
-    /// Whether particle files are due.
+    /// Tells whether particle files are due at a step.
     pub(crate) fn frame_is_due(&self, step: u64) -> bool {
         step == 0 || self.frames.is_some_and(|every| every.is_due(step))
     }
 
-    /// Whether a checkpoint is due.
+    /// Tells whether a checkpoint is due at a step.
     pub(crate) fn checkpoint_is_due(&self, step: u64) -> bool {
         step > 0 && self.checkpoints.is_some_and(|every| every.is_due(step))
     }

@@ -1,4 +1,4 @@
-//! The loop of a run.
+//! Loop of a run over its steps.
 
 use super::folder::RunFolder;
 use super::health::{Allowed, Health};
@@ -14,20 +14,28 @@ use serde::{Deserialize, Serialize};
 use std::path::PathBuf;
 use std::time::Instant;
 
-/// What a checkpoint holds.
+/// Content of a checkpoint.
 #[derive(Debug, Serialize, Deserialize)]
 pub(crate) struct Saved {
-    /// The simulation.
+    /// State of the simulation.
     pub(crate) state: State,
-    /// Schedule of the history.
+    /// Interval of the rows of the history.
     pub(crate) history: Every,
-    /// Seconds that the run took so far.
+    /// Wall time of the run so far [s].
     pub(crate) wall_s: f64,
-    /// The same for each stage.
+    /// Wall time of each stage so far [s].
     pub(crate) stage_s: Vec<f64>,
 }
 
-/// A run in progress.
+/// Earlier part of a run that is continued.
+pub(crate) struct EarlierPart {
+    /// Interval of the rows of the history.
+    pub(crate) history: Every,
+    /// Times that it took.
+    pub(crate) clock: Clock,
+}
+
+/// Run in progress.
 pub(crate) struct Session<'a> {
     pub(crate) folder: &'a RunFolder,
     pub(crate) scene: &'a Scene,
@@ -35,13 +43,14 @@ pub(crate) struct Session<'a> {
     pub(crate) schedule: Schedule,
     pub(crate) record: Record,
     health: Health,
-    /// Seconds of earlier parts of the run.
+    /// Times of earlier parts of the run.
     pub(crate) earlier: Clock,
+    /// Begin of this part of the run.
     pub(crate) begun: Instant,
 }
 
 impl<'a> Session<'a> {
-    /// A new run.
+    /// Starts a new run.
     pub(crate) fn start(
         folder: &'a RunFolder,
         scene: &'a Scene,
@@ -54,20 +63,23 @@ impl<'a> Session<'a> {
         Ok(Self { folder, scene, simulation, schedule, record, health, earlier, begun: Instant::now() })
     }
 
-    /// A run that goes on from a checkpoint with its schedule of the history and its clock.
+    /// Continues a run from a checkpoint.
     pub(crate) fn resume(
         folder: &'a RunFolder,
         scene: &'a Scene,
         mut simulation: Simulation,
-        (history, earlier): (Every, Clock),
+        earlier: EarlierPart,
     ) -> Result<Self, Failure> {
-        let schedule = schedule(scene, &simulation, Some(history))?;
+        let schedule = schedule(scene, &simulation, Some(earlier.history))?;
         let record = Record::resume(folder, scene, &simulation, &schedule)?;
         let health = health(scene, &mut simulation)?;
+        let earlier = earlier.clock;
         Ok(Self { folder, scene, simulation, schedule, record, health, earlier, begun: Instant::now() })
     }
 
-    /// Steps until the end, at most `most` steps, or until the user interrupts; writes what is due and the end.
+    /// Makes steps until the end, at most `most` of them, or until the user interrupts.
+    ///
+    /// It writes the outputs that are due, and all outputs at the end.
     pub(crate) fn go(&mut self, most: Option<u64>, progress: &mut Progress) -> Result<Ending, Failure> {
         let first = self.simulation.step_index();
         let stop =
@@ -86,13 +98,14 @@ impl<'a> Session<'a> {
                 break Ending::Interrupted;
             }
             if let Err(error) = self.step(progress) {
-                // The grains are between two steps: what can be saved is the state before, if it was kept.
+                // The step is not complete, so only the state before it can be saved, if it was kept.
                 if let Some(state) = self.simulation.rescued() {
                     let path = self.checkpoint_of(state.step_index());
                     self.save(state)?;
-                    tracing::warn!("the state before it is saved; go on with --resume {}", path.display());
+                    tracing::warn!("the state before it is saved; continue with --resume {}", path.display());
                 }
-                // What made it fail may forbid to write this too, and is what must be said.
+                // The cause (a full disk, for example) may also prevent the summary. The first error is
+                // reported.
                 if let Err(unwritten) =
                     write_summary(self, first, &before, Ending::Failed, Some(error.message()))
                 {
@@ -108,6 +121,7 @@ impl<'a> Session<'a> {
         Ok(ending)
     }
 
+    /// Makes one step and writes the outputs that are due.
     fn step(&mut self, progress: &mut Progress) -> Result<(), Failure> {
         self.simulation.step().map_err(|error| Failure::while_running(&error))?;
         self.write_what_is_due().map_err(|failure| match self.folder.newest_checkpoint() {
@@ -118,10 +132,12 @@ impl<'a> Session<'a> {
         Ok(())
     }
 
-    /// Writes what is due after a step, and looks whether the run is still sound.
+    /// Writes the outputs that are due after a step, and checks that the run is sound.
     fn write_what_is_due(&mut self) -> Result<(), Failure> {
         let step = self.simulation.step_index();
-        let (row, checkpoint) = (self.schedule.history.is_due(step), self.schedule.checkpoint_is_due(step));
+        let row = self.schedule.history.is_due(step);
+        let checkpoint = self.schedule.checkpoint_is_due(step);
+        // An unsound state must not become the checkpoint from which a run is continued.
         if row || checkpoint {
             let energies = forecast_energies(&mut self.simulation)?;
             if row {
@@ -141,6 +157,7 @@ impl<'a> Session<'a> {
         Ok(())
     }
 
+    /// Appends a row to the history.
     fn row(&mut self) -> Result<(), Failure> {
         let energies = forecast_energies(&mut self.simulation)?;
         self.record.row(&self.simulation, &energies, &self.clock())
@@ -151,15 +168,18 @@ impl<'a> Session<'a> {
         self.checkpoint_of(self.simulation.step_index())
     }
 
+    /// Path of the checkpoint of a step.
     fn checkpoint_of(&self, step: u64) -> PathBuf {
         self.folder.file(&format!("checkpoints/step_{step:012}.amber"))
     }
 
+    /// Writes a checkpoint of the present step.
     fn checkpoint(&mut self) -> Result<(), Failure> {
         let state = self.simulation.checkpoint().map_err(|error| Failure::while_running(&error))?;
         self.save(state)
     }
 
+    /// Writes a checkpoint of a state.
     fn save(&mut self, state: State) -> Result<(), Failure> {
         let clock = self.clock();
         let step = state.step_index();
@@ -171,7 +191,7 @@ impl<'a> Session<'a> {
         Ok(())
     }
 
-    /// Seconds so far.
+    /// Times of the run so far.
     pub(crate) fn clock(&self) -> Clock {
         let stages = self.simulation.stage_seconds();
         let earlier = self.earlier.stages.iter().copied().chain(std::iter::repeat(0.0));
@@ -181,12 +201,13 @@ impl<'a> Session<'a> {
         }
     }
 
-    /// Energies now [J].
+    /// Energies at the present step [J].
     pub(crate) fn energies(&mut self) -> Result<Energies, Failure> {
         self.simulation.energies(ElectricEnergy::Evaluated).map_err(|error| Failure::while_running(&error))
     }
 }
 
+/// Energies [J] with a forecast of the field, which costs no evaluation.
 fn forecast_energies(simulation: &mut Simulation) -> Result<Energies, Failure> {
     simulation.energies(ElectricEnergy::Forecast).map_err(|error| Failure::while_running(&error))
 }

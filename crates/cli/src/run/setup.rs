@@ -1,4 +1,4 @@
-//! Description to set-up of a simulation.
+//! Set-up of a simulation from the description of a scene.
 
 use crate::failure::Failure;
 use amberfield_core::{ChargeTransfer, Domain, FieldSettings, Vector3};
@@ -9,29 +9,29 @@ use amberfield_gas::ConnectFlow;
 use amberfield_scene::{Scene, SolverLoss};
 use serde_json::{Map, Value, json};
 
-/// The box of a scene.
+/// Box of a scene.
 pub(crate) fn domain_of(scene: &Scene) -> Result<&Domain, Failure> {
     scene.domain.as_ref().ok_or_else(|| Failure::bad_input("the scene has no [domain]; add it"))
 }
 
-/// Whether each grain makes and feels the field.
+/// Flags of the grains that make and feel the field.
 pub(crate) fn members(scene: &Scene) -> Vec<bool> {
     let group = scene.electric_field.as_ref().map_or("all", |field| &field.particle_group);
     let index = scene.groups.iter().position(|name| name == group);
     scene.particles.group.iter().map(|id| group == "all" || index == Some(usize::from(id.0))).collect()
 }
 
-/// Who makes and feels the field.
+/// Grains that make and feel the field.
 pub(crate) struct Charges {
-    /// Numbers of the grains in the scene.
+    /// Indices of the grains in the scene.
     pub(crate) index: Vec<usize>,
-    /// Positions, inside the domain where it is known [m].
+    /// Positions [m], wrapped into the domain where it is known.
     pub(crate) position: Vec<Vector3<f64>>,
-    /// [C].
+    /// Charges [C].
     pub(crate) charge: Vec<f64>,
 }
 
-/// The members of a scene's field.
+/// Selects the grains of a scene that make and feel the field.
 pub(crate) fn charges_of(scene: &Scene) -> Charges {
     let member = members(scene);
     let index: Vec<usize> = (0..scene.particles.len()).filter(|&index| member[index]).collect();
@@ -46,7 +46,7 @@ pub(crate) fn charges_of(scene: &Scene) -> Charges {
     }
 }
 
-/// The parameters of a choice as one flat object; `built` names its kind.
+/// Parameters of a choice as one flat JSON object, in which `built` names its kind.
 pub(crate) fn parameters(choice: &Choice) -> Value {
     match serde_json::to_value(choice) {
         Ok(Value::Object(kinds)) if kinds.len() == 1 => {
@@ -63,17 +63,22 @@ pub(crate) fn parameters(choice: &Choice) -> Value {
     }
 }
 
-/// How the scene's solver is reached; for nothing, without one.
+/// Connections to the scene's solver; both are `None` without a solver.
 #[derive(Clone, Debug, Default)]
-pub(crate) struct Solver {
-    /// For the electric field.
+pub(crate) struct SolverConnections {
+    /// Connection for the electric field.
     pub(crate) field: Option<Connect>,
-    /// For the flow of the gas.
+    /// Connection for the flow of the gas.
     pub(crate) flow: Option<ConnectFlow>,
 }
 
-/// The simulation that a scene asks for, with its field solver; `choice` are field parameters chosen earlier.
-pub(crate) fn setup_of(scene: &Scene, choice: Option<Choice>, solver: Solver) -> Result<Setup, Failure> {
+/// Set-up of the simulation of a scene, with its solver; `choice` are field parameters that were chosen
+/// earlier.
+pub(crate) fn setup_of(
+    scene: &Scene,
+    choice: Option<Choice>,
+    solver: SolverConnections,
+) -> Result<Setup, Failure> {
     let time = scene.time.clone().ok_or_else(|| Failure::bad_input("the scene has no [time]; add it"))?;
     let field = scene.electric_field.as_ref().map(|field| FieldStageSetup {
         settings: field.field.clone(),
@@ -94,7 +99,7 @@ pub(crate) fn setup_of(scene: &Scene, choice: Option<Choice>, solver: Solver) ->
     })
 }
 
-/// Charge transfer on contact, if the scene asks for it.
+/// Settings of charge transfer at contacts, if the scene asks for it.
 fn transfer_of(scene: &Scene) -> Option<ChargeTransfer> {
     let field = scene.electric_field.as_ref().filter(|field| field.enable_collision_charge_transfer)?;
     let plain = ChargeTransfer::new(field.charge_transfer_cutoff_m);
@@ -106,12 +111,12 @@ fn transfer_of(scene: &Scene) -> Option<ChargeTransfer> {
     }))
 }
 
-/// Whether the internal grid goes on when the field solver is lost.
+/// Tells whether the run continues with the internal grid when the field solver is lost.
 fn falls_back(scene: &Scene) -> bool {
     scene.solver.as_ref().is_some_and(|solver| solver.on_solver_loss == SolverLoss::Fallback)
 }
 
-/// The field of a scene's charges: on the internal grid, or over a field solver's mesh.
+/// Electric field of a scene's charges, on the internal grid or over the mesh of a field solver.
 pub(crate) fn field_of(
     domain: &Domain,
     settings: &FieldSettings,
@@ -119,7 +124,7 @@ pub(crate) fn field_of(
     positions: &[Vector3<f64>],
     charges: &[f64],
 ) -> Result<ElectricField, Failure> {
-    // One snapshot: nothing to work beside.
+    // For one snapshot there is no other work that could be done beside the solver's.
     let settings = &FieldSettings { overlap: false, ..settings.clone() };
     let field = match solver {
         None => ElectricField::new(domain, settings, positions, charges),

@@ -1,6 +1,6 @@
-//! The scene's field solver: started before anything else, because its mesh may bring the box.
+//! Connection to the scene's solver, which is started first because its mesh may give the box.
 
-use super::setup::Solver;
+use super::setup::SolverConnections;
 use crate::failure::Failure;
 use amberfield_core::{Axis, Domain, Method};
 use amberfield_coupling::{
@@ -8,19 +8,22 @@ use amberfield_coupling::{
 };
 use amberfield_field::far::{Connect, FarField};
 use amberfield_gas::ConnectFlow;
-use amberfield_scene::{ElectricFieldSettings, Scene, SolverLoss, SolverSettings as Asked};
+use amberfield_scene::{ElectricFieldSettings, OpenFoamSettings, Scene, SolverLoss};
 use std::sync::{Mutex, PoisonError};
 use std::time::Duration;
 
-/// Relative tolerance of the linear solver over the field's, unless the scene says it.
+/// Ratio of the linear solver's relative tolerance to that of the field, unless the scene gives the
+/// tolerance.
 const FAR_TOLERANCE: f64 = 1e-4;
 
-/// Reaches the scene's field solver, if it has one; the scene's box is the mesh's where it has none of its own.
-pub(crate) fn connect_solver(scene: &mut Scene) -> Result<Solver, Failure> {
+/// Connects to the scene's solver, if it has one.
+///
+/// A scene without a box takes the box of the solver's mesh.
+pub(crate) fn connect_solver(scene: &mut Scene) -> Result<SolverConnections, Failure> {
     let flows = scene.gas.is_some_and(|gas| gas.flow.is_some());
-    let Some(solver) = &scene.solver else { return Ok(Solver::default()) };
+    let Some(solver) = &scene.solver else { return Ok(SolverConnections::default()) };
     if scene.electric_field.is_none() && !flows {
-        return Ok(Solver::default());
+        return Ok(SolverConnections::default());
     }
     if let Some(field) = &scene.electric_field {
         refuse(field, solver)?;
@@ -30,10 +33,12 @@ pub(crate) fn connect_solver(scene: &mut Scene) -> Result<Solver, Failure> {
     }
     if solver.on_solver_loss == SolverLoss::Fallback && scene.domain.is_none() {
         return Err(Failure::bad_input(
-            "solver.on_solver_loss = \"fallback\" needs the box and the boundaries with which the internal grid goes on; add [domain] and [domain.boundary]",
+            "solver.on_solver_loss = \"fallback\" needs the box and the boundaries with which the internal \
+             grid \
+             continues; add [domain] and [domain.boundary]",
         ));
     }
-    // What it prints stays in its case's folder, as is usual.
+    // OpenFOAM's users expect the output of a program in the folder of its case.
     let program = solver.application.as_deref().unwrap_or(program_name(flows));
     let asked = scene.electric_field.as_ref();
     let far_tolerance =
@@ -57,7 +62,7 @@ pub(crate) fn connect_solver(scene: &mut Scene) -> Result<Solver, Failure> {
     }
     let waits = solver.on_solver_loss == SolverLoss::Wait;
     let flow = flows.then(|| ConnectFlow::once(connected.flow()));
-    // The one that is there first, then new ones.
+    // The first call takes the connection that exists; later calls, after a loss, make new ones.
     let first = Mutex::new(Some(connected));
     let field = asked.is_some().then(|| {
         Connect::new(move || {
@@ -72,46 +77,55 @@ pub(crate) fn connect_solver(scene: &mut Scene) -> Result<Solver, Failure> {
             })
         })
     });
-    Ok(Solver { field, flow })
+    Ok(SolverConnections { field, flow })
 }
 
+/// Announces the run and waits for the solver.
 fn connect(settings: &SolverSettings) -> Result<RemoteSolver, CouplingError> {
     Announced::new(settings.clone())?.connect()
 }
 
-/// Refuses what is not built over a solver's mesh.
-fn refuse(field: &ElectricFieldSettings, solver: &Asked) -> Result<(), Failure> {
+/// Refuses settings that do not work with a solver's mesh.
+fn refuse(field: &ElectricFieldSettings, solver: &OpenFoamSettings) -> Result<(), Failure> {
     let method = field.field.method;
     if !matches!(method, Method::P3m | Method::Kolehmainen) {
         return Err(Failure::bad_input(format!(
-            "this version has no method {method} over a field solver's mesh; set electric_field.method = \"p3m\" or \"kolehmainen\", or remove [solver]"
+            "this version has no method {method} over a field solver's mesh; \
+             set electric_field.method = \"p3m\" or \"kolehmainen\", or remove [solver]"
         )));
     }
     if field.field.overlap && (method != Method::P3m || solver.on_solver_loss == SolverLoss::Wait) {
         return Err(Failure::bad_input(
-            "electric_field.overlap = true needs method \"p3m\" and solver.on_solver_loss \"stop\" or \"fallback\"; change one of them",
+            "electric_field.overlap = true needs method \"p3m\" and solver.on_solver_loss \"stop\" or \
+             \"fallback\"; change one of them",
         ));
     }
     Ok(())
 }
 
-/// Refuses what a solver with the flow of a gas cannot be.
-fn refuse_with_gas(solver: &Asked) -> Result<(), Failure> {
+/// Refuses settings that do not work with a solver that computes the flow of a gas.
+fn refuse_with_gas(solver: &OpenFoamSettings) -> Result<(), Failure> {
     if solver.on_solver_loss != SolverLoss::Stop {
         return Err(Failure::bad_input(
-            "gas.flow = \"solver\" needs solver.on_solver_loss = \"stop\": the state of the flow is lost with its solver; a checkpoint has it",
+            "gas.flow = \"solver\" needs solver.on_solver_loss = \"stop\": the state of the flow is lost \
+             with its \
+             solver; only a checkpoint has it",
         ));
     }
     if let Some(application) = &solver.application {
         return Err(Failure::bad_input(format!(
-            "solver.application = \"{application}\" cannot compute the flow between grains; leave it out with gas.flow = \"solver\""
+            "solver.application = \"{application}\" cannot compute the flow between grains; \
+             leave it out with gas.flow = \"solver\""
         )));
     }
     Ok(())
 }
 
-/// Refuses a box that is not the mesh's.
+/// Refuses a box that differs from that of the mesh.
+///
+/// The ends are compared along periodic axes only.
 fn agree(domain: &Domain, mesh: &Domain) -> Result<(), Failure> {
+    /// Share of the length by which the ends may differ.
     const SAME: f64 = 1e-6;
     for axis in Axis::ALL {
         let ends = |box_of: &Domain| [box_of.min()[axis.index()], box_of.max()[axis.index()]];
@@ -121,12 +135,15 @@ fn agree(domain: &Domain, mesh: &Domain) -> Result<(), Failure> {
         if periodic != mesh.is_periodic(axis) {
             let [ours, theirs] = if periodic { ["", "not "] } else { ["not ", ""] };
             return Err(Failure::bad_input(format!(
-                "[domain] is {ours}periodic along {axis}, the mesh of [solver] openfoam_case is {theirs}cyclic there; make them agree, or leave [domain] out"
+                "[domain] is {ours}periodic along {axis}, the mesh of [solver] openfoam_case is \
+                 {theirs}cyclic \
+                 there; make them agree, or leave [domain] out"
             )));
         }
         if periodic && ((low - mesh_low).abs() > far || (high - mesh_high).abs() > far) {
             return Err(Failure::bad_input(format!(
-                "[domain] reaches from {low} to {high} m along {axis}, the mesh of [solver] openfoam_case from {mesh_low} to {mesh_high} m; a periodic axis must be the same in both"
+                "[domain] reaches from {low} to {high} m along {axis}, the mesh of [solver] openfoam_case \
+                 from {mesh_low} to {mesh_high} m; a periodic axis must be the same in both"
             )));
         }
     }

@@ -1,4 +1,4 @@
-//! `summary.json`.
+//! File `summary.json`.
 
 use super::session::Session;
 use super::setup::parameters;
@@ -8,16 +8,16 @@ use amberfield_dem::Energies;
 use amberfield_scene::write_json;
 use serde_json::{Map, Value, json};
 
-/// How a run ended.
+/// End of a run.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) enum Ending {
-    /// At `end_s`.
+    /// End at `end_s`.
     Complete,
-    /// After the steps that were asked for.
+    /// End after the number of steps that was asked for.
     Steps,
-    /// By the user.
+    /// Stop by the user.
     Interrupted,
-    /// By an error.
+    /// Stop by an error.
     Failed,
 }
 
@@ -32,6 +32,7 @@ impl Ending {
     }
 }
 
+/// Energies as JSON.
 fn energies(energies: &Energies) -> Value {
     json!({
         "kinetic_J": energies.kinetic,

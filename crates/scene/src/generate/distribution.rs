@@ -4,82 +4,98 @@ use super::spec::GenerateContext;
 use crate::SceneError;
 use crate::particles::read_charges;
 use crate::scene::limits::{CHARGE, RADIUS, RADIUS_OR_POINT};
-use crate::tree::{Node, Range, Table, Value};
+use crate::tree::{Node, Range, SceneTable, Value};
 use rand::RngExt;
 use rand::seq::SliceRandom;
 use rand_chacha::ChaCha8Rng;
 use rand_distr::{Distribution, LogNormal, Normal};
 
-/// Normal and log-normal radii are drawn again beyond so many standard deviations.
+/// Number of standard deviations beyond which normal and log-normal radii are drawn again.
 const CLIP_DEVIATIONS: f64 = 3.0;
-/// Draws after which a clipped distribution counts as empty.
+/// Number of draws after which a clipped distribution counts as empty.
 const MOST_DRAWS: usize = 10_000;
 
 /// Distribution of radii [m].
 #[derive(Clone, Debug, PartialEq)]
-pub(super) enum Radii {
+pub(super) enum RadiusDistribution {
     Constant(f64),
-    Uniform { min: f64, max: f64 },
-    Normal { mean: f64, std: f64, min: f64, max: f64 },
-    LogNormal { median: f64, sigma: f64, min: f64, max: f64 },
+    Uniform(Limits),
+    Normal { mean: f64, std: f64, limits: Limits },
+    LogNormal { median: f64, sigma: f64, limits: Limits },
     Sizes { radii: Vec<f64>, fractions: Vec<f64> },
+}
+
+/// Smallest and largest value of a distribution.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(super) struct Limits {
+    min: f64,
+    max: f64,
 }
 
 /// Distribution of charges [C].
 #[derive(Clone, Debug, PartialEq)]
-pub(super) enum Charges {
+pub(super) enum ChargeDistribution {
     Constant(f64),
-    Uniform { min: f64, max: f64 },
-    Normal { mean: f64, std: f64 },
+    Uniform(Limits),
+    Normal {
+        mean: f64,
+        std: f64,
+    },
+    /// Charges +q and −q in equal number.
     Bipolar(f64),
     List(Vec<f64>),
 }
 
-/// The one key of a distribution's table.
-fn single<'a>(table: &Table<'_>, node: &'a Node, forms: &str) -> Result<&'a str, SceneError> {
+/// Only key of a distribution's table.
+fn single<'a>(table: &SceneTable<'_>, node: &'a Node, forms: &str) -> Result<&'a str, SceneError> {
     match &node.value {
         Value::Table(entries) if entries.len() == 1 => Ok(&entries[0].0),
         _ => Err(table.missing("constant", format!("give exactly one of {forms}"))),
     }
 }
 
-/// Numbers `min` and `max` in order.
-fn min_max(table: &Table<'_>, range: Range) -> Result<(f64, f64), SceneError> {
+/// Reads the numbers `min` and `max`, which must be in order.
+fn min_max(table: &SceneTable<'_>, range: Range) -> Result<Limits, SceneError> {
     let (min, max) = (table.need_number("min", range)?, table.need_number("max", range)?);
     if max < min {
         Err(table.bad("max", format!("below min = {min}; exchange them")))
     } else {
-        Ok((min, max))
+        Ok(Limits { min, max })
     }
 }
 
-/// Reads `radius_m`.
-pub(super) fn read_radii(parent: &Table<'_>, allow_points: bool) -> Result<Radii, SceneError> {
+/// Reads the key `radius_m`.
+pub(super) fn read_radii(
+    parent: &SceneTable<'_>,
+    allow_points: bool,
+) -> Result<RadiusDistribution, SceneError> {
     let key = "radius_m";
     let range = if allow_points { RADIUS_OR_POINT } else { RADIUS };
     let Some(node) = parent.get(key) else {
         return Err(parent.missing(key, "give a radius in metres or a distribution"));
     };
     if !matches!(node.value, Value::Table(_)) {
-        return parent.need_number(key, range).map(Radii::Constant);
+        return parent.need_number(key, range).map(RadiusDistribution::Constant);
     }
     let forms = ["constant", "uniform", "normal", "log_normal", "sizes"];
-    let table = Table::new(node, parent.key(key), &forms)?;
+    let table = SceneTable::new(node, parent.key(key), &forms)?;
     match single(&table, node, &forms.join(", "))? {
-        "constant" => table.need_number("constant", range).map(Radii::Constant),
+        "constant" => table.need_number("constant", range).map(RadiusDistribution::Constant),
         "uniform" => {
             let inner = table.table("uniform", &["min", "max"])?.expect("the key is there");
-            let (min, max) = min_max(&inner, range)?;
-            Ok(Radii::Uniform { min, max })
+            Ok(RadiusDistribution::Uniform(min_max(&inner, range)?))
         }
         "normal" => {
             let inner = table.table("normal", &["mean", "std", "min", "max"])?.expect("the key is there");
             let mean = inner.need_number("mean", RADIUS)?;
             let std = inner.need_number("std", RADIUS_OR_POINT)?;
-            let low = inner.number("min", RADIUS)?.unwrap_or((mean - CLIP_DEVIATIONS * std).max(mean / 10.0));
-            let high = inner.number("max", RADIUS)?.unwrap_or(mean + CLIP_DEVIATIONS * std);
-            clipped(&inner, mean, low, high)?;
-            Ok(Radii::Normal { mean, std, min: low, max: high })
+            // A wide spread must not lead to radii near or below zero.
+            let usual_min = (mean - CLIP_DEVIATIONS * std).max(mean / 10.0);
+            let min = inner.number("min", RADIUS)?.unwrap_or(usual_min);
+            let max = inner.number("max", RADIUS)?.unwrap_or(mean + CLIP_DEVIATIONS * std);
+            let limits = Limits { min, max };
+            check_limits(&inner, mean, limits)?;
+            Ok(RadiusDistribution::Normal { mean, std, limits })
         }
         "log_normal" => {
             let inner =
@@ -87,24 +103,28 @@ pub(super) fn read_radii(parent: &Table<'_>, allow_points: bool) -> Result<Radii
             let median = inner.need_number("median", RADIUS)?;
             let sigma = inner.need_number("sigma", Range::closed(0.0, 5.0))?;
             let spread = (CLIP_DEVIATIONS * sigma).exp();
-            let low = inner.number("min", RADIUS)?.unwrap_or(median / spread);
-            let high = inner.number("max", RADIUS)?.unwrap_or(median * spread);
-            clipped(&inner, median, low, high)?;
-            Ok(Radii::LogNormal { median, sigma, min: low, max: high })
+            let min = inner.number("min", RADIUS)?.unwrap_or(median / spread);
+            let max = inner.number("max", RADIUS)?.unwrap_or(median * spread);
+            let limits = Limits { min, max };
+            check_limits(&inner, median, limits)?;
+            Ok(RadiusDistribution::LogNormal { median, sigma, limits })
         }
         _ => read_sizes(&table, range),
     }
 }
 
-fn clipped(table: &Table<'_>, middle: f64, low: f64, high: f64) -> Result<(), SceneError> {
-    if low <= middle && middle <= high {
+/// Checks that the middle of a distribution lies between its limits.
+fn check_limits(table: &SceneTable<'_>, middle: f64, limits: Limits) -> Result<(), SceneError> {
+    let Limits { min, max } = limits;
+    if min <= middle && middle <= max {
         Ok(())
     } else {
-        Err(table.bad("max", format!("the middle {middle} m must lie between min = {low} and max = {high}")))
+        Err(table.bad("max", format!("the middle {middle} m must lie between min = {min} and max = {max}")))
     }
 }
 
-fn read_sizes(table: &Table<'_>, range: Range) -> Result<Radii, SceneError> {
+/// Reads radii that are given one by one, with their shares by number.
+fn read_sizes(table: &SceneTable<'_>, range: Range) -> Result<RadiusDistribution, SceneError> {
     let inner = table.table("sizes", &["radius_m", "fraction"])?.expect("the key is there");
     let radii = inner.numbers("radius_m", range)?;
     let radii = inner.need(radii, "radius_m", "give the radii, as [1e-4, 2e-4]")?;
@@ -115,32 +135,31 @@ fn read_sizes(table: &Table<'_>, range: Range) -> Result<Radii, SceneError> {
         let problem = format!("{} fractions for {} radii; give one for each", fractions.len(), radii.len());
         return Err(inner.bad("fraction", problem));
     }
-    Ok(Radii::Sizes { radii, fractions })
+    Ok(RadiusDistribution::Sizes { radii, fractions })
 }
 
-/// Reads `charge_C`.
+/// Reads the key `charge_C`.
 pub(super) fn read_charges_spec(
-    parent: &Table<'_>,
+    parent: &SceneTable<'_>,
     count: usize,
     context: &mut GenerateContext<'_>,
-) -> Result<Option<Charges>, SceneError> {
+) -> Result<Option<ChargeDistribution>, SceneError> {
     let key = "charge_C";
     let Some(node) = parent.get(key) else { return Ok(None) };
     if !matches!(node.value, Value::Table(_)) {
-        return parent.need_number(key, CHARGE).map(|charge| Some(Charges::Constant(charge)));
+        return parent.need_number(key, CHARGE).map(|charge| Some(ChargeDistribution::Constant(charge)));
     }
     let forms = ["constant", "uniform", "normal", "bipolar", "from_file"];
-    let table = Table::new(node, parent.key(key), &forms)?;
+    let table = SceneTable::new(node, parent.key(key), &forms)?;
     let charges = match single(&table, node, &forms.join(", "))? {
-        "constant" => Charges::Constant(table.need_number("constant", CHARGE)?),
+        "constant" => ChargeDistribution::Constant(table.need_number("constant", CHARGE)?),
         "uniform" => {
             let inner = table.table("uniform", &["min", "max"])?.expect("the key is there");
-            let (min, max) = min_max(&inner, CHARGE)?;
-            Charges::Uniform { min, max }
+            ChargeDistribution::Uniform(min_max(&inner, CHARGE)?)
         }
         "normal" => {
             let inner = table.table("normal", &["mean", "std"])?.expect("the key is there");
-            Charges::Normal {
+            ChargeDistribution::Normal {
                 mean: inner.need_number("mean", CHARGE)?,
                 std: inner.need_number("std", Range::closed(0.0, 1e6))?,
             }
@@ -148,52 +167,55 @@ pub(super) fn read_charges_spec(
         "bipolar" => match table.get("bipolar").map(|node| &node.value) {
             Some(Value::Table(_)) => {
                 let inner = table.table("bipolar", &["magnitude"])?.expect("the key is there");
-                Charges::Bipolar(inner.need_number("magnitude", CHARGE)?)
+                ChargeDistribution::Bipolar(inner.need_number("magnitude", CHARGE)?)
             }
-            _ => Charges::Bipolar(table.need_number("bipolar", CHARGE)?),
+            _ => ChargeDistribution::Bipolar(table.need_number("bipolar", CHARGE)?),
         },
         _ => {
             let file = table.text("from_file")?;
             let file = table.need(file, "from_file", "name a CSV with the column charge_C")?;
             let bytes = context.source.read_file(&table, "from_file", file)?;
-            Charges::List(read_charges(file, &bytes, count)?)
+            ChargeDistribution::List(read_charges(file, &bytes, count)?)
         }
     };
     Ok(Some(charges))
 }
 
-impl Radii {
+impl RadiusDistribution {
     /// Draws radii [m].
     pub(super) fn draw(&self, count: usize, random: &mut ChaCha8Rng) -> Result<Vec<f64>, String> {
         match self {
             Self::Constant(radius) => Ok(vec![*radius; count]),
-            Self::Uniform { min, max } => Ok((0..count).map(|_| random.random_range(*min..=*max)).collect()),
-            Self::Normal { mean, std, min, max } => {
-                let normal = Normal::new(*mean, *std).map_err(|error| error.to_string())?;
-                draw_clipped(&normal, *min, *max, count, random)
+            Self::Uniform(Limits { min, max }) => {
+                Ok((0..count).map(|_| random.random_range(*min..=*max)).collect())
             }
-            Self::LogNormal { median, sigma, min, max } => {
+            Self::Normal { mean, std, limits } => {
+                let normal = Normal::new(*mean, *std).map_err(|error| error.to_string())?;
+                draw_clipped(&normal, *limits, count, random)
+            }
+            Self::LogNormal { median, sigma, limits } => {
                 let log_normal = LogNormal::new(median.ln(), *sigma).map_err(|error| error.to_string())?;
-                draw_clipped(&log_normal, *min, *max, count, random)
+                draw_clipped(&log_normal, *limits, count, random)
             }
             Self::Sizes { radii, fractions } => Ok(shares(radii, fractions, count, random)),
         }
     }
 }
 
+/// Draws numbers, again and again until each lies between the limits.
 fn draw_clipped(
     distribution: &impl Distribution<f64>,
-    min: f64,
-    max: f64,
+    limits: Limits,
     count: usize,
     random: &mut ChaCha8Rng,
 ) -> Result<Vec<f64>, String> {
+    let Limits { min, max } = limits;
     (0..count)
         .map(|_| {
             (0..MOST_DRAWS)
                 .map(|_| distribution.sample(random))
                 .find(|radius| *radius >= min && *radius <= max)
-                // A spread of zero gives the middle up to rounding; anything else has a share inside.
+                // With a spread of zero, rounding may put every draw just outside of limits that coincide.
                 .or_else(|| (max - min <= 1e-9 * max).then_some(min))
                 .ok_or_else(|| {
                     format!(
@@ -204,7 +226,7 @@ fn draw_clipped(
         .collect()
 }
 
-/// The exact shares by number (largest remainders), in random order.
+/// Radii in the exact shares by number, in random order.
 fn shares(radii: &[f64], fractions: &[f64], count: usize, random: &mut ChaCha8Rng) -> Vec<f64> {
     let total: f64 = fractions.iter().sum();
     let mut drawn = Vec::with_capacity(count);
@@ -217,6 +239,7 @@ fn shares(radii: &[f64], fractions: &[f64], count: usize, random: &mut ChaCha8Rn
             clippy::cast_precision_loss,
             reason = "counts are at most 1e8"
         )]
+        // Rounding the cumulated share keeps each size within one grain of its share.
         let until = ((cumulated * count as f64).round() as usize).min(count);
         drawn.resize(until.max(drawn.len()), *radius);
     }
@@ -225,12 +248,14 @@ fn shares(radii: &[f64], fractions: &[f64], count: usize, random: &mut ChaCha8Rn
     drawn
 }
 
-impl Charges {
+impl ChargeDistribution {
     /// Draws charges [C].
     pub(super) fn draw(&self, count: usize, random: &mut ChaCha8Rng) -> Result<Vec<f64>, String> {
         Ok(match self {
             Self::Constant(charge) => vec![*charge; count],
-            Self::Uniform { min, max } => (0..count).map(|_| random.random_range(*min..=*max)).collect(),
+            Self::Uniform(Limits { min, max }) => {
+                (0..count).map(|_| random.random_range(*min..=*max)).collect()
+            }
             Self::Normal { mean, std } => {
                 let normal = Normal::new(*mean, *std).map_err(|error| error.to_string())?;
                 (0..count).map(|_| normal.sample(random)).collect()

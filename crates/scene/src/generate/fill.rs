@@ -1,5 +1,5 @@
-//! Random fill without overlaps: random sequential addition, largest grains first, and where that jams (above
-//! a volume fraction of about 0.35) overlap removal from a random start.
+//! Random fill without overlaps: random sequential addition, largest grains first. Where that jams (above a
+//! volume fraction of about 0.35), overlaps are removed from a random start.
 
 use super::grid::SizeGrid;
 use super::region::Region;
@@ -8,24 +8,24 @@ use nalgebra::Vector3;
 use rand_chacha::ChaCha8Rng;
 use std::f64::consts::PI;
 
-/// Places tried for a grain before the fill counts as jammed.
+/// Number of places tried for a grain before the fill counts as jammed.
 const MOST_TRIES: usize = 300;
-/// Places tried for a grain that may overlap others: only walls refuse it.
+/// Number of places tried for a grain that may overlap others, so that only walls refuse a place.
 const MOST_WALL_TRIES: usize = 10_000;
-/// Highest volume fraction that is tried; equal spheres jam at random at 0.64.
+/// Highest volume fraction that is tried; random packings of equal spheres jam at 0.64.
 const HIGHEST_FRACTION: f64 = 0.62;
-/// Centres are apart by this share more than the radii, so that rounding makes no contact.
+/// Share of the radii by which grains are apart, so that rounding makes no contact.
 pub(super) const GAP: f64 = 1e-6;
 
-/// Volume fraction of grains in a region, walls not subtracted.
+/// Volume fraction of grains of the given radii [m] in a region, walls not subtracted.
 pub(super) fn volume_fraction(region: &Region, radii: &[f64]) -> f64 {
     radii.iter().map(|radius| 4.0 / 3.0 * PI * radius.powi(3)).sum::<f64>() / region.volume()
 }
 
-/// Centres [m] for grains of the given radii.
+/// Finds centres [m] for grains of the given radii [m].
 ///
 /// # Errors
-/// Grains larger than the region, volume fractions that cannot be reached: with numbers.
+/// A text with numbers: grains larger than the region, or volume fractions that cannot be reached.
 pub(super) fn fill(
     region: &Region,
     radii: &[f64],
@@ -35,14 +35,16 @@ pub(super) fn fill(
     let smallest = radii.iter().copied().fold(f64::INFINITY, f64::min);
     if largest > region.largest_radius() {
         return Err(format!(
-            "a grain of radius {largest:e} m does not fit into the region, whose largest sphere has {:e} m; make the grains smaller or the region larger",
+            "a grain of radius {largest:e} m does not fit into the region, whose largest sphere has {:e} m; \
+             make the grains smaller or the region larger",
             region.largest_radius()
         ));
     }
     let fraction = volume_fraction(region, radii);
     if fraction > HIGHEST_FRACTION {
         return Err(format!(
-            "{} grains fill the fraction {fraction:.3} of the region's {:e} m3, above the {HIGHEST_FRACTION} that a random fill reaches; take fewer or smaller grains, or a larger region",
+            "{} grains fill the fraction {fraction:.3} of the region's {:e} m3, above the {HIGHEST_FRACTION} \
+             that a random fill reaches; take fewer or smaller grains, or a larger region",
             radii.len(),
             region.volume()
         ));
@@ -60,6 +62,7 @@ pub(super) fn fill(
                 region.shortest(centres[other] - point).norm_squared() >= apart * apart
             })
         };
+        // Once jammed, free places are not worth the search: overlaps are removed at the end.
         let found = if jammed {
             None
         } else {
@@ -70,7 +73,10 @@ pub(super) fn fill(
             None => {
                 jammed = true;
                 (0..MOST_WALL_TRIES).find_map(|_| region.draw(radius, random)).ok_or_else(|| {
-                    format!("no place in the region is a radius of {radius:e} m away from every plane wall; move the region or the walls")
+                    format!(
+                        "no place in the region is a radius of {radius:e} m away from every plane wall; \
+                         move the region or the walls"
+                    )
                 })?
             }
         };
@@ -80,7 +86,8 @@ pub(super) fn fill(
     if jammed {
         relax(region, radii, &mut centres, &mut grid).map_err(|overlap| {
             format!(
-                "{} grains at the volume fraction {fraction:.3} still overlap by {overlap:.1e} of their radius; take fewer or smaller grains, or a larger region",
+                "{} grains at the volume fraction {fraction:.3} still overlap by {overlap:.1e} \
+                 of their radius; take fewer or smaller grains, or a larger region",
                 radii.len()
             )
         })?;

@@ -1,42 +1,62 @@
-//! Linked cells in levels of size, for grains of any size mix.
+//! Linked cells in levels of size, for any mixture of sizes.
 
 use super::region::Region;
 use nalgebra::Vector3;
 
-/// Most levels; each halves the cell.
+/// Largest number of levels; each halves the edge of the cells.
 const MOST_LEVELS: usize = 12;
-/// Most cells of a level, for each grain and at all.
+/// Largest number of cells of a level for each grain.
 const CELLS_PER_GRAIN: f64 = 8.0;
-/// Most cells of a level at all.
+/// Largest number of cells of a level in total.
 const MOST_CELLS: f64 = 6.4e7;
-/// End of a cell's list.
+/// End of the list of a cell.
 const NONE: u32 = u32::MAX;
 
-/// Cells of one level: grains with a diameter of at most the cell and, but for the last level, above half of it.
+/// Cells for the grains of one class of size.
+///
+/// The diameter of a grain is at most the edge of a cell and, on all levels but the last, above half of it.
 #[derive(Debug)]
-struct Level {
+struct SizeLevel {
+    /// Edges of a cell [m].
     cell: Vector3<f64>,
+    /// Number of cells per axis.
     counts: [usize; 3],
+    /// First grain of each cell.
     heads: Vec<u32>,
+    /// Flag of a level that holds a grain.
     used: bool,
 }
 
-/// Grains in cells of their own size.
+/// Cells that a search visits along an axis.
+#[derive(Clone, Copy)]
+struct CellRange {
+    /// First cell; may lie outside the grid on a periodic axis.
+    first: isize,
+    /// Number of cells.
+    count: isize,
+}
+
+/// Grid of cells in which each grain lies on the level of its size.
 #[derive(Debug)]
 pub(super) struct SizeGrid {
-    levels: Vec<Level>,
+    /// Levels, largest grains first.
+    levels: Vec<SizeLevel>,
+    /// Next grain in the cell of each grain.
     next: Vec<u32>,
+    /// Largest radius [m].
     largest: f64,
+    /// Lower corner [m].
     min: Vector3<f64>,
+    /// Flag of a periodic axis.
     periodic: [bool; 3],
 }
 
 impl SizeGrid {
-    /// An empty grid for radii between `smallest` and `largest` [m] and indices below `count`.
+    /// Empty grid for radii between `smallest` and `largest` [m] and indices below `count`.
     pub(super) fn new(region: &Region, smallest: f64, largest: f64, count: usize) -> Self {
         let extent = region.max - region.min;
         let mut levels = Vec::new();
-        // Points have no size to make cells of.
+        // Points have no size from which to make cells.
         let mut edge = if largest > 0.0 { 2.0 * largest } else { extent.max() };
         #[expect(clippy::cast_precision_loss, reason = "a generator makes at most 1e8 grains")]
         let most_cells = (64.0 + CELLS_PER_GRAIN * count as f64).min(MOST_CELLS);
@@ -56,7 +76,7 @@ impl SizeGrid {
                 std::array::from_fn(|axis| (extent[axis] / edge).floor().max(1.0) as usize);
             #[expect(clippy::cast_precision_loss, reason = "bounded by MOST_CELLS")]
             let cell = Vector3::from_fn(|axis, _| extent[axis] / counts[axis] as f64);
-            levels.push(Level { cell, counts, heads: vec![NONE; counts.iter().product()], used: false });
+            levels.push(SizeLevel { cell, counts, heads: vec![NONE; counts.iter().product()], used: false });
             edge *= 0.5;
             if edge < 2.0 * smallest || levels.len() == MOST_LEVELS || !fits(edge) {
                 break;
@@ -73,6 +93,7 @@ impl SizeGrid {
         }
     }
 
+    /// Level of the grains of a radius [m].
     fn level_of(&self, radius: f64) -> usize {
         let mut level = 0;
         let mut half = 0.5 * self.largest;
@@ -83,7 +104,7 @@ impl SizeGrid {
         level
     }
 
-    /// Adds a grain.
+    /// Adds a grain at a position [m] with a radius [m].
     pub(super) fn insert(&mut self, index: usize, position: &Vector3<f64>, radius: f64) {
         let level = self.level_of(radius);
         let offset = position - self.min;
@@ -96,8 +117,8 @@ impl SizeGrid {
         level.used = true;
     }
 
-    /// Calls `visit` for every grain that could touch a grain of the given place and size, until it returns
-    /// `false`. Returns whether all were visited.
+    /// Calls `visit` for each grain that could touch a grain of the given position [m] and radius [m], until
+    /// it returns `false`. Returns `true` when all were visited.
     pub(super) fn visit_near(
         &self,
         position: &Vector3<f64>,
@@ -109,7 +130,7 @@ impl SizeGrid {
         for level in &self.levels {
             if level.used {
                 let reach = radius + largest_here;
-                let ranges: [(isize, isize); 3] =
+                let ranges: [CellRange; 3] =
                     std::array::from_fn(|axis| self.cells_within(level, axis, offset[axis], reach));
                 if !self.visit_level(level, &ranges, &mut visit) {
                     return false;
@@ -120,36 +141,41 @@ impl SizeGrid {
         true
     }
 
-    /// First cell and number of cells within reach along an axis.
+    /// Cells of a level within `reach` [m] of an offset [m] from the lower corner, along an axis.
     #[expect(
         clippy::cast_possible_truncation,
         clippy::cast_possible_wrap,
         reason = "cells per axis are at most MOST_CELLS"
     )]
-    fn cells_within(&self, level: &Level, axis: usize, offset: f64, reach: f64) -> (isize, isize) {
+    fn cells_within(&self, level: &SizeLevel, axis: usize, offset: f64, reach: f64) -> CellRange {
         let count = level.counts[axis] as isize;
         let low = ((offset - reach) / level.cell[axis]).floor() as isize;
         let high = ((offset + reach) / level.cell[axis]).floor() as isize;
         if self.periodic[axis] {
-            if high - low + 1 >= count { (0, count) } else { (low, high - low + 1) }
+            // A range of a period or more would visit cells twice.
+            if high - low + 1 >= count {
+                CellRange { first: 0, count }
+            } else {
+                CellRange { first: low, count: high - low + 1 }
+            }
         } else {
             let (low, high) = (low.clamp(0, count - 1), high.clamp(0, count - 1));
-            (low, high - low + 1)
+            CellRange { first: low, count: high - low + 1 }
         }
     }
 
     #[expect(clippy::cast_possible_wrap, reason = "cells per axis are at most MOST_CELLS")]
     fn visit_level(
         &self,
-        level: &Level,
-        ranges: &[(isize, isize); 3],
+        level: &SizeLevel,
+        ranges: &[CellRange; 3],
         visit: &mut impl FnMut(usize) -> bool,
     ) -> bool {
         let wrapped =
-            |axis: usize, k: isize| (ranges[axis].0 + k).rem_euclid(level.counts[axis] as isize) as usize;
-        for a in 0..ranges[0].1 {
-            for b in 0..ranges[1].1 {
-                for c in 0..ranges[2].1 {
+            |axis: usize, k: isize| (ranges[axis].first + k).rem_euclid(level.counts[axis] as isize) as usize;
+        for a in 0..ranges[0].count {
+            for b in 0..ranges[1].count {
+                for c in 0..ranges[2].count {
                     let row = wrapped(0, a) * level.counts[1] + wrapped(1, b);
                     let mut index = level.heads[row * level.counts[2] + wrapped(2, c)];
                     while index != NONE {
@@ -165,6 +191,7 @@ impl SizeGrid {
     }
 }
 
+/// Index of the cell at a coordinate in units of cells, clamped to the grid.
 #[expect(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "clamped to the grid")]
 fn coordinate(cell: f64, count: usize) -> usize {
     (cell.max(0.0) as usize).min(count - 1)

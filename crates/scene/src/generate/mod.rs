@@ -1,4 +1,5 @@
-//! Grains from a rule: a random fill without overlaps, sizes and charges from distributions, one seed.
+//! Generator of particles: a random fill without overlaps, with sizes and charges from distributions and one
+//! seed.
 
 mod distribution;
 mod fill;

@@ -1,51 +1,66 @@
-//! Where grains may be placed.
+//! Region in which grains are placed.
 
 use super::spec::GenerateContext;
 use crate::SceneError;
 use crate::scene::limits::{COORDINATE, LENGTH};
-use crate::tree::{Range, Table, Value};
+use crate::tree::{Range, SceneTable, Value};
 use amberfield_core::{Axis, Domain, Wall, WallShape};
 use nalgebra::Vector3;
 use rand::RngExt;
 use rand_chacha::ChaCha8Rng;
 use std::f64::consts::PI;
 
-/// Grains stay this share of their radius away from walls and faces, so that rounding makes no contact.
+/// Share of their radius by which grains stay away from walls and faces, so that rounding makes no contact.
 const CLEARANCE: f64 = 1e-6;
-/// How far a region may stick out of the domain, over the domain's size: rounding.
+/// Share of the domain's size by which a region may reach out of the domain, because of rounding.
 const SLACK: f64 = 1e-9;
 
-/// Shape of a region.
+/// Shape of a region; lengths in [m].
 #[derive(Clone, Debug)]
-enum Shape {
+enum RegionShape {
     Box { min: Vector3<f64>, max: Vector3<f64> },
     Cylinder { base: Vector3<f64>, axis: Vector3<f64>, radius: f64, length: f64 },
 }
 
-/// A region, the axes along which it wraps, and the planes that bound it.
+/// Plane wall that bounds a region.
 #[derive(Clone, Debug)]
-pub(super) struct Region {
-    shape: Shape,
-    /// Lower corner of what bounds the region [m].
-    pub(super) min: Vector3<f64>,
-    /// Upper corner [m].
-    pub(super) max: Vector3<f64>,
-    /// Axes along which the region is one period.
-    pub(super) periodic: [bool; 3],
-    planes: Vec<(Vector3<f64>, Vector3<f64>)>,
+struct BoundingPlane {
+    /// Point on the plane [m].
+    point: Vector3<f64>,
+    /// Unit normal into the region.
+    normal: Vector3<f64>,
 }
 
-/// Reads `region`: `"box"` (the domain), `{ box = { min_m, max_m } }` or
-/// `{ cylinder = { base_m, axis, radius_m, length_m } }` (or `top_m` instead of axis and length).
-pub(super) fn read_region(parent: &Table<'_>, context: &GenerateContext<'_>) -> Result<Region, SceneError> {
+/// Region, the axes along which it is periodic, and the planes that bound it.
+#[derive(Clone, Debug)]
+pub(super) struct Region {
+    shape: RegionShape,
+    /// Lower corner of the bounding box [m].
+    pub(super) min: Vector3<f64>,
+    /// Upper corner of the bounding box [m].
+    pub(super) max: Vector3<f64>,
+    /// Flag of an axis along which the region is one period of the domain.
+    pub(super) periodic: [bool; 3],
+    planes: Vec<BoundingPlane>,
+}
+
+/// Reads the key `region`.
+///
+/// The value is `"box"` (the domain), `{ box = { min_m, max_m } }` or
+/// `{ cylinder = { base_m, axis, radius_m, length_m } }` (or `top_m` in place of axis and length).
+pub(super) fn read_region(
+    parent: &SceneTable<'_>,
+    context: &GenerateContext<'_>,
+) -> Result<Region, SceneError> {
     let domain = context.domain;
-    let whole = || Shape::Box { min: domain.min(), max: domain.max() };
-    let forms = "\"box\" (the domain), { box = { min_m, max_m } } or { cylinder = { base_m, axis, radius_m, length_m } }";
+    let whole = || RegionShape::Box { min: domain.min(), max: domain.max() };
+    let forms = "\"box\" (the domain), { box = { min_m, max_m } } or \
+                 { cylinder = { base_m, axis, radius_m, length_m } }";
     let shape = match parent.get("region").map(|node| (&node.value, node)) {
         None => whole(),
         Some((Value::Text(word), _)) if word == "box" => whole(),
         Some((Value::Table(_), node)) => {
-            let table = Table::new(node, parent.key("region"), &["box", "cylinder"])?;
+            let table = SceneTable::new(node, parent.key("region"), &["box", "cylinder"])?;
             let block = table.table("box", &["min_m", "max_m"])?;
             let cylinder = table.table("cylinder", &["base_m", "axis", "radius_m", "length_m", "top_m"])?;
             match (block, cylinder) {
@@ -59,16 +74,16 @@ pub(super) fn read_region(parent: &Table<'_>, context: &GenerateContext<'_>) -> 
     Region::new(shape, domain, context.walls).map_err(|problem| parent.bad("region", problem))
 }
 
-fn read_box(table: &Table<'_>) -> Result<Shape, SceneError> {
+fn read_box(table: &SceneTable<'_>) -> Result<RegionShape, SceneError> {
     let (min, max) = (table.need_vector("min_m", COORDINATE)?, table.need_vector("max_m", COORDINATE)?);
     if (0..3).all(|axis| max[axis] > min[axis]) {
-        Ok(Shape::Box { min, max })
+        Ok(RegionShape::Box { min, max })
     } else {
         Err(table.bad("max_m", "not above min_m along every axis; exchange the corners"))
     }
 }
 
-fn read_cylinder(table: &Table<'_>) -> Result<Shape, SceneError> {
+fn read_cylinder(table: &SceneTable<'_>) -> Result<RegionShape, SceneError> {
     let base = table.need_vector("base_m", COORDINATE)?;
     let radius = table.need_number("radius_m", LENGTH)?;
     let along = match table.vector("top_m", COORDINATE)? {
@@ -95,15 +110,15 @@ fn read_cylinder(table: &Table<'_>) -> Result<Shape, SceneError> {
     };
     let length = along.norm();
     if length > 0.0 {
-        Ok(Shape::Cylinder { base, axis: along / length, radius, length })
+        Ok(RegionShape::Cylinder { base, axis: along / length, radius, length })
     } else {
         Err(table.bad("top_m", "the cylinder has no length; move it away from base_m"))
     }
 }
 
 impl Region {
-    fn new(shape: Shape, domain: &Domain, walls: &[Wall]) -> Result<Self, String> {
-        let (min, max) = shape.bounds();
+    fn new(shape: RegionShape, domain: &Domain, walls: &[Wall]) -> Result<Self, String> {
+        let [min, max] = shape.bounds();
         let mut periodic = [false; 3];
         for axis in Axis::ALL {
             let k = axis.index();
@@ -118,12 +133,13 @@ impl Region {
                 ));
             }
             let whole = min[k] <= domain.min()[k] + slack && max[k] >= domain.max()[k] - slack;
+            // A region wraps only where it is a whole period and its ends fit together.
             periodic[k] = domain.is_periodic(axis) && whole && shape.is_prism_along(k);
         }
         let planes = walls
             .iter()
             .filter_map(|wall| match wall.shape {
-                WallShape::Plane { point, normal } => Some((point, normal)),
+                WallShape::Plane { point, normal } => Some(BoundingPlane { point, normal }),
                 WallShape::Mesh(_) => None,
             })
             .collect();
@@ -133,12 +149,12 @@ impl Region {
     /// Volume [m³], walls not subtracted.
     pub(super) fn volume(&self) -> f64 {
         match &self.shape {
-            Shape::Box { min, max } => (max - min).product(),
-            Shape::Cylinder { radius, length, .. } => PI * radius * radius * length,
+            RegionShape::Box { min, max } => (max - min).product(),
+            RegionShape::Cylinder { radius, length, .. } => PI * radius * radius * length,
         }
     }
 
-    /// A random point that a grain's centre may take, if walls allow it there; `None` where they do not or the
+    /// Draws a random point for the centre of a grain of a radius [m]; `None` where a wall is too near or the
     /// grain is too large.
     pub(super) fn draw(&self, radius: f64, random: &mut ChaCha8Rng) -> Option<Vector3<f64>> {
         let mut uniform =
@@ -146,51 +162,53 @@ impl Region {
         let inset = radius * (1.0 + CLEARANCE);
         let mut point = Vector3::zeros();
         match &self.shape {
-            Shape::Box { min, max } => {
+            RegionShape::Box { min, max } => {
                 for axis in 0..3 {
                     let inset = if self.periodic[axis] { 0.0 } else { inset };
                     point[axis] = uniform(min[axis] + inset, max[axis] - inset);
                 }
             }
-            Shape::Cylinder { base, axis, radius: outer, length } => {
+            RegionShape::Cylinder { base, axis, radius: outer, length } => {
                 let ends = if self.wraps_along(axis) { 0.0 } else { inset };
                 let along = uniform(ends, length - ends);
-                let (first, second) = perpendicular(axis);
-                let (distance, angle) =
-                    ((outer - inset).max(0.0) * uniform(0.0, 1.0).sqrt(), uniform(0.0, 2.0 * PI));
+                let [first, second] = perpendicular(axis);
+                // The root makes the density uniform over the disc.
+                let distance = (outer - inset).max(0.0) * uniform(0.0, 1.0).sqrt();
+                let angle = uniform(0.0, 2.0 * PI);
                 point = base + axis * along + (first * angle.cos() + second * angle.sin()) * distance;
             }
         }
         self.allows(&point, radius).then_some(point)
     }
 
-    /// Whether a grain may have its centre there.
+    /// Tells whether a grain of a radius [m] may have its centre at a point [m].
     pub(super) fn allows(&self, point: &Vector3<f64>, radius: f64) -> bool {
         (self.nearest_allowed(*point, radius, 0.5 * CLEARANCE) - point).amax() <= 0.4 * CLEARANCE * radius
     }
 
-    /// The point moved to where a grain touches neither faces nor walls.
+    /// Moves a point [m] to where a grain of a radius [m] touches neither faces nor walls.
     pub(super) fn confine(&self, point: Vector3<f64>, radius: f64) -> Vector3<f64> {
         self.nearest_allowed(point, radius, CLEARANCE)
     }
 
+    /// Moves a point [m] away from faces and walls, by the radius [m] and a share of it.
     fn nearest_allowed(&self, mut point: Vector3<f64>, radius: f64, clearance: f64) -> Vector3<f64> {
         let inset = radius * (1.0 + clearance);
-        for (on_plane, normal) in &self.planes {
+        for BoundingPlane { point: on_plane, normal } in &self.planes {
             let distance = (point - on_plane).dot(normal);
             if distance < inset {
                 point += normal * (inset - distance);
             }
         }
         match &self.shape {
-            Shape::Box { min, max } => {
+            RegionShape::Box { min, max } => {
                 for axis in 0..3 {
                     if !self.periodic[axis] {
                         point[axis] = point[axis].min(max[axis] - inset).max(min[axis] + inset);
                     }
                 }
             }
-            Shape::Cylinder { base, axis, radius: outer, length } => {
+            RegionShape::Cylinder { base, axis, radius: outer, length } => {
                 let along = (point - base).dot(axis);
                 let across = point - base - axis * along;
                 let along = if self.wraps_along(axis) { along } else { along.min(length - inset).max(inset) };
@@ -203,11 +221,12 @@ impl Region {
         self.wrap(point)
     }
 
+    /// Tells whether the region is periodic along a cylinder's axis.
     fn wraps_along(&self, axis: &Vector3<f64>) -> bool {
         self.periodic[axis.iamax()]
     }
 
-    /// The point moved into one period.
+    /// Moves a point [m] into the period of the region.
     pub(super) fn wrap(&self, mut point: Vector3<f64>) -> Vector3<f64> {
         for axis in 0..3 {
             if self.periodic[axis] {
@@ -219,7 +238,7 @@ impl Region {
         point
     }
 
-    /// Shortest vector between periodic copies.
+    /// Shortest difference [m] between periodic copies of two points.
     pub(super) fn shortest(&self, mut difference: Vector3<f64>) -> Vector3<f64> {
         for axis in 0..3 {
             if self.periodic[axis] {
@@ -230,29 +249,30 @@ impl Region {
         difference
     }
 
-    /// Largest radius of a grain that fits at all [m].
+    /// Largest radius [m] of a grain that fits into the region.
     pub(super) fn largest_radius(&self) -> f64 {
         match &self.shape {
-            Shape::Box { min, max } => 0.5 * (max - min).min(),
-            Shape::Cylinder { radius, length, .. } => radius.min(0.5 * length),
+            RegionShape::Box { min, max } => 0.5 * (max - min).min(),
+            RegionShape::Cylinder { radius, length, .. } => radius.min(0.5 * length),
         }
     }
 }
 
-impl Shape {
-    fn bounds(&self) -> (Vector3<f64>, Vector3<f64>) {
+impl RegionShape {
+    /// Lower and upper corner of the bounding box [m].
+    fn bounds(&self) -> [Vector3<f64>; 2] {
         match self {
-            Self::Box { min, max } => (*min, *max),
+            Self::Box { min, max } => [*min, *max],
             Self::Cylinder { base, axis, radius, length } => {
                 let top = base + axis * *length;
                 // A disc reaches R √(1 − a²) along each coordinate.
                 let disc = axis.map(|a| radius * (1.0 - a * a).max(0.0).sqrt());
-                (base.inf(&top) - disc, base.sup(&top) + disc)
+                [base.inf(&top) - disc, base.sup(&top) + disc]
             }
         }
     }
 
-    /// Whether shifting the shape by its length along an axis joins it to itself.
+    /// Tells whether the shape, shifted by its length along an axis, continues itself.
     fn is_prism_along(&self, k: usize) -> bool {
         match self {
             Self::Box { .. } => true,
@@ -261,9 +281,10 @@ impl Shape {
     }
 }
 
-fn perpendicular(axis: &Vector3<f64>) -> (Vector3<f64>, Vector3<f64>) {
+/// Unit vectors that are perpendicular to a unit vector and to each other.
+fn perpendicular(axis: &Vector3<f64>) -> [Vector3<f64>; 2] {
     let mut helper = Vector3::zeros();
     helper[axis.iamin()] = 1.0;
     let first = axis.cross(&helper).normalize();
-    (first, axis.cross(&first))
+    [first, axis.cross(&first)]
 }

@@ -1,16 +1,27 @@
-//! Overlap removal: grains that overlap push each other apart until none does.
+//! Removal of overlaps: grains that overlap push each other apart until none overlaps.
 
 use super::fill::GAP;
 use super::grid::SizeGrid;
 use super::region::Region;
 use nalgebra::Vector3;
 
-/// Sweeps before the fill counts as impossible.
+/// Largest number of sweeps; a fill that still has overlaps counts as impossible.
 const MOST_SWEEPS: usize = 6000;
-/// Grains push as if they were this share larger, so that the last overlaps vanish in finitely many sweeps.
+/// Share by which radii are enlarged while grains push, so that the last overlaps vanish in finitely many
+/// sweeps.
 const SWELLING: f64 = 2e-3;
 
-/// Moves centres until no two grains overlap.
+/// Move of one grain in a sweep.
+struct Push {
+    /// Index of the grain.
+    grain: usize,
+    /// Displacement [m].
+    step: Vector3<f64>,
+}
+
+/// Moves centres [m] until no two grains overlap.
+///
+/// A grain is awake while it may overlap another; sleeping grains are left out of a sweep.
 ///
 /// # Errors
 /// The largest overlap that is left, over the sum of the radii.
@@ -33,43 +44,47 @@ pub(super) fn relax(
         if worst <= 0.0 {
             return Ok(());
         }
-        for &(index, step) in &pushed {
-            centres[index] = region.confine(centres[index] + step, radii[index]);
+        for &Push { grain, step } in &pushed {
+            centres[grain] = region.confine(centres[grain] + step, radii[grain]);
         }
     }
     Err(worst)
 }
 
-/// Wakes all that a pushed grain could touch where it is now. The others are as they were: nobody pushes them.
+/// Wakes all grains that a pushed grain could touch at its new place.
+///
+/// The others have not moved and overlap no grain that moved, so nothing pushes them.
 fn wake_neighbours(
-    pushed: &[(usize, Vector3<f64>)],
+    pushed: &[Push],
     radii: &[f64],
     centres: &[Vector3<f64>],
     grid: &SizeGrid,
     awake: &mut [bool],
 ) {
-    for &(index, _) in pushed {
-        grid.visit_near(&centres[index], reach(radii[index]), |other| {
+    for &Push { grain, .. } in pushed {
+        grid.visit_near(&centres[grain], reach(radii[grain]), |other| {
             awake[other] = true;
             true
         });
     }
 }
 
-/// Radius [m] with which a grain looks for others.
+/// Radius [m] within which a grain of a radius [m] looks for others.
 fn reach(radius: f64) -> f64 {
     radius * (1.0 + 2.0 * SWELLING)
 }
 
-/// Collects the moves that would undo each overlap of the grains that are awake, who sleep again; returns the
-/// largest true overlap over the sum of the radii.
+/// Collects the moves that would undo each overlap of the grains that are awake, and puts those grains to
+/// sleep.
+///
+/// Returns the largest overlap, without the enlargement, over the sum of the radii.
 fn sweep(
     region: &Region,
     radii: &[f64],
     centres: &[Vector3<f64>],
     grid: &SizeGrid,
     awake: &mut [bool],
-    pushed: &mut Vec<(usize, Vector3<f64>)>,
+    pushed: &mut Vec<Push>,
 ) -> f64 {
     pushed.clear();
     let mut worst: f64 = 0.0;
@@ -86,7 +101,7 @@ fn sweep(
                 let overlap = sum * (1.0 + SWELLING) - distance;
                 if overlap > 0.0 {
                     worst = worst.max(1.0 + GAP - distance / sum);
-                    // Larger grains move less; coincident centres part along an axis, each its own way.
+                    // The heavier grain moves less. Coincident centres have no direction: they part along x.
                     let (own_weight, other_weight) = (radius.powi(3), radii[other].powi(3));
                     let share = other_weight / (own_weight + other_weight);
                     let away = if distance > 0.0 {
@@ -99,7 +114,7 @@ fn sweep(
             }
             true
         });
-        pushed.extend(own.map(|step| (index, step)));
+        pushed.extend(own.map(|step| Push { grain: index, step }));
     }
     worst
 }

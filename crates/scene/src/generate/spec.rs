@@ -1,4 +1,4 @@
-//! `particles.generate`.
+//! Section `particles.generate`.
 
 use super::distribution::{read_charges_spec, read_radii};
 use super::fill::fill;
@@ -7,45 +7,46 @@ use crate::SceneError;
 use crate::particles::ReadParticles;
 use crate::scene::limits::{GRAINS, SPEED};
 use crate::scene::materials::Materials;
-use crate::scene::source::Source;
-use crate::tree::{Node, Table};
+use crate::scene::source::SceneSource;
+use crate::tree::{Node, SceneTable};
 use amberfield_core::{Domain, Grain, GroupId, Particles, Wall};
 use nalgebra::Vector3;
 use rand::SeedableRng;
 use rand_chacha::ChaCha8Rng;
 
-/// Keys of a generator.
+/// Keys of the section.
 const KEYS: [&str; 8] =
     ["material", "count", "radius_m", "region", "seed", "charge_C", "velocity_m_s", "group"];
-/// Streams of the one seed, so that another charge distribution leaves the places as they are.
+/// Stream of random numbers for places. Each quantity has its own stream of the one seed, so that another
+/// charge distribution leaves the places as they are.
 const PLACES: u64 = 0;
-/// Stream of radii.
+/// Stream of random numbers for radii.
 const RADII: u64 = 1;
-/// Stream of charges.
+/// Stream of random numbers for charges.
 const CHARGES: u64 = 2;
 
-/// What a generator works in.
+/// Parts of the scene that a generator uses.
 pub(crate) struct GenerateContext<'a> {
-    /// The box.
+    /// Box of the scene.
     pub(crate) domain: &'a Domain,
     /// Materials by name.
     pub(crate) materials: &'a Materials,
-    /// Walls; grains keep clear of the planes among them.
+    /// Walls; grains keep clear of the plane walls among them.
     pub(crate) walls: &'a [Wall],
-    /// For files that the generator names.
-    pub(crate) source: &'a mut Source,
+    /// Reader of the files that the generator names.
+    pub(crate) source: &'a mut SceneSource,
 }
 
-/// Makes the grains that `particles.generate` describes; ids are 1 to `count`.
+/// Makes the particles that `particles.generate` describes; their ids are 1 to `count`.
 ///
 /// # Errors
-/// Bad keys, fills that cannot be reached.
+/// Bad keys, and fills that cannot be reached.
 pub(crate) fn generate(
     node: &Node,
     path: &str,
     context: &mut GenerateContext<'_>,
 ) -> Result<ReadParticles, SceneError> {
-    let table = Table::new(node, path, &KEYS)?;
+    let table = SceneTable::new(node, path, &KEYS)?;
     let material = context.materials.named_by(&table, "material")?;
     let count = table.integer("count", 1, GRAINS)?;
     let count = table.need(count, "count", "give the number of grains")?;

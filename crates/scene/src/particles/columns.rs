@@ -1,21 +1,23 @@
-//! Columns of a particles CSV: by name, in any order.
+//! Columns of a particles CSV, found by name and in any order.
 
 use crate::SceneError;
 use crate::error::shorten;
 use crate::tree::{Range, nearest};
 use csv::StringRecord;
 
-/// A data file that is read by columns.
-pub(super) struct Columns<'f> {
+/// Header of a CSV file, with checked access to the values of its rows.
+pub(super) struct CsvColumns<'f> {
+    /// File, as the user named it.
     file: &'f str,
+    /// Names of the columns, in their order.
     header: Vec<String>,
 }
 
-impl<'f> Columns<'f> {
-    /// The header row.
+impl<'f> CsvColumns<'f> {
+    /// Checks a header row.
     ///
     /// # Errors
-    /// Names that are not known or given twice, required names that are missing.
+    /// Unknown names, names given twice, and required names that are missing.
     pub(super) fn new(
         file: &'f str,
         header: &StringRecord,
@@ -49,26 +51,26 @@ impl<'f> Columns<'f> {
         Ok(Self { file, header })
     }
 
-    /// Index of a column.
+    /// Index of the column with a name.
     pub(super) fn find(&self, name: &str) -> Option<usize> {
         self.header.iter().position(|column| column == name)
     }
 
-    /// Name of a column.
+    /// Name of the column with an index.
     pub(super) fn name(&self, column: usize) -> &str {
         &self.header[column]
     }
 
-    /// Error about a value of a row.
+    /// Error about the value in a row and a column.
     pub(super) fn bad(&self, record: &StringRecord, column: usize, problem: &str) -> SceneError {
         let value = shorten(record.get(column).unwrap_or_default());
         SceneError::data(self.file, line(record), format!("{} = \"{value}\": {problem}", self.name(column)))
     }
 
-    /// The number in a column.
+    /// Number in a row and a column.
     ///
     /// # Errors
-    /// No number, a number out of range.
+    /// Values that are no number or out of range.
     pub(super) fn number(
         &self,
         record: &StringRecord,
@@ -94,7 +96,7 @@ pub(super) fn line(record: &StringRecord) -> u64 {
     record.position().map_or(0, csv::Position::line)
 }
 
-/// Error of the csv crate in our words.
+/// Translates an error of the csv library into one of this crate.
 pub(super) fn csv_error(file: &str, error: &csv::Error) -> SceneError {
     match error.kind() {
         csv::ErrorKind::UnequalLengths { pos, expected_len, len } => SceneError::data(

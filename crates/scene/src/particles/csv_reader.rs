@@ -1,6 +1,6 @@
-//! Particles CSV.
+//! Reader of a particles CSV.
 
-use super::columns::{Columns, csv_error, line};
+use super::columns::{CsvColumns, csv_error, line};
 use crate::SceneError;
 use crate::scene::limits::{CHARGE, COORDINATE, DENSITY, RADIUS, RADIUS_OR_POINT, SPEED};
 use crate::scene::materials::Materials;
@@ -28,32 +28,35 @@ const COLUMNS: [&str; 15] = [
     "material",
     "group",
 ];
-/// Columns that must be there.
+/// Columns that are required.
 const REQUIRED: [&str; 5] = ["id", "x_m", "y_m", "z_m", "radius_m"];
 
-/// Smallest charge but 0 [C]: squares of smaller ones vanish in rounding.
+/// Smallest charge other than 0 [C]: the square of a smaller one underflows.
 const LEAST_CHARGE: f64 = 1e-100;
 
-/// What a particles file is read against.
+/// Parts of the scene that a particles file is checked against.
 pub(crate) struct CsvContext<'a> {
-    /// The box that grains must lie in.
+    /// Box that grains must lie in.
     pub(crate) domain: Option<&'a Domain>,
     /// Materials by name.
     pub(crate) materials: &'a Materials,
-    /// Whether grains may be points.
+    /// Switch for grains of radius 0, which a field without motion allows.
     pub(crate) allow_points: bool,
 }
 
-/// Grains of a file.
+/// Particles of a file or a generator.
 #[derive(Debug)]
 pub(crate) struct ReadParticles {
+    /// Particles, in the order of the file.
     pub(crate) particles: Particles,
+    /// Names of the groups, `all` first.
     pub(crate) groups: Vec<String>,
+    /// Flag of charges that were given; without, all charges are 0.
     pub(crate) has_charge: bool,
 }
 
-/// Indices of the columns that are there.
-struct Layout {
+/// Indices of the columns in one file; `None` for a column that is absent.
+struct ColumnIndices {
     id: usize,
     position: [usize; 3],
     radius: usize,
@@ -65,8 +68,8 @@ struct Layout {
     group: Option<usize>,
 }
 
-impl Layout {
-    fn new(columns: &Columns<'_>) -> Self {
+impl ColumnIndices {
+    fn new(columns: &CsvColumns<'_>) -> Self {
         let required = |name: &str| columns.find(name).expect("required columns were checked");
         Self {
             id: required("id"),
@@ -99,21 +102,21 @@ pub(crate) fn read_particles(
     decode(file, bytes)?;
     let mut reader = csv_reader(bytes);
     let header = reader.headers().map_err(|error| csv_error(file, &error))?;
-    let columns = Columns::new(file, header, &COLUMNS, &REQUIRED)?;
-    let layout = Layout::new(&columns);
+    let columns = CsvColumns::new(file, header, &COLUMNS, &REQUIRED)?;
+    let indices = ColumnIndices::new(&columns);
     let mut read = ReadParticles {
         particles: Particles::default(),
         groups: vec!["all".to_owned()],
-        has_charge: layout.charge.is_some(),
+        has_charge: indices.charge.is_some(),
     };
     let mut lines_by_id: HashMap<u64, u64> = HashMap::new();
     for record in reader.records() {
         let record = record.map_err(|error| csv_error(file, &error))?;
-        let grain = read_grain(&columns, &layout, &record, context, &mut read.groups)?;
+        let grain = read_grain(&columns, &indices, &record, context, &mut read.groups)?;
         if let Some(before) = lines_by_id.insert(grain.id, line(&record)) {
             return Err(columns.bad(
                 &record,
-                layout.id,
+                indices.id,
                 &format!("line {before} has this id already; give each grain its own"),
             ));
         }
@@ -126,17 +129,17 @@ pub(crate) fn read_particles(
 }
 
 fn read_grain(
-    columns: &Columns<'_>,
-    layout: &Layout,
+    columns: &CsvColumns<'_>,
+    indices: &ColumnIndices,
     record: &StringRecord,
     context: &CsvContext<'_>,
     groups: &mut Vec<String>,
 ) -> Result<Grain, SceneError> {
-    let id = record.get(layout.id).unwrap_or_default().trim();
+    let id = record.get(indices.id).unwrap_or_default().trim();
     let id =
-        id.parse().map_err(|_| columns.bad(record, layout.id, "not a whole number from 0 to 2^64 - 1"))?;
+        id.parse().map_err(|_| columns.bad(record, indices.id, "not a whole number from 0 to 2^64 - 1"))?;
     let mut position = Vector3::zeros();
-    for (axis, column) in layout.position.into_iter().enumerate() {
+    for (axis, column) in indices.position.into_iter().enumerate() {
         position[axis] = columns.number(record, column, COORDINATE)?;
         if let Some(domain) = context.domain {
             let (low, high) = (domain.min()[axis], domain.max()[axis]);
@@ -154,13 +157,13 @@ fn read_grain(
     let vector = |three: [Option<usize>; 3]| -> Result<Vector3<f64>, SceneError> {
         Ok(Vector3::new(optional(three[0], SPEED)?, optional(three[1], SPEED)?, optional(three[2], SPEED)?))
     };
-    let material = read_material(columns, layout, record, context.materials)?;
-    let density = match layout.density {
+    let material = read_material(columns, indices, record, context.materials)?;
+    let density = match indices.density {
         Some(column) => columns.number(record, column, DENSITY)?,
         None => context.materials.density(material),
     };
-    let charge = optional(layout.charge, CHARGE)?;
-    if let Some(column) = layout.charge.filter(|_| charge != 0.0 && charge.abs() < LEAST_CHARGE) {
+    let charge = optional(indices.charge, CHARGE)?;
+    if let Some(column) = indices.charge.filter(|_| charge != 0.0 && charge.abs() < LEAST_CHARGE) {
         return Err(columns.bad(
             record,
             column,
@@ -171,23 +174,23 @@ fn read_grain(
     Ok(Grain {
         id,
         position,
-        velocity: vector(layout.velocity)?,
-        angular_velocity: vector(layout.spin)?,
-        radius: columns.number(record, layout.radius, radius_range)?,
+        velocity: vector(indices.velocity)?,
+        angular_velocity: vector(indices.spin)?,
+        radius: columns.number(record, indices.radius, radius_range)?,
         density,
         charge,
         material,
-        group: read_group(columns, layout, record, groups)?,
+        group: read_group(columns, indices, record, groups)?,
     })
 }
 
 fn read_material(
-    columns: &Columns<'_>,
-    layout: &Layout,
+    columns: &CsvColumns<'_>,
+    indices: &ColumnIndices,
     record: &StringRecord,
     materials: &Materials,
 ) -> Result<MaterialId, SceneError> {
-    match layout.material {
+    match indices.material {
         Some(column) => {
             let name = record.get(column).unwrap_or_default().trim();
             materials.find(name).map_err(|problem| columns.bad(record, column, &problem))
@@ -196,7 +199,7 @@ fn read_material(
             let count = materials.list.len();
             columns.bad(
                 record,
-                layout.id,
+                indices.id,
                 &format!("the scene has {count} materials and the file has no column material; add it"),
             )
         }),
@@ -204,12 +207,12 @@ fn read_material(
 }
 
 fn read_group(
-    columns: &Columns<'_>,
-    layout: &Layout,
+    columns: &CsvColumns<'_>,
+    indices: &ColumnIndices,
     record: &StringRecord,
     groups: &mut Vec<String>,
 ) -> Result<GroupId, SceneError> {
-    let Some(column) = layout.group else { return Ok(GroupId(0)) };
+    let Some(column) = indices.group else { return Ok(GroupId(0)) };
     let name = record.get(column).unwrap_or_default().trim();
     if name.is_empty() {
         return Ok(GroupId(0));
@@ -234,7 +237,7 @@ pub(crate) fn read_charges(file: &str, bytes: &[u8], count: usize) -> Result<Vec
     decode(file, bytes)?;
     let mut reader = csv_reader(bytes);
     let header = reader.headers().map_err(|error| csv_error(file, &error))?;
-    let columns = Columns::new(file, header, &COLUMNS, &["charge_C"])?;
+    let columns = CsvColumns::new(file, header, &COLUMNS, &["charge_C"])?;
     let column = columns.find("charge_C").expect("required columns were checked");
     let mut charges = Vec::new();
     for record in reader.records() {

@@ -1,4 +1,4 @@
-//! Grains from files.
+//! Particles from CSV files: one row per grain.
 
 mod columns;
 mod csv_reader;

@@ -1,6 +1,6 @@
-//! The electric field as its users write it today: one line of words.
+//! Command form of `[electric_field]`: one line of words.
 //!
-//! `enable_electric_field field_cutoff_radius 3e-3 enable_collision_charge_transfer yes`
+//! Example: `enable_electric_field field_cutoff_radius 3e-3 enable_collision_charge_transfer yes`
 
 use super::description::ElectricFieldSettings;
 use crate::SceneError;
@@ -10,37 +10,37 @@ use amberfield_core::{CouplingInterval, FieldSettings, Method, Tuning};
 use nalgebra::Vector3;
 use std::fmt::Write as _;
 
-/// The command's own word.
+/// First word of the command.
 const COMMAND: &str = "enable_electric_field";
 
-/// What kind of value follows a key.
+/// Kind of the value that follows a key.
 #[derive(Clone, Copy, Debug)]
-pub(super) enum Kind {
-    /// A word.
+pub(super) enum KeyKind {
+    /// Single word.
     Word,
-    /// A number.
+    /// Number.
     Number,
-    /// `yes` or `no`.
+    /// Word `yes` or `no`.
     YesNo,
 }
 
 /// Keys that the command and the section share.
-pub(super) const COMMAND_KEYS: [(&str, Kind); 9] = [
-    ("id", Kind::Word),
-    ("particle_group", Kind::Word),
-    ("field_cutoff_radius", Kind::Number),
-    ("use_without_cfd_coupling", Kind::YesNo),
-    ("enable_collision_charge_transfer", Kind::YesNo),
-    ("charge_transfer_cutoff", Kind::Number),
-    ("limit_field_force", Kind::YesNo),
-    ("field_force_limit_factor", Kind::Number),
-    ("relative_permittivity", Kind::Number),
+pub(super) const COMMAND_KEYS: [(&str, KeyKind); 9] = [
+    ("id", KeyKind::Word),
+    ("particle_group", KeyKind::Word),
+    ("field_cutoff_radius", KeyKind::Number),
+    ("use_without_cfd_coupling", KeyKind::YesNo),
+    ("enable_collision_charge_transfer", KeyKind::YesNo),
+    ("charge_transfer_cutoff", KeyKind::Number),
+    ("limit_field_force", KeyKind::YesNo),
+    ("field_force_limit_factor", KeyKind::Number),
+    ("relative_permittivity", KeyKind::Number),
 ];
 
-/// The command's keys and values as entries of `[electric_field]`.
+/// Translates the command's keys and values into entries of `[electric_field]`.
 ///
 /// # Errors
-/// Another command, unknown keys, keys given twice or without value, a missing cut-off radius.
+/// Other commands, unknown keys, keys given twice or without a value, and a missing cut-off radius.
 pub(super) fn command_entries(command: &str, node: &Node) -> Result<Entries, SceneError> {
     let bad = |value: &str, problem: String| SceneError::Value {
         place: node.place.to_string(),
@@ -60,7 +60,7 @@ pub(super) fn command_entries(command: &str, node: &Node) -> Result<Entries, Sce
     while let Some(key) = words.next() {
         let Some((_, kind)) = COMMAND_KEYS.iter().find(|(name, _)| *name == key) else {
             let advice = match nearest(key, &names) {
-                _ if key == COMMAND => "; the electric field can be enabled once only".to_owned(),
+                _ if key == COMMAND => "; the electric field can be enabled only once".to_owned(),
                 Some(near) => format!("; the nearest known key is {near}"),
                 None => String::new(),
             };
@@ -73,11 +73,11 @@ pub(super) fn command_entries(command: &str, node: &Node) -> Result<Entries, Sce
             return Err(bad(key, "the key has no value; add one after it".to_owned()));
         };
         let value = match kind {
-            Kind::Word => Value::Text(word.to_owned()),
-            Kind::Number => {
-                Value::Float(word.parse().map_err(|_| bad(word, format!("{key} needs a number, as 3e-3")))?)
-            }
-            Kind::YesNo => match word {
+            KeyKind::Word => Value::Text(word.to_owned()),
+            KeyKind::Number => Value::Float(
+                word.parse().map_err(|_| bad(word, format!("{key} needs a number, such as 3e-3")))?,
+            ),
+            KeyKind::YesNo => match word {
                 "yes" => Value::Boolean(true),
                 "no" => Value::Boolean(false),
                 _ => return Err(bad(word, format!("{key} needs yes or no"))),
@@ -88,12 +88,12 @@ pub(super) fn command_entries(command: &str, node: &Node) -> Result<Entries, Sce
     if entries.iter().any(|(key, _)| key == "field_cutoff_radius") {
         Ok(entries)
     } else {
-        Err(bad(command, "field_cutoff_radius is obligatory in the command; add it in metres".to_owned()))
+        Err(bad(command, "the command needs field_cutoff_radius; add it in metres".to_owned()))
     }
 }
 
 impl ElectricFieldSettings {
-    /// The settings as a section of a scene, every key written out.
+    /// Text of the settings as a section of a scene, with every key written out.
     #[must_use]
     pub fn as_section(&self) -> String {
         let field = &self.field;
@@ -135,13 +135,13 @@ impl ElectricFieldSettings {
         text
     }
 
-    /// The settings as a section with the one-line command.
+    /// Text of the settings as a section with the one-line command.
     ///
     /// # Errors
-    /// The reason why the command cannot say them: no cut-off radius, or a key that the command lacks.
+    /// The reason why the command cannot express them: no cut-off radius, or a key that the command lacks.
     pub fn as_command(&self) -> Result<String, String> {
         let field = &self.field;
-        let radius = field.cutoff_radius_m.ok_or("field_cutoff_radius is obligatory in the command")?;
+        let radius = field.cutoff_radius_m.ok_or("the command needs field_cutoff_radius")?;
         let plain = FieldSettings::default();
         for (key, differs) in [
             ("external_field_V_m", field.external_field_v_m != Vector3::zeros()),
@@ -171,9 +171,10 @@ impl ElectricFieldSettings {
         }
         let _ = writeln!(
             text,
-            "command = \"{COMMAND} id {} particle_group {} field_cutoff_radius {radius:?} use_without_cfd_coupling {} \
-             enable_collision_charge_transfer {} charge_transfer_cutoff {:?} limit_field_force {} \
-             field_force_limit_factor {:?} relative_permittivity {:?}\"",
+            "command = \"{COMMAND} id {} particle_group {} field_cutoff_radius {radius:?} \
+             use_without_cfd_coupling {} enable_collision_charge_transfer {} \
+             charge_transfer_cutoff {:?} limit_field_force {} field_force_limit_factor {:?} \
+             relative_permittivity {:?}\"",
             self.id,
             self.particle_group,
             yes_no(self.use_without_cfd_coupling),

@@ -1,91 +1,94 @@
-//! What a scene says, validated.
+//! Description of a scene: its validated content.
 
 use amberfield_core::{Domain, FieldSettings, Gas, Material, Particles, TimeSettings, Wall};
 use serde::{Deserialize, Serialize};
 use std::path::PathBuf;
 
-/// What a scene is read for; decides which sections must be there.
+/// Purpose for which a scene is read; decides which sections are required.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Purpose {
-    /// A simulation: needs particles with materials and `[time]`.
+    /// Simulation: needs particles with materials and `[time]`.
     Run,
-    /// The field of one snapshot: needs `[domain]`, `[particles]`, `[electric_field]`; radius 0 is allowed.
+    /// Field of one snapshot: needs `[domain]`, `[particles]` and `[electric_field]`; a radius of 0 is
+    /// allowed.
     Field,
-    /// As [`Purpose::Run`] when the scene has `[time]`, else as [`Purpose::Field`].
+    /// Explanation: [`Purpose::Run`] when the scene has `[time]`, else [`Purpose::Field`].
     Explain,
 }
 
-/// A validated scene.
+/// Validated scene.
 #[derive(Clone, Debug, PartialEq)]
 #[non_exhaustive]
 pub struct Scene {
-    /// Name of the scene: its file's name without the ending.
+    /// Name of the scene: the name of its file without the ending.
     pub title: String,
-    /// The box; absent only where a `[solver]` brings its own.
+    /// Box; absent only where the mesh of a `[solver]` gives it.
     pub domain: Option<Domain>,
     /// Materials, in the order of the file.
     pub materials: Vec<Material>,
     /// Walls, in the order of the file.
     pub walls: Vec<Wall>,
-    /// Per wall, the `OpenFOAM` patch with the same surface.
+    /// `OpenFOAM` patch with the same surface, for each wall.
     pub wall_patches: Vec<Option<String>>,
-    /// Grains at the start.
+    /// Particles at the start.
     pub particles: Particles,
-    /// Names of groups; 0 is `all`.
+    /// Names of the groups; group 0 is `all`.
     pub groups: Vec<String>,
-    /// Motion; absent only where no motion is asked for.
+    /// Settings of the motion; absent only where no motion is asked for.
     pub time: Option<TimeSettings>,
-    /// Electric field; absent: none is computed.
+    /// Settings of the electric field; absent where no field is computed.
     pub electric_field: Option<ElectricFieldSettings>,
     /// Refinements of charge transfer.
     pub charge_transfer: Option<ChargeTransferSettings>,
-    /// External field solver.
-    pub solver: Option<SolverSettings>,
-    /// Gas around the grains; absent: none.
+    /// Solver in another process, for the far field or the flow of the gas.
+    pub solver: Option<OpenFoamSettings>,
+    /// Gas around the grains; absent where there is none.
     pub gas: Option<Gas>,
-    /// Outputs.
+    /// Settings of the outputs.
     pub output: OutputSettings,
-    /// What the user should know though nothing is wrong.
+    /// Warnings: facts that the user should know though nothing is wrong.
     pub warnings: Vec<String>,
     pub(super) resolved: String,
     pub(super) hash: u64,
 }
 
 impl Scene {
-    /// The scene as TOML with overrides applied and files named by absolute paths.
+    /// Text of the scene as TOML, with overrides applied and files named by absolute paths.
     #[must_use]
     pub fn resolved(&self) -> &str {
         &self.resolved
     }
 
-    /// Fingerprint of everything that decides the physics: all but `[output]` and `time.end_s`, so that a
-    /// checkpoint can be continued to a later end. Data files count with their contents.
+    /// Fingerprint of everything that decides the physics.
+    ///
+    /// `[output]` and `time.end_s` are left out, so that a run can be continued from a checkpoint to a later
+    /// end. Data files count with their contents.
     #[must_use]
     pub fn hash(&self) -> u64 {
         self.hash
     }
 }
 
-/// `[electric_field]`, in either of its two forms.
+/// Settings of `[electric_field]`, in either of its two forms.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct ElectricFieldSettings {
-    /// What the field itself needs. `force_limit` is set only where `limit_field_force` is true.
+    /// Settings of the field computation; `force_limit` is set only where `limit_field_force` is true.
     pub field: FieldSettings,
     /// Name of the field.
     pub id: String,
-    /// Group whose members make and feel the field.
+    /// Group of the grains that make and feel the field.
     pub particle_group: String,
-    /// Whether the field is computed without a field solver.
+    /// Switch for a field that is computed without a field solver.
     pub use_without_cfd_coupling: bool,
-    /// Whether grains trade charge when they touch.
+    /// Switch for charge transfer between touching grains.
     pub enable_collision_charge_transfer: bool,
-    /// Largest distance over which charge is traded [m].
+    /// Cut-off distance of the charge transfer [m].
     pub charge_transfer_cutoff_m: f64,
-    /// Whether the electric force is bounded.
+    /// Switch for the bound on the electric force.
     pub limit_field_force: bool,
-    /// Dimensionless factor of the bound, in [0, 1].
+    /// Factor of the bound on the electric force, dimensionless, in [0, 1].
     pub field_force_limit_factor: f64,
-    /// Relative tolerance of the linear solver; `None`: automatic.
+    /// Relative tolerance of the field solver's linear solver; `None` for an automatic one.
     pub far_tolerance: Option<f64>,
 }
 
@@ -112,63 +115,63 @@ impl Default for ElectricFieldSettings {
     }
 }
 
-/// `[charge_transfer]`: refinements, each off unless asked for.
+/// Settings of `[charge_transfer]`: refinements, each off unless asked for.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct ChargeTransferSettings {
-    /// Transfer only beyond the contact's previous largest area.
+    /// Switch for transfer only beyond the previous largest area of a contact.
     pub beyond_previous_maximum: bool,
-    /// Breakdown field [V/m].
+    /// Breakdown field [V/m]; `None` for no limit.
     pub breakdown_field_v_m: Option<f64>,
-    /// Whether contact areas are scaled towards the real stiffness.
+    /// Switch for contact areas that are corrected to the real stiffness.
     pub stiffness_correction: bool,
-    /// `v_real/v_soft` in the area factor.
+    /// Ratio `v_real/v_soft` of impact velocities in the area correction.
     pub velocity_ratio: f64,
 }
 
-/// What happens when the solver is lost.
+/// Behaviour of a run that loses its solver.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(rename_all = "snake_case")]
 pub enum SolverLoss {
-    /// The run stops.
+    /// Stop the run.
     #[default]
     Stop,
-    /// The internal grid takes over.
+    /// Continue with the internal grid.
     Fallback,
-    /// The run waits.
+    /// Wait for the solver.
     Wait,
 }
 
-/// `[solver]`: an external field solver.
+/// Settings of `[solver]`, the `OpenFOAM` process that computes the far field or the flow of a gas.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
-pub struct SolverSettings {
+pub struct OpenFoamSettings {
     /// Folder of the `OpenFOAM` case.
     pub openfoam_case: PathBuf,
-    /// Another program than `electricFieldFoam`, with our function object in its `controlDict`.
+    /// Program other than `electricFieldFoam`, with the function object of this project in its `controlDict`.
     pub application: Option<String>,
-    /// Whether the solver is started by the run.
+    /// Switch for a solver that the run starts itself.
     pub start: bool,
-    /// MPI ranks.
+    /// Number of MPI ranks.
     pub ranks: u32,
-    /// Longest wait [s].
+    /// Longest wait for an answer [s].
     pub timeout_s: f64,
-    /// What happens when it is lost.
+    /// Behaviour when the solver is lost.
     pub on_solver_loss: SolverLoss,
 }
 
-/// `[output]`.
+/// Settings of `[output]`.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct OutputSettings {
-    /// Interval of particle files [s]; `None`: only the start and the end.
+    /// Interval of particle files [s]; `None` for the start and the end only.
     pub every_s: Option<f64>,
-    /// Interval of rows of `history.csv` [s]; `None`: a thousandth of the run, at least a step.
+    /// Interval of rows of `history.csv` [s]; `None` for a thousandth of the run, at least a step.
     pub history_every_s: Option<f64>,
-    /// Whether `.vtu` files are written.
+    /// Switch for `.vtu` files.
     pub vtk: bool,
-    /// Whether particle CSV files are written.
+    /// Switch for particle CSV files.
     pub csv: bool,
-    /// Whether a picture of the grains is written.
+    /// Switch for a picture of the grains.
     pub png: bool,
-    /// Interval of checkpoints [s]; `None`: only at the end and when interrupted.
+    /// Interval of checkpoints [s]; `None` for the end and interruptions only.
     pub checkpoint_every_s: Option<f64>,
 }
 

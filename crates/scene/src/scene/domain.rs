@@ -1,19 +1,20 @@
-//! `[domain]`.
+//! Section `[domain]`.
 
 use super::limits::{COORDINATE, ELECTRIC};
 use crate::SceneError;
-use crate::tree::{Table, Value};
+use crate::tree::{SceneTable, Value};
 use amberfield_core::{Axis, Boundary, Domain, DomainError, Side};
 
 /// Keys of `[domain]`.
 const KEYS: [&str; 3] = ["min_m", "max_m", "boundary"];
 /// Keys of `[domain.boundary]`.
 const FACES: [&str; 9] = ["x", "x_min", "x_max", "y", "y_min", "y_max", "z", "z_min", "z_max"];
-/// What a face may be.
-const FACE_FORMS: &str = "one of \"grounded\", \"insulating\", \"periodic\", \"open\", { potential_V = 1000.0 }, { normal_field_V_m = 0.0 }";
+/// Forms that the value of a face may have, for messages.
+const FACE_FORMS: &str = "one of \"grounded\", \"insulating\", \"periodic\", \"open\", \
+                          { potential_V = 1000.0 }, { normal_field_V_m = 0.0 }";
 
 /// Reads `[domain]`.
-pub(super) fn read_domain(document: &Table<'_>) -> Result<Option<Domain>, SceneError> {
+pub(super) fn read_domain(document: &SceneTable<'_>) -> Result<Option<Domain>, SceneError> {
     let Some(table) = document.table("domain", &KEYS)? else { return Ok(None) };
     let min = table.need_vector("min_m", COORDINATE)?;
     let max = table.need_vector("max_m", COORDINATE)?;
@@ -31,7 +32,8 @@ pub(super) fn read_domain(document: &Table<'_>) -> Result<Option<Domain>, SceneE
     })
 }
 
-fn half_periodic(boundary: &Table<'_>, axis: Axis, error: &DomainError) -> SceneError {
+/// Error about an axis of which one face only is periodic.
+fn half_periodic(boundary: &SceneTable<'_>, axis: Axis, error: &DomainError) -> SceneError {
     let key = [Side::Min, Side::Max]
         .map(|side| face_key(axis, side))
         .into_iter()
@@ -44,7 +46,8 @@ fn face_key(axis: Axis, side: Side) -> String {
     format!("{axis}_{}", if side == Side::Min { "min" } else { "max" })
 }
 
-fn read_axis(boundary: &Table<'_>, axis: Axis) -> Result<[Boundary; 2], SceneError> {
+/// Reads the lower and the upper face of an axis.
+fn read_axis(boundary: &SceneTable<'_>, axis: Axis) -> Result<[Boundary; 2], SceneError> {
     let both = axis.to_string();
     let (low, high) = (face_key(axis, Side::Min), face_key(axis, Side::Max));
     if boundary.has(&both) {
@@ -69,7 +72,7 @@ fn read_axis(boundary: &Table<'_>, axis: Axis) -> Result<[Boundary; 2], SceneErr
     Ok(faces)
 }
 
-fn read_face(boundary: &Table<'_>, key: &str) -> Result<Boundary, SceneError> {
+fn read_face(boundary: &SceneTable<'_>, key: &str) -> Result<Boundary, SceneError> {
     let Some(node) = boundary.get(key) else {
         return Err(boundary.missing(key, format!("give {FACE_FORMS}")));
     };
@@ -85,7 +88,7 @@ fn read_face(boundary: &Table<'_>, key: &str) -> Result<Boundary, SceneError> {
             boundary.need(face, key, FACE_FORMS)
         }
         Value::Table(_) => {
-            let table = Table::new(node, boundary.key(key), &["potential_V", "normal_field_V_m"])?;
+            let table = SceneTable::new(node, boundary.key(key), &["potential_V", "normal_field_V_m"])?;
             let potential = table.number("potential_V", ELECTRIC)?;
             let normal = table.number("normal_field_V_m", ELECTRIC)?;
             match (potential, normal) {

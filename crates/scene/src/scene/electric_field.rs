@@ -1,13 +1,13 @@
-//! `[electric_field]` as keys or as one line.
+//! Section `[electric_field]`, as keys or as one command line.
 
 use super::command::{COMMAND_KEYS, command_entries};
 use super::description::ElectricFieldSettings;
 use super::limits::{ELECTRIC, FRACTION, LENGTH, TOLERANCE};
 use crate::SceneError;
-use crate::tree::{Entries, Node, Range, Table, Value};
+use crate::tree::{Entries, Node, Range, SceneTable, Value};
 use amberfield_core::{CouplingInterval, ForceLimit, Method, Permittivity, Tuning};
 
-/// Keys of `[electric_field]` besides those of the one-line form.
+/// Keys of `[electric_field]` that the command line does not have.
 const FURTHER_KEYS: [&str; 10] = [
     "method",
     "tolerance",
@@ -20,16 +20,22 @@ const FURTHER_KEYS: [&str; 10] = [
     "grid",
     "command",
 ];
-/// Most cells of the internal grid per axis.
+/// Largest number of cells of the internal grid per axis.
 const MOST_CELLS: i64 = 1 << 16;
 
 /// Reads `[electric_field]`.
-pub(super) fn read_electric_field(document: &Table<'_>) -> Result<Option<ElectricFieldSettings>, SceneError> {
+pub(super) fn read_electric_field(
+    document: &SceneTable<'_>,
+) -> Result<Option<ElectricFieldSettings>, SceneError> {
     let keys: Vec<&str> = COMMAND_KEYS.iter().map(|(key, _)| *key).chain(FURTHER_KEYS).collect();
     let Some(table) = document.table("electric_field", &keys)? else { return Ok(None) };
     let Some(command) = table.text("command")? else { return read_keys(&table).map(Some) };
     if let Some(key) = table.keys().find(|key| !["command", "method", "tolerance"].contains(key)) {
-        return Err(table.bad(key, "command excludes every other key but method and tolerance; move it into the command or write keys only"));
+        return Err(table.bad(
+            key,
+            "command excludes every other key but method and tolerance; \
+             move it into the command or write keys only",
+        ));
     }
     let node = table.get("command").expect("it was just read");
     let mut entries: Entries = command_entries(command, node)?;
@@ -37,10 +43,10 @@ pub(super) fn read_electric_field(document: &Table<'_>) -> Result<Option<Electri
         entries.extend(table.get(key).map(|node| (key.to_owned(), node.clone())));
     }
     let inner = Node { value: Value::Table(entries), place: node.place.clone() };
-    read_keys(&Table::new(&inner, "electric_field", &keys)?).map(Some)
+    read_keys(&SceneTable::new(&inner, "electric_field", &keys)?).map(Some)
 }
 
-fn read_keys(table: &Table<'_>) -> Result<ElectricFieldSettings, SceneError> {
+fn read_keys(table: &SceneTable<'_>) -> Result<ElectricFieldSettings, SceneError> {
     let mut read = ElectricFieldSettings::default();
     read_common(table, &mut read)?;
     let field = &mut read.field;
@@ -66,7 +72,8 @@ fn read_keys(table: &Table<'_>) -> Result<ElectricFieldSettings, SceneError> {
     Ok(read)
 }
 
-fn read_common(table: &Table<'_>, read: &mut ElectricFieldSettings) -> Result<(), SceneError> {
+/// Reads the keys that the command line has too.
+fn read_common(table: &SceneTable<'_>, read: &mut ElectricFieldSettings) -> Result<(), SceneError> {
     if let Some(id) = table.text("id")? {
         id.clone_into(&mut read.id);
     }
@@ -96,7 +103,7 @@ fn read_common(table: &Table<'_>, read: &mut ElectricFieldSettings) -> Result<()
     Ok(())
 }
 
-fn read_interval(table: &Table<'_>) -> Result<CouplingInterval, SceneError> {
+fn read_interval(table: &SceneTable<'_>) -> Result<CouplingInterval, SceneError> {
     match table.get("coupling_interval").map(|node| &node.value) {
         None => Ok(CouplingInterval::Auto),
         Some(Value::Text(word)) if word == "auto" => Ok(CouplingInterval::Auto),
@@ -111,7 +118,7 @@ fn read_interval(table: &Table<'_>) -> Result<CouplingInterval, SceneError> {
     }
 }
 
-fn read_grid(table: &Table<'_>) -> Result<Option<[usize; 3]>, SceneError> {
+fn read_grid(table: &SceneTable<'_>) -> Result<Option<[usize; 3]>, SceneError> {
     let Some(grid) = table.table("grid", &["cells"])? else { return Ok(None) };
     let advice = format!("give \"auto\" or three whole numbers from 1 to {MOST_CELLS}, as [64, 64, 128]");
     let Some(node) = grid.get("cells") else { return Err(grid.missing("cells", advice)) };

@@ -1,42 +1,45 @@
-//! `[gas]`.
+//! Section `[gas]`.
 
 use super::limits::TIME;
 use crate::SceneError;
-use crate::tree::{Range, Table};
+use crate::tree::{Range, SceneTable};
 use amberfield_core::{DragLaw, Gas, GasFlow, GasModel};
 
-/// Density [kg/m³] and viscosity [Pa·s] of dry air at 20 °C and 101325 Pa (CRC Handbook of Chemistry and Physics).
-const AIR: (f64, f64) = (1.204, 1.82e-5);
-/// Keys of a gas whose flow is computed.
-const OF_FLOW: [&str; 6] =
+/// Density of dry air at 20 °C and 101325 Pa [kg/m³] (CRC Handbook of Chemistry and Physics).
+const AIR_DENSITY: f64 = 1.204;
+/// Viscosity of dry air at 20 °C and 101325 Pa [Pa·s] (CRC Handbook of Chemistry and Physics).
+const AIR_VISCOSITY: f64 = 1.82e-5;
+/// Keys that only a gas with a computed flow has.
+const FLOW_KEYS: [&str; 6] =
     ["model", "interval_s", "smoothing_length_m", "viscous_force", "saffman_lift", "overlap"];
 
-/// Reads `[gas]`: air of 20 °C at rest where nothing else is said.
-pub(super) fn read_gas(document: &Table<'_>) -> Result<Option<Gas>, SceneError> {
+/// Reads `[gas]`; the defaults are those of air at 20 °C at rest.
+pub(super) fn read_gas(document: &SceneTable<'_>) -> Result<Option<Gas>, SceneError> {
     let alone = ["drag", "density_kg_m3", "viscosity_Pa_s", "velocity_m_s", "magnus_lift", "flow"];
-    let keys = [&alone[..], &OF_FLOW[..]].concat();
+    let keys = [&alone[..], &FLOW_KEYS[..]].concat();
     let Some(table) = document.table("gas", &keys)? else { return Ok(None) };
     let laws = DragLaw::ALL.map(|law| (law.name(), law));
     let flows = table.word("flow", &[("uniform", false), ("solver", true)])?.unwrap_or(false);
     let flow = if flows { Some(read_flow(document, &table)?) } else { None };
-    if let Some(key) = OF_FLOW.iter().find(|key| !flows && table.has(key)) {
+    if let Some(key) = FLOW_KEYS.iter().find(|key| !flows && table.has(key)) {
         return Err(table.bad(key, "needs a flow that is computed; set flow = \"solver\", or leave it out"));
     }
+    // A flow solver divides by the density; a uniform gas without density has no inertial drag.
     let least = if flows { Range::positive(1e6) } else { Range::closed(0.0, 1e6) };
     Ok(Some(Gas {
         drag: table.word("drag", &laws)?.unwrap_or_default(),
-        density_kg_m3: table.number("density_kg_m3", least)?.unwrap_or(AIR.0),
-        viscosity_pa_s: table.number("viscosity_Pa_s", Range::positive(1e6))?.unwrap_or(AIR.1),
+        density_kg_m3: table.number("density_kg_m3", least)?.unwrap_or(AIR_DENSITY),
+        viscosity_pa_s: table.number("viscosity_Pa_s", Range::positive(1e6))?.unwrap_or(AIR_VISCOSITY),
         velocity_m_s: table.vector("velocity_m_s", Range::closed(-1e6, 1e6))?.unwrap_or_default(),
         magnus_lift: table.boolean("magnus_lift")?.unwrap_or(false),
         flow,
     }))
 }
 
-/// Reads what a gas has whose flow is computed by the scene's solver.
-fn read_flow(document: &Table<'_>, table: &Table<'_>) -> Result<GasFlow, SceneError> {
+/// Reads the keys of a gas whose flow is computed by the scene's solver.
+fn read_flow(document: &SceneTable<'_>, table: &SceneTable<'_>) -> Result<GasFlow, SceneError> {
     if !document.has("solver") {
-        return Err(table.bad("flow", "somebody must compute it; add [solver] with openfoam_case"));
+        return Err(table.bad("flow", "a solver must compute the flow; add [solver] with openfoam_case"));
     }
     if table.has("velocity_m_s") {
         return Err(table

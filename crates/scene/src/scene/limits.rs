@@ -1,4 +1,4 @@
-//! Ranges beyond which a value is a slip of the pen (a wrong unit, a lost exponent), not a scene.
+//! Ranges of values; a value beyond is a mistake, such as a wrong unit or a lost exponent.
 
 use crate::tree::Range;
 
@@ -8,13 +8,13 @@ pub(crate) const COORDINATE: Range = Range::closed(-1e6, 1e6);
 pub(crate) const LENGTH: Range = Range::positive(1e6);
 /// Radii of grains [m].
 pub(crate) const RADIUS: Range = Range::closed(1e-12, 1e3);
-/// Radii of grains that need no size [m].
+/// Radii of particles that need no size [m].
 pub(crate) const RADIUS_OR_POINT: Range = Range::closed(0.0, 1e3);
 /// Densities [kg/m³].
 pub(crate) const DENSITY: Range = Range::closed(1e-6, 1e6);
 /// Young's moduli [Pa].
 pub(crate) const YOUNG: Range = Range::closed(1e-3, 1e15);
-/// Charges [C]: wide, since textbooks and test sets use unit charges.
+/// Charges [C]; the range is wide, since textbooks and test sets use unit charges.
 pub(crate) const CHARGE: Range = Range::closed(-1e6, 1e6);
 /// Velocities [m/s] and angular velocities [rad/s] of grains.
 pub(crate) const SPEED: Range = Range::closed(-1e9, 1e9);
@@ -28,5 +28,5 @@ pub(crate) const FRACTION: Range = Range::closed(0.0, 1.0);
 pub(crate) const FRICTION: Range = Range::closed(0.0, 1e3);
 /// Tolerances.
 pub(crate) const TOLERANCE: Range = Range::closed(1e-12, 1.0);
-/// Most grains of a generator.
+/// Largest number of particles of a generator.
 pub(crate) const GRAINS: i64 = 100_000_000;

@@ -1,9 +1,9 @@
-//! `[[materials]]`.
+//! Sections `[[materials]]`.
 
 use super::limits::{DENSITY, FRICTION, YOUNG};
 use crate::SceneError;
 use crate::error::Problems;
-use crate::tree::{Range, Table, nearest};
+use crate::tree::{Range, SceneTable, nearest};
 use amberfield_core::{Material, MaterialId};
 
 /// Keys of a material.
@@ -20,7 +20,7 @@ const KEYS: [&str; 9] = [
 ];
 
 /// Reads `[[materials]]`.
-pub(super) fn read_materials(document: &Table<'_>) -> Result<Vec<Material>, SceneError> {
+pub(super) fn read_materials(document: &SceneTable<'_>) -> Result<Vec<Material>, SceneError> {
     let mut materials: Vec<Material> = Vec::new();
     let mut problems = Problems::default();
     let items = document.items("materials")?;
@@ -31,7 +31,7 @@ pub(super) fn read_materials(document: &Table<'_>) -> Result<Vec<Material>, Scen
         if index > usize::from(u16::MAX) {
             return Err(document.bad("materials", "more than 65536 materials; merge some"));
         }
-        let read = Table::new(node, format!("materials[{index}]"), &KEYS).and_then(|table| {
+        let read = SceneTable::new(node, format!("materials[{index}]"), &KEYS).and_then(|table| {
             let material = read_material(&table)?;
             if materials.iter().any(|other| other.name == material.name) {
                 return Err(table.bad("name", "another material has this name; rename one"));
@@ -43,7 +43,7 @@ pub(super) fn read_materials(document: &Table<'_>) -> Result<Vec<Material>, Scen
     problems.finish().map(|()| materials)
 }
 
-fn read_material(table: &Table<'_>) -> Result<Material, SceneError> {
+fn read_material(table: &SceneTable<'_>) -> Result<Material, SceneError> {
     let name = table.text("name")?;
     Ok(Material {
         name: table.need(name, "name", "give the material a name")?.to_owned(),
@@ -59,17 +59,17 @@ fn read_material(table: &Table<'_>) -> Result<Material, SceneError> {
     })
 }
 
-/// The scene's materials by name.
+/// Materials of the scene, found by name.
 #[derive(Debug)]
 pub(crate) struct Materials {
-    /// In the order of the scene.
+    /// Materials in the order of the scene.
     pub(crate) list: Vec<Material>,
-    /// Whether names mean nothing, because no motion is asked for and no material is given.
+    /// Flag of a scene without motion and without materials, in which names of materials have no meaning.
     pub(crate) ignored: bool,
 }
 
 impl Materials {
-    /// The id of a name, or what to say about a name that no material has.
+    /// Id of the material with a name, or the text of a message when no material has it.
     pub(crate) fn find(&self, name: &str) -> Result<MaterialId, String> {
         if self.ignored {
             return Ok(MaterialId(0));
@@ -84,18 +84,18 @@ impl Materials {
         ))
     }
 
-    /// The material of what names none: the only one there is.
+    /// Default material: the only one of the scene, if there is only one.
     pub(crate) fn default_id(&self) -> Option<MaterialId> {
         (self.ignored || self.list.len() == 1).then_some(MaterialId(0))
     }
 
-    /// Density [kg/m³] of a material; 0 where there are no materials and no motion.
+    /// Density of a material [kg/m³]; 0 where there are no materials and no motion.
     pub(crate) fn density(&self, id: MaterialId) -> f64 {
         self.list.get(usize::from(id.0)).map_or(0.0, |material| material.density_kg_m3)
     }
 
-    /// The material that a table's key names, or the default.
-    pub(crate) fn named_by(&self, table: &Table<'_>, key: &str) -> Result<MaterialId, SceneError> {
+    /// Id of the material that a table's key names, or of the default.
+    pub(crate) fn named_by(&self, table: &SceneTable<'_>, key: &str) -> Result<MaterialId, SceneError> {
         match table.text(key)? {
             Some(name) => self.find(name).map_err(|problem| table.bad(key, problem)),
             None => self.default_id().ok_or_else(|| {

@@ -1,4 +1,4 @@
-//! Scene file to validated description, one file per section.
+//! Validation of a scene file, one source file for each section.
 
 mod command;
 mod description;
@@ -16,6 +16,7 @@ mod together;
 mod walls;
 
 pub use description::{
-    ChargeTransferSettings, ElectricFieldSettings, OutputSettings, Purpose, Scene, SolverLoss, SolverSettings,
+    ChargeTransferSettings, ElectricFieldSettings, OpenFoamSettings, OutputSettings, Purpose, Scene,
+    SolverLoss,
 };
 pub use read::{parse_scene, read_scene};

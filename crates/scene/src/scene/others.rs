@@ -1,14 +1,14 @@
-//! `[charge_transfer]`, `[solver]`, `[output]`.
+//! Sections `[charge_transfer]`, `[solver]` and `[output]`.
 
-use super::description::{ChargeTransferSettings, OutputSettings, SolverLoss, SolverSettings};
+use super::description::{ChargeTransferSettings, OpenFoamSettings, OutputSettings, SolverLoss};
 use super::limits::TIME;
-use super::source::Source;
+use super::source::SceneSource;
 use crate::SceneError;
-use crate::tree::{Range, Table, Value};
+use crate::tree::{Range, SceneTable, Value};
 
 /// Reads `[charge_transfer]`.
 pub(super) fn read_charge_transfer(
-    document: &Table<'_>,
+    document: &SceneTable<'_>,
 ) -> Result<Option<ChargeTransferSettings>, SceneError> {
     let keys = ["beyond_previous_maximum", "breakdown_field_V_m", "stiffness_correction", "velocity_ratio"];
     let Some(table) = document.table("charge_transfer", &keys)? else { return Ok(None) };
@@ -22,9 +22,9 @@ pub(super) fn read_charge_transfer(
 
 /// Reads `[solver]`.
 pub(super) fn read_solver(
-    document: &Table<'_>,
-    source: &Source,
-) -> Result<Option<SolverSettings>, SceneError> {
+    document: &SceneTable<'_>,
+    source: &SceneSource,
+) -> Result<Option<OpenFoamSettings>, SceneError> {
     let keys = ["openfoam_case", "application", "start", "ranks", "timeout_s", "on_solver_loss"];
     let Some(table) = document.table("solver", &keys)? else { return Ok(None) };
     let case = table.text("openfoam_case")?;
@@ -37,7 +37,7 @@ pub(super) fn read_solver(
     }
     let ranks = table.integer("ranks", 1, 65_536)?.unwrap_or(1);
     let losses = [("stop", SolverLoss::Stop), ("fallback", SolverLoss::Fallback), ("wait", SolverLoss::Wait)];
-    Ok(Some(SolverSettings {
+    Ok(Some(OpenFoamSettings {
         openfoam_case: folder,
         application: table.text("application")?.map(str::to_owned),
         start: table.boolean("start")?.unwrap_or(true),
@@ -48,7 +48,7 @@ pub(super) fn read_solver(
 }
 
 /// Reads `[output]`.
-pub(super) fn read_output(document: &Table<'_>) -> Result<OutputSettings, SceneError> {
+pub(super) fn read_output(document: &SceneTable<'_>) -> Result<OutputSettings, SceneError> {
     let keys = ["every_s", "history_every_s", "formats", "checkpoint_every_s"];
     let mut output = OutputSettings::default();
     let Some(table) = document.table("output", &keys)? else { return Ok(output) };

@@ -1,32 +1,34 @@
-//! `[particles]`.
+//! Section `[particles]`.
 
 use super::materials::Materials;
-use super::source::Source;
+use super::source::SceneSource;
 use crate::SceneError;
 use crate::generate::{GenerateContext, generate};
 use crate::particles::{CsvContext, ReadParticles, read_particles};
-use crate::tree::Table;
+use crate::tree::SceneTable;
 use amberfield_core::{Domain, OnExit, Wall};
 
 /// Keys of `[particles]`.
 const KEYS: [&str; 4] = ["file", "generate", "allow_overlap", "on_exit"];
 
-/// What `[particles]` says.
+/// Content of `[particles]`.
 #[derive(Debug)]
 pub(super) struct ParticlesSection {
     pub(super) read: ReadParticles,
+    /// Treatment of grains that leave the domain.
     pub(super) on_exit: OnExit,
+    /// Switch for grains that overlap at the start.
     pub(super) allow_overlap: bool,
 }
 
-/// Reads `[particles]`, the file it names or what it generates.
+/// Reads `[particles]`, with the file that it names or the generator that it describes.
 pub(super) fn read_section(
-    document: &Table<'_>,
+    document: &SceneTable<'_>,
     domain: Option<&Domain>,
     materials: &Materials,
     walls: &[Wall],
     allow_points: bool,
-    source: &mut Source,
+    source: &mut SceneSource,
 ) -> Result<ParticlesSection, SceneError> {
     let table = document.table("particles", &KEYS)?;
     let table = document.need(

@@ -1,4 +1,4 @@
-//! Scene file to description.
+//! Reader from a scene file to its description.
 
 use super::description::{Purpose, Scene};
 use super::domain::read_domain;
@@ -7,13 +7,13 @@ use super::gas::read_gas;
 use super::materials::{Materials, read_materials};
 use super::others::{read_charge_transfer, read_output, read_solver};
 use super::particles::read_section;
-use super::source::{Source, read_text};
+use super::source::{SceneSource, read_text};
 use super::time::read_time;
 use super::together::{check_sections, check_together};
 use super::walls::read_walls;
 use crate::SceneError;
 use crate::error::Problems;
-use crate::tree::{Entries, Node, Place, Table, Value, apply_overrides, parse_document};
+use crate::tree::{Entries, Node, Place, SceneTable, Value, apply_overrides, parse_document};
 use std::path::Path;
 use std::sync::Arc;
 
@@ -34,7 +34,7 @@ const SECTIONS: [&str; 10] = [
 /// Reads a scene file, applies `KEY=VALUE` overrides and reads the files that it names.
 ///
 /// # Errors
-/// Everything that is wrong with the scene and its files, as far as it can be told apart.
+/// All problems of the scene and its files that can be found independently of each other.
 pub fn read_scene(path: &Path, overrides: &[String], purpose: Purpose) -> Result<Scene, SceneError> {
     let text = read_text(path)?;
     let folder = path.parent().unwrap_or(Path::new(""));
@@ -45,7 +45,8 @@ pub fn read_scene(path: &Path, overrides: &[String], purpose: Purpose) -> Result
     Ok(scene)
 }
 
-/// Reads a scene from its text; `file` names it in messages, `folder` is where the files that it names are.
+/// Reads a scene from its text. `file` is its name in messages, `folder` the folder of the files that it
+/// names.
 ///
 /// # Errors
 /// As [`read_scene`].
@@ -59,8 +60,8 @@ pub fn parse_scene(
     let file: Arc<str> = file.into();
     let mut entries = parse_document(&file, text.strip_prefix('\u{feff}').unwrap_or(text))?;
     apply_overrides(&mut entries, overrides)?;
-    let document = Table::document(&entries, Place::Line { file, line: 0 }, &SECTIONS)?;
-    let mut source = Source::new(folder);
+    let document = SceneTable::document(&entries, Place::Line { file, line: 0 }, &SECTIONS)?;
+    let mut source = SceneSource::new(folder);
     let mut scene = read_sections(&document, &mut source, purpose)?;
     fingerprint(&entries, &mut source);
     scene.hash = source.fingerprint();
@@ -68,7 +69,12 @@ pub fn parse_scene(
     Ok(scene)
 }
 
-fn read_sections(document: &Table<'_>, source: &mut Source, purpose: Purpose) -> Result<Scene, SceneError> {
+/// Reads all sections in the order in which they need each other.
+fn read_sections(
+    document: &SceneTable<'_>,
+    source: &mut SceneSource,
+    purpose: Purpose,
+) -> Result<Scene, SceneError> {
     let mut problems = Problems::default();
     let motion = purpose == Purpose::Run || (purpose == Purpose::Explain && document.has("time"));
     let sections = problems.keep(check_sections(document, motion, purpose));
@@ -80,7 +86,8 @@ fn read_sections(document: &Table<'_>, source: &mut Source, purpose: Purpose) ->
     let gas = problems.keep(read_gas(document));
     let output = problems.keep(read_output(document));
     let time_alone = problems.keep(read_time(document, Default::default(), false));
-    // What follows reads files and places grains; it would only repeat what is wrong so far.
+    // The sections below read files and place grains. With a bad section above they would only repeat its
+    // problems.
     let (
         Some(domain),
         Some(list),
@@ -121,7 +128,7 @@ fn read_sections(document: &Table<'_>, source: &mut Source, purpose: Purpose) ->
     Ok(scene)
 }
 
-/// Keys whose values are paths, from the scene's folder.
+/// Keys whose values are paths relative to the scene's folder.
 const PATHS: [&[&str]; 4] = [
     &["particles", "file"],
     &["particles", "generate", "charge_C", "from_file"],
@@ -129,9 +136,11 @@ const PATHS: [&[&str]; 4] = [
     &["walls", "*", "stl"],
 ];
 
-/// Mixes the scene's keys into the fingerprint, all but those that do not decide the physics: outputs, the end,
-/// and where files are (their contents are in it already).
-fn fingerprint(entries: &Entries, source: &mut Source) {
+/// Adds the scene's keys to the fingerprint.
+///
+/// Keys that do not decide the physics are left out: outputs, the end of the run, and the paths of files
+/// (whose contents have been added already).
+fn fingerprint(entries: &Entries, source: &mut SceneSource) {
     let mut entries = entries.clone();
     for path in PATHS {
         change_texts(&mut entries, path, &|_| String::new());
@@ -150,7 +159,7 @@ fn fingerprint(entries: &Entries, source: &mut Source) {
     }
 }
 
-/// The scene as TOML, files named by absolute paths so that it can be run from anywhere.
+/// Text of the scene as TOML, with absolute paths of files so that it can be run from any folder.
 fn resolved(entries: &Entries, folder: &Path) -> String {
     let mut entries = entries.clone();
     for path in PATHS {
@@ -166,7 +175,7 @@ fn resolved(entries: &Entries, folder: &Path) -> String {
     }
 }
 
-/// Changes every text at a path of keys; `*` is every item of an array.
+/// Changes each text at a path of keys; `*` stands for each item of an array.
 fn change_texts(entries: &mut Entries, path: &[&str], change: &dyn Fn(&str) -> String) {
     let Some((first, rest)) = path.split_first() else { return };
     for (_, node) in entries.iter_mut().filter(|(key, _)| key == first) {

@@ -1,19 +1,23 @@
-//! The scene's file, the folder that its other files are named from, and a fingerprint of what was read.
+//! Files of a scene: its folder, and a fingerprint of all files that were read.
 
 use crate::SceneError;
-use crate::tree::Table;
+use crate::tree::SceneTable;
 use std::io::ErrorKind;
 use std::path::{Path, PathBuf};
 
-/// 64-bit FNV-1a (Fowler, Noll, Vo): stable across versions and machines; guards against mistakes, not malice.
+/// Fingerprint of bytes, the 64-bit FNV-1a hash (Fowler, Noll, Vo).
+///
+/// It is stable across versions and machines, and guards against mistakes, not against malice.
 #[derive(Clone, Debug)]
 pub(crate) struct Fingerprint(u64);
 
 impl Fingerprint {
+    /// Fingerprint of no bytes, the offset basis of FNV-1a.
     pub(crate) fn new() -> Self {
         Self(0xcbf2_9ce4_8422_2325)
     }
 
+    /// Adds bytes; the multiplier is the prime of FNV-1a.
     pub(crate) fn add(&mut self, bytes: &[u8]) {
         for byte in bytes {
             self.0 = (self.0 ^ u64::from(*byte)).wrapping_mul(0x0000_0100_0000_01b3);
@@ -25,27 +29,27 @@ impl Fingerprint {
     }
 }
 
-/// Where a scene comes from.
+/// Folder of a scene, and the fingerprint of the files that were read from it.
 #[derive(Debug)]
-pub(crate) struct Source {
+pub(crate) struct SceneSource {
     folder: PathBuf,
     fingerprint: Fingerprint,
 }
 
-impl Source {
+impl SceneSource {
     pub(crate) fn new(folder: &Path) -> Self {
         Self { folder: folder.to_path_buf(), fingerprint: Fingerprint::new() }
     }
 
-    /// A path as the scene means it: from the scene's folder.
+    /// Path of a name in the scene, relative to the scene's folder.
     pub(crate) fn path(&self, name: &str) -> PathBuf {
         self.folder.join(name)
     }
 
-    /// Bytes of a file that a key names; they count in the fingerprint.
+    /// Reads the file that a key names and adds its bytes to the fingerprint.
     pub(crate) fn read_file(
         &mut self,
-        table: &Table<'_>,
+        table: &SceneTable<'_>,
         key: &str,
         name: &str,
     ) -> Result<Vec<u8>, SceneError> {
@@ -54,18 +58,20 @@ impl Source {
         Ok(bytes)
     }
 
-    /// Mixes more into the fingerprint.
+    /// Adds more bytes to the fingerprint.
     pub(crate) fn add(&mut self, bytes: &[u8]) {
         self.fingerprint.add(bytes);
     }
 
-    /// Fingerprint of all that was read.
+    /// Fingerprint of all bytes that were added.
     pub(crate) fn fingerprint(&self) -> u64 {
         self.fingerprint.value()
     }
 }
 
-/// Bytes of a file or pipe that is not empty; a device may never end.
+/// Reads a file or pipe that is not empty.
+///
+/// Devices are refused, since some of them never end.
 fn read_bytes(path: &Path) -> Result<Vec<u8>, String> {
     if path.is_dir() {
         return Err(format!("{} is a directory; name a file", path.display()));
@@ -96,14 +102,14 @@ fn is_device(_: &Path) -> bool {
     false
 }
 
-/// Text of a scene file: UTF-8, with or without a byte-order mark.
+/// Reads the text of a scene file: UTF-8, with or without a byte-order mark.
 pub(crate) fn read_text(path: &Path) -> Result<String, SceneError> {
     let file = path.display().to_string();
     let bytes = read_bytes(path).map_err(|reason| SceneError::Unreadable { file: file.clone(), reason })?;
     decode(&file, &bytes).map(ToOwned::to_owned)
 }
 
-/// UTF-8 text without its byte-order mark.
+/// Decodes UTF-8 text and leaves out its byte-order mark.
 pub(crate) fn decode<'b>(file: &str, bytes: &'b [u8]) -> Result<&'b str, SceneError> {
     let bytes = bytes.strip_prefix(b"\xef\xbb\xbf").unwrap_or(bytes);
     std::str::from_utf8(bytes).map_err(|error| {

@@ -1,21 +1,21 @@
-//! `[time]`.
+//! Section `[time]`.
 
 use super::limits::{LENGTH, TIME};
 use crate::SceneError;
-use crate::tree::{Range, Table};
+use crate::tree::{Range, SceneTable};
 use amberfield_core::{OnExit, Skin, Step, TimeSettings};
 use nalgebra::Vector3;
 
 /// Keys of `[time]`.
 const KEYS: [&str; 5] = ["step_s", "end_s", "gravity_m_s2", "skin_m", "allow_unstable"];
-/// Most steps of a run: the largest count that a double holds exactly.
+/// Largest number of steps of a run, which a double holds exactly.
 const MOST_STEPS: f64 = 9e15;
-/// Gravity when the scene gives none [m/s²].
+/// Gravity [m/s²] of a scene that gives none.
 const NO_GRAVITY: Vector3<f64> = Vector3::new(0.0, 0.0, 0.0);
 
-/// Reads `[time]`; exits and overlaps are `[particles]`' keys.
+/// Reads `[time]`. `on_exit` and `allow_overlap` come from `[particles]`.
 pub(super) fn read_time(
-    document: &Table<'_>,
+    document: &SceneTable<'_>,
     on_exit: OnExit,
     allow_overlap: bool,
 ) -> Result<Option<TimeSettings>, SceneError> {

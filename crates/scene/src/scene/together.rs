@@ -1,21 +1,22 @@
-//! What the sections mean together.
+//! Checks of sections against each other.
 
 use super::description::{Purpose, Scene};
 use crate::SceneError;
 use crate::error::{Problems, shorten};
-use crate::tree::{Table, nearest};
+use crate::tree::{SceneTable, nearest};
 use amberfield_core::{Axis, Boundary, Domain, Method, WallCharging, WallShape};
 
-/// Grains beyond which the direct sum is worth a warning.
+/// Number of grains beyond which the direct sum causes a warning.
 const MANY_FOR_DIRECT: usize = 100_000;
-/// Copies of the box that a cut-off may reach: beyond, the near sum is far dearer than the direct one.
+/// Largest number of copies of the box within a cut-off; beyond, the near sum costs far more than the direct
+/// sum.
 const MOST_COPIES: f64 = 1e3;
-/// Nodes of the internal grid, padding beside open faces included: what a workstation holds.
+/// Largest number of nodes of the internal grid that a workstation holds, padding beside open faces included.
 const MOST_NODES: f64 = 2e8;
 
-/// Checks what no section can check alone.
+/// Checks what one section alone cannot check, and adds warnings.
 pub(super) fn check_together(
-    document: &Table<'_>,
+    document: &SceneTable<'_>,
     scene: &mut Scene,
     has_charge: bool,
 ) -> Result<(), SceneError> {
@@ -28,8 +29,12 @@ pub(super) fn check_together(
     Ok(())
 }
 
-/// Checks that the sections that the purpose needs are there.
-pub(super) fn check_sections(document: &Table<'_>, motion: bool, purpose: Purpose) -> Result<(), SceneError> {
+/// Checks that the sections that the purpose needs are present.
+pub(super) fn check_sections(
+    document: &SceneTable<'_>,
+    motion: bool,
+    purpose: Purpose,
+) -> Result<(), SceneError> {
     let mut problems = Problems::default();
     let mut need = |section: &str, advice: &str| {
         if !document.has(section) {
@@ -53,14 +58,17 @@ pub(super) fn check_sections(document: &Table<'_>, motion: bool, purpose: Purpos
     problems.finish()
 }
 
-fn check_field(document: &Table<'_>, scene: &Scene, has_charge: bool) -> Result<(), SceneError> {
+/// Checks that the electric field has charges, a solver where it needs one, and a group that exists.
+fn check_field(document: &SceneTable<'_>, scene: &Scene, has_charge: bool) -> Result<(), SceneError> {
     let Some(field) = &scene.electric_field else { return Ok(()) };
     let mut problems = Problems::default();
     if !has_charge {
         problems.keep::<()>(Err(SceneError::Missing {
             place: document.place_of("particles").to_string(),
             key: "particles: charge_C".to_owned(),
-            advice: "the scene has an electric field but its grains have no charge; add the column charge_C to the file, or charge_C to the generator (0 where they are neutral)".to_owned(),
+            advice: "the scene has an electric field but its grains have no charge; add the column charge_C \
+                     to the file, or charge_C to the generator (0 where they are neutral)"
+                .to_owned(),
         }));
     }
     if !field.use_without_cfd_coupling && scene.solver.is_none() {
@@ -68,7 +76,8 @@ fn check_field(document: &Table<'_>, scene: &Scene, has_charge: bool) -> Result<
             "electric_field",
             "use_without_cfd_coupling",
             "false",
-            "the field is not to be computed here, so a field solver must be configured; add [solver] or set use_without_cfd_coupling = true",
+            "the field is not to be computed here, so a field solver must be configured; \
+             add [solver] or set use_without_cfd_coupling = true",
         )));
     }
     if !scene.groups.contains(&field.particle_group) {
@@ -84,8 +93,8 @@ fn check_field(document: &Table<'_>, scene: &Scene, has_charge: bool) -> Result<
     problems.finish()
 }
 
-/// Checks that a cut-off and a grid that were given fit the box.
-fn check_reach(document: &Table<'_>, scene: &Scene) -> Result<(), SceneError> {
+/// Checks that the cut-off and the grid of the scene fit the box.
+fn check_reach(document: &SceneTable<'_>, scene: &Scene) -> Result<(), SceneError> {
     let (Some(read), Some(domain)) = (&scene.electric_field, &scene.domain) else { return Ok(()) };
     let field = &read.field;
     if field.method == Method::Direct {
@@ -98,9 +107,13 @@ fn check_reach(document: &Table<'_>, scene: &Scene) -> Result<(), SceneError> {
             "electric_field",
             "field_cutoff_radius",
             &format!("{cutoff:e}"),
-            format!("reaches over {MOST_COPIES} copies of the box; give a radius within a few box lengths, or method = \"direct\" without a cut-off"),
+            format!(
+                "reaches over {MOST_COPIES} copies of the box; give a radius within a few box lengths, \
+                 or method = \"direct\" without a cut-off"
+            ),
         )));
     }
+    // The grid is doubled along an axis with an open face.
     let padded = |axis: Axis| if domain.faces()[axis.index()].contains(&Boundary::Open) { 2.0 } else { 1.0 };
     let nodes = |cells: [usize; 3]| -> f64 {
         #[expect(clippy::cast_precision_loss, reason = "at most 2^16 cells per axis")]
@@ -111,13 +124,17 @@ fn check_reach(document: &Table<'_>, scene: &Scene) -> Result<(), SceneError> {
             "electric_field",
             "grid",
             &format!("{{ cells = {cells:?} }}"),
-            format!("{:e} nodes with the padding beside open faces are more than {MOST_NODES:e}; take fewer, or \"auto\"", nodes(cells)),
+            format!(
+                "{:e} nodes with the padding beside open faces are more than {MOST_NODES:e}; \
+                 take fewer, or \"auto\"",
+                nodes(cells)
+            ),
         )));
     }
     problems.finish()
 }
 
-/// Copies of the box within a radius: periodic ones, and for p3m images in pairs of walls.
+/// Number of copies of the box within a radius [m]: periodic copies and, for p3m, images in pairs of walls.
 fn copies_within(domain: &Domain, method: Method, radius_m: f64) -> f64 {
     let repeats = |axis: &Axis| match method {
         Method::P3m => !domain.faces()[axis.index()].contains(&Boundary::Open),
@@ -127,7 +144,8 @@ fn copies_within(domain: &Domain, method: Method, radius_m: f64) -> f64 {
     Axis::ALL.into_iter().filter(repeats).map(copies).product()
 }
 
-fn check_charge_transfer(document: &Table<'_>, scene: &Scene) -> Result<(), SceneError> {
+/// Checks that charge transfer is on where it is refined, and that materials have what it needs.
+fn check_charge_transfer(document: &SceneTable<'_>, scene: &Scene) -> Result<(), SceneError> {
     let on = scene.electric_field.as_ref().is_some_and(|field| field.enable_collision_charge_transfer);
     if let (Some(_), false) = (&scene.charge_transfer, on) {
         return Err(SceneError::Missing {
@@ -156,11 +174,15 @@ fn check_charge_transfer(document: &Table<'_>, scene: &Scene) -> Result<(), Scen
     Ok(())
 }
 
+/// Adds warnings about keys that have no effect or cost much time.
 fn warn(scene: &mut Scene) {
     let count = scene.particles.len();
     let method = scene.electric_field.as_ref().map(|field| field.field.method);
     if method == Some(Method::Direct) && count > MANY_FOR_DIRECT {
-        scene.warnings.push(format!("method direct sums over every pair of {count} grains, which takes long; p3m gives a stated error in a fraction of the time"));
+        scene.warnings.push(format!(
+            "method direct sums over every pair of {count} grains, which takes long; \
+             p3m gives a stated error in a fraction of the time"
+        ));
     }
     if scene.solver.is_none() && scene.wall_patches.iter().any(Option::is_some) {
         scene.warnings.push("walls.patch has no effect without [solver]".to_owned());
@@ -170,16 +192,23 @@ fn warn(scene: &mut Scene) {
     }
     let far_tolerance = scene.electric_field.as_ref().is_some_and(|field| field.far_tolerance.is_some());
     if scene.solver.is_none() && far_tolerance {
-        scene.warnings.push("electric_field.far_tolerance has no effect without [solver]: the internal grid is solved exactly".to_owned());
+        scene.warnings.push(
+            "electric_field.far_tolerance has no effect without [solver]: the internal grid is solved exactly"
+                .to_owned(),
+        );
     }
     if scene.solver.is_none() && scene.electric_field.as_ref().is_some_and(|field| field.field.overlap) {
-        scene.warnings.push("electric_field.overlap has no effect without [solver]: the internal grid has nothing to work beside".to_owned());
+        scene.warnings.push(
+            "electric_field.overlap has no effect without [solver]: there is no other process to wait for"
+                .to_owned(),
+        );
     }
     if method.is_some() && scene.solver.is_none() {
         for wall in &scene.walls {
             if matches!(wall.shape, WallShape::Mesh(_)) && wall.charging == WallCharging::Grounded {
                 scene.warnings.push(format!(
-                    "{}: the internal grid does not know this grounded surface; it takes charge, but does not bound the field",
+                    "{}: the internal grid does not know this grounded surface; \
+                     it takes charge, but does not bound the field",
                     wall.name
                 ));
             }

@@ -1,38 +1,46 @@
-//! `[[walls]]`.
+//! Sections `[[walls]]`.
 
 use super::limits::COORDINATE;
 use super::materials::Materials;
-use super::source::Source;
+use super::source::SceneSource;
 use crate::SceneError;
 use crate::error::Problems;
-use crate::stl::read_stl;
-use crate::tree::{Range, Table};
+use crate::stl::{Surface, read_stl};
+use crate::tree::{Range, SceneTable};
 use amberfield_core::{Wall, WallCharging, WallShape};
 
 /// Keys of a wall.
 const KEYS: [&str; 6] = ["stl", "scale", "plane", "material", "charging", "patch"];
-/// Shortest normal that has a direction.
+/// Length below which a normal has no direction.
 const SHORTEST_NORMAL: f64 = 1e-100;
 
-/// A wall with what core does not know of it.
+/// Walls of a scene.
 pub(super) struct ReadWalls {
     pub(super) walls: Vec<Wall>,
+    /// `OpenFOAM` patch of each wall.
     pub(super) patches: Vec<Option<String>>,
     pub(super) warnings: Vec<String>,
 }
 
+/// One wall of a scene.
+struct ReadWall {
+    wall: Wall,
+    /// `OpenFOAM` patch with the same surface.
+    patch: Option<String>,
+}
+
 /// Reads `[[walls]]`.
 pub(super) fn read_walls(
-    document: &Table<'_>,
+    document: &SceneTable<'_>,
     materials: &Materials,
-    source: &mut Source,
+    source: &mut SceneSource,
 ) -> Result<ReadWalls, SceneError> {
     let mut read = ReadWalls { walls: Vec::new(), patches: Vec::new(), warnings: Vec::new() };
     let mut problems = Problems::default();
     for (index, node) in document.items("walls")?.unwrap_or_default().iter().enumerate() {
-        let wall = Table::new(node, format!("walls[{index}]"), &KEYS)
+        let wall = SceneTable::new(node, format!("walls[{index}]"), &KEYS)
             .and_then(|table| read_wall(&table, materials, source, &mut read.warnings));
-        if let Some((wall, patch)) = problems.keep(wall) {
+        if let Some(ReadWall { wall, patch }) = problems.keep(wall) {
             read.walls.push(wall);
             read.patches.push(patch);
         }
@@ -41,11 +49,11 @@ pub(super) fn read_walls(
 }
 
 fn read_wall(
-    table: &Table<'_>,
+    table: &SceneTable<'_>,
     materials: &Materials,
-    source: &mut Source,
+    source: &mut SceneSource,
     warnings: &mut Vec<String>,
-) -> Result<(Wall, Option<String>), SceneError> {
+) -> Result<ReadWall, SceneError> {
     let material = materials.named_by(table, "material")?;
     let charging = table.word(
         "charging",
@@ -60,7 +68,7 @@ fn read_wall(
         (Some(stl), false) => {
             let scale = table.number("scale", Range::positive(1e6))?.unwrap_or(1.0);
             let bytes = source.read_file(table, "stl", stl)?;
-            let (mesh, dropped) = read_stl(stl, &bytes, scale)?;
+            let Surface { mesh, dropped } = read_stl(stl, &bytes, scale)?;
             if dropped > 0 {
                 warnings.push(format!("{stl}: {dropped} degenerate triangles (no area) were dropped"));
             }
@@ -80,13 +88,14 @@ fn read_wall(
             ));
         }
     };
-    // Meshes are conductors, primitive walls take no charge, unless asked.
+    // Unless the scene says otherwise, surfaces are grounded conductors and planes take no charge.
     let usual = if matches!(shape, WallShape::Mesh(_)) { WallCharging::Grounded } else { WallCharging::None };
     let bounds_field = patch.is_some();
-    Ok((Wall { name, shape, material, charging: charging.unwrap_or(usual), bounds_field }, patch))
+    let charging = charging.unwrap_or(usual);
+    Ok(ReadWall { wall: Wall { name, shape, material, charging, bounds_field }, patch })
 }
 
-fn read_plane(table: &Table<'_>) -> Result<WallShape, SceneError> {
+fn read_plane(table: &SceneTable<'_>) -> Result<WallShape, SceneError> {
     let plane = table.table("plane", &["point_m", "normal"])?;
     let plane = table.need(plane, "plane", "give { point_m, normal }")?;
     let point = plane.need_vector("point_m", COORDINATE)?;

@@ -1,4 +1,4 @@
-//! A scene's text as a tree whose every value knows its place.
+//! Tree of a scene's text, in which each value knows its place.
 
 mod node;
 mod overrides;
@@ -10,4 +10,4 @@ pub(crate) use node::{Entries, Node, Place, Value};
 pub(crate) use overrides::apply_overrides;
 pub(crate) use parse::parse_document;
 pub(crate) use range::Range;
-pub(crate) use table::{Table, nearest};
+pub(crate) use table::{SceneTable, nearest};

@@ -1,20 +1,20 @@
-//! Values with their places.
+//! Nodes of the tree: values with their places.
 
 use crate::error::shorten;
 use std::fmt;
 use std::sync::Arc;
 
-/// Where a value was written.
+/// Place where a value was written.
 #[derive(Clone, Debug, PartialEq)]
 pub(crate) enum Place {
-    /// A line of a file.
+    /// Line of a file.
     Line {
-        /// File as the user named it.
+        /// File, as the user named it.
         file: Arc<str>,
-        /// Line from 1; 0 when the file as a whole is meant.
+        /// Line number from 1; 0 when the file as a whole is meant.
         line: usize,
     },
-    /// A `--set` on the command line.
+    /// Override `--set` on the command line.
     Set(Arc<str>),
 }
 
@@ -28,21 +28,21 @@ impl fmt::Display for Place {
     }
 }
 
-/// Keys of a table in the order of the text.
+/// Keys and nodes of a table, in the order of the text.
 pub(crate) type Entries = Vec<(String, Node)>;
 
-/// A TOML value.
+/// Value of TOML.
 #[derive(Clone, Debug, PartialEq)]
 pub(crate) enum Value {
     /// String.
     Text(String),
     /// Integer.
     Integer(i64),
-    /// Float, also nan and inf.
+    /// Floating-point number; may be nan or inf.
     Float(f64),
     /// Boolean.
     Boolean(bool),
-    /// What a scene never uses: dates, integers beyond 64 bits. As written.
+    /// Value that no scene uses, such as a date or an integer beyond 64 bits, as it was written.
     Other(String),
     /// Array.
     Array(Vec<Node>),
@@ -50,7 +50,7 @@ pub(crate) enum Value {
     Table(Entries),
 }
 
-/// A value and its place.
+/// Value and its place.
 #[derive(Clone, Debug, PartialEq)]
 pub(crate) struct Node {
     pub(crate) value: Value,
@@ -58,7 +58,7 @@ pub(crate) struct Node {
 }
 
 impl Node {
-    /// The value as it would be written in a scene, shortened for messages.
+    /// Text of the value as a scene would have it, shortened for messages.
     pub(crate) fn shown(&self) -> String {
         match &self.value {
             Value::Text(text) => format!("\"{}\"", shorten(text)),
@@ -67,7 +67,7 @@ impl Node {
         }
     }
 
-    /// As a plain TOML value.
+    /// Converts the node to a plain TOML value.
     pub(crate) fn to_toml(&self) -> toml::Value {
         Self::toml(&self.value)
     }
@@ -85,7 +85,7 @@ impl Node {
         }
     }
 
-    /// What kind of value it is, for messages.
+    /// Name of the kind of value, for messages.
     pub(crate) fn kind(&self) -> &'static str {
         match self.value {
             Value::Text(_) => "a text",

@@ -1,4 +1,4 @@
-//! `--set KEY=VALUE`.
+//! Overrides `--set KEY=VALUE`.
 
 use super::node::{Entries, Node, Place, Value};
 use super::parse::parse_with;
@@ -6,11 +6,13 @@ use crate::SceneError;
 use crate::error::shorten;
 use std::sync::Arc;
 
-/// Writes overrides into a document. A key is a dotted path, `walls.0.charging` counts array items from 0; a
-/// value is TOML, and where it is not, a text.
+/// Writes overrides into a document.
+///
+/// A key is a dotted path, in which array items are counted from 0 (`walls.0.charging`). A value is TOML;
+/// what is not valid TOML is taken as a text.
 ///
 /// # Errors
-/// Overrides without `=`, paths through values that have no keys, array items that do not exist.
+/// Overrides without `=`, paths through values that have no keys, and array items that do not exist.
 pub(crate) fn apply_overrides(document: &mut Entries, overrides: &[String]) -> Result<(), SceneError> {
     for text in overrides {
         let place = Place::Set(text.as_str().into());
@@ -32,15 +34,18 @@ pub(crate) fn apply_overrides(document: &mut Entries, overrides: &[String]) -> R
     Ok(())
 }
 
+/// Reads the value of an override.
 fn parse_value(text: &str, place: &Place) -> Node {
     let here = Arc::new(place.clone());
     let line = format!("value = {text}");
     match parse_with(&line, &|_| (*here).clone()) {
         Ok(mut entries) if entries.len() == 1 && entries[0].0 == "value" => entries.remove(0).1,
+        // No TOML, or a text with a line break that would add a second key.
         _ => Node { value: Value::Text(text.to_owned()), place: place.clone() },
     }
 }
 
+/// Sets the value at a path below a table; adds tables that are not there.
 fn set(
     entries: &mut Entries,
     parts: &[&str],
@@ -60,6 +65,7 @@ fn set(
     set_node(&mut entries[index].1, rest, value, place, key)
 }
 
+/// Sets the value at a path below a node.
 fn set_node(node: &mut Node, rest: &[&str], value: Node, place: &Place, key: &str) -> Result<(), SceneError> {
     let Some((next, after)) = rest.split_first() else {
         *node = value;
@@ -73,9 +79,9 @@ fn set_node(node: &mut Node, rest: &[&str], value: Node, place: &Place, key: &st
             let item =
                 next.parse::<usize>().ok().and_then(|index| items.get_mut(index)).ok_or_else(|| {
                     bad(format!(
-                        "'{}' of {} is not an item of {count}; count from 0",
-                        shorten(next),
-                        shorten(key)
+                        "{}: '{}' is not one of the {count} items; count them from 0",
+                        shorten(key),
+                        shorten(next)
                     ))
                 })?;
             set_node(item, after, value, place, key)

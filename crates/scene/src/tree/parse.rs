@@ -1,4 +1,4 @@
-//! TOML text to tree.
+//! Parser from TOML text to the tree.
 
 use super::node::{Entries, Node, Place, Value};
 use crate::SceneError;
@@ -6,12 +6,13 @@ use crate::error::shorten;
 use std::sync::Arc;
 use toml::de::{DeTable, DeValue};
 
-/// Turns byte offsets into places.
-struct Lines<'a> {
+/// Converter from the library's values to nodes.
+struct Converter<'a> {
+    /// Place of a byte offset.
     locate: &'a dyn Fn(usize) -> Place,
 }
 
-/// Parses a document.
+/// Parses the text of a file.
 ///
 /// # Errors
 /// Text that is not TOML.
@@ -26,24 +27,26 @@ pub(crate) fn parse_document(file: &Arc<str>, text: &str) -> Result<Entries, Sce
     parse_with(text, &locate)
 }
 
-/// Parses a document whose places are given by a function of the byte offset.
+/// Parses a text; `locate` gives the place of a byte offset.
 pub(super) fn parse_with(text: &str, locate: &dyn Fn(usize) -> Place) -> Result<Entries, SceneError> {
     let table = DeTable::parse(text).map_err(|error| SceneError::Syntax {
         place: locate(error.span().map_or(0, |span| span.start)).to_string(),
         message: shorten(error.message()),
     })?;
-    let lines = Lines { locate };
-    Ok(lines.entries(table.get_ref()))
+    let converter = Converter { locate };
+    Ok(converter.entries(table.get_ref()))
 }
 
-impl Lines<'_> {
+impl Converter<'_> {
     fn entries(&self, table: &DeTable<'_>) -> Entries {
         let mut entries: Vec<_> = table.iter().collect();
+        // The library sorts keys by name; messages appear in the order of the text.
         entries.sort_by_key(|(key, _)| key.span().start);
         entries
             .into_iter()
             .map(|(key, value)| {
-                // A table's own span may be empty or elsewhere for dotted keys; its key always has a place.
+                // The span of a table may be empty or elsewhere for dotted keys; that of its key is always
+                // right.
                 let place = (self.locate)(key.span().start);
                 (key.get_ref().to_string(), self.node(value.get_ref(), place))
             })

@@ -1,8 +1,8 @@
-//! Ranges that numbers must lie in.
+//! Ranges in which numbers must lie.
 
 use std::fmt;
 
-/// An interval of numbers.
+/// Interval of numbers.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Range {
     low: f64,
@@ -11,17 +11,17 @@ pub(crate) struct Range {
 }
 
 impl Range {
-    /// From `low` to `high`, both included.
+    /// Interval from `low` to `high`, both included.
     pub(crate) const fn closed(low: f64, high: f64) -> Self {
         Self { low, low_included: true, high }
     }
 
-    /// Above 0, at most `high`.
+    /// Interval above 0, up to and including `high`.
     pub(crate) const fn positive(high: f64) -> Self {
         Self { low: 0.0, low_included: false, high }
     }
 
-    /// Whether a number lies in the range; NaN never does.
+    /// Tells whether a number lies in the range; NaN never does.
     pub(crate) fn contains(&self, number: f64) -> bool {
         (number > self.low || (self.low_included && number == self.low)) && number <= self.high
     }

@@ -1,4 +1,4 @@
-//! Typed reading of a table.
+//! Typed access to the values of a table.
 
 use super::node::{Entries, Node, Place, Value};
 use super::range::Range;
@@ -6,16 +6,20 @@ use crate::SceneError;
 use crate::error::shorten;
 use nalgebra::Vector3;
 
-/// A table of the tree, its key path, and typed access to what it holds.
+/// Table of the tree, with typed access to its values.
+///
+/// Reading functions return `None` when the key is absent.
 #[derive(Clone, Debug)]
-pub(crate) struct Table<'a> {
+pub(crate) struct SceneTable<'a> {
     entries: &'a Entries,
+    /// Path of keys from the document to the table; empty for the document.
     path: String,
     place: Place,
 }
 
-/// The known name nearest to a misspelt one, when one is near enough to be meant.
+/// Known name that is nearest to a misspelt one.
 pub(crate) fn nearest<'k>(name: &str, known: &[&'k str]) -> Option<&'k str> {
+    // The cost of the comparison grows with the length, and such a long name is no misspelling.
     if name.chars().count() > 200 {
         return None;
     }
@@ -27,15 +31,15 @@ pub(crate) fn nearest<'k>(name: &str, known: &[&'k str]) -> Option<&'k str> {
         .map(|(_, candidate)| candidate)
 }
 
-impl<'a> Table<'a> {
-    /// The document itself.
+impl<'a> SceneTable<'a> {
+    /// Table of a whole document, whose keys must be known.
     pub(crate) fn document(entries: &'a Entries, place: Place, known: &[&str]) -> Result<Self, SceneError> {
         let table = Self { entries, path: String::new(), place };
         table.refuse_unknown(known)?;
         Ok(table)
     }
 
-    /// A node that must be a table with known keys only.
+    /// Table of a node, which must be a table with known keys only.
     pub(crate) fn new(node: &'a Node, path: impl Into<String>, known: &[&str]) -> Result<Self, SceneError> {
         let path = path.into();
         let Value::Table(entries) = &node.value else {
@@ -73,22 +77,22 @@ impl<'a> Table<'a> {
         &self.place
     }
 
-    /// Full path of one of its keys.
+    /// Full path of one of the keys of the table.
     pub(crate) fn key(&self, key: &str) -> String {
         if self.path.is_empty() { key.to_owned() } else { format!("{}.{key}", self.path) }
     }
 
-    /// The node of a key.
+    /// Node of a key.
     pub(crate) fn get(&self, key: &str) -> Option<&'a Node> {
         self.entries.iter().find(|(name, _)| name == key).map(|(_, node)| node)
     }
 
-    /// Whether a key is there.
+    /// Tells whether a key is present.
     pub(crate) fn has(&self, key: &str) -> bool {
         self.get(key).is_some()
     }
 
-    /// The keys that are there.
+    /// Keys that are present.
     pub(crate) fn keys(&self) -> impl Iterator<Item = &'a str> {
         self.entries.iter().map(|(key, _)| key.as_str())
     }
@@ -106,12 +110,12 @@ impl<'a> Table<'a> {
         }
     }
 
-    /// Place of a key's value, or of the table where it is not there.
+    /// Place of a key's value, or of the table where the key is absent.
     pub(crate) fn place_of(&self, key: &str) -> &Place {
         self.get(key).map_or(&self.place, |node| &node.place)
     }
 
-    /// Error about a key of a section below, found when sections are held against each other.
+    /// Error about a key of a section below, found when sections are compared with each other.
     pub(crate) fn bad_below(
         &self,
         section: &str,
@@ -133,17 +137,17 @@ impl<'a> Table<'a> {
         }
     }
 
-    /// Error about a key that is not there.
+    /// Error about a key that is absent.
     pub(crate) fn missing(&self, key: &str, advice: impl Into<String>) -> SceneError {
         SceneError::Missing { place: self.place.to_string(), key: self.key(key), advice: advice.into() }
     }
 
-    /// The value, or an error that says what to write.
+    /// Unwraps a value, or returns an error that says what to write.
     pub(crate) fn need<T>(&self, value: Option<T>, key: &str, advice: &str) -> Result<T, SceneError> {
         value.ok_or_else(|| self.missing(key, advice))
     }
 
-    /// A number in a range.
+    /// Number in a range.
     pub(crate) fn number(&self, key: &str, range: Range) -> Result<Option<f64>, SceneError> {
         let Some(node) = self.get(key) else { return Ok(None) };
         let number = as_number(node).ok_or_else(|| {
@@ -158,13 +162,13 @@ impl<'a> Table<'a> {
         }
     }
 
-    /// A number in a range that must be there.
+    /// Number in a range, under a key that is required.
     pub(crate) fn need_number(&self, key: &str, range: Range) -> Result<f64, SceneError> {
         let number = self.number(key, range)?;
         self.need(number, key, &format!("give a number {range}"))
     }
 
-    /// A number in a range, or the word `auto` (`Some(None)`).
+    /// Number in a range, or the word `auto` (`Some(None)`).
     pub(crate) fn number_or_auto(&self, key: &str, range: Range) -> Result<Option<Option<f64>>, SceneError> {
         match self.get(key).map(|node| &node.value) {
             Some(Value::Text(word)) if word == "auto" => Ok(Some(None)),
@@ -173,7 +177,7 @@ impl<'a> Table<'a> {
         }
     }
 
-    /// An integer in a range.
+    /// Integer in a range.
     pub(crate) fn integer(&self, key: &str, low: i64, high: i64) -> Result<Option<i64>, SceneError> {
         let Some(node) = self.get(key) else { return Ok(None) };
         match node.value {
@@ -185,7 +189,7 @@ impl<'a> Table<'a> {
         }
     }
 
-    /// True or false.
+    /// Boolean.
     pub(crate) fn boolean(&self, key: &str) -> Result<Option<bool>, SceneError> {
         let Some(node) = self.get(key) else { return Ok(None) };
         match node.value {
@@ -194,7 +198,7 @@ impl<'a> Table<'a> {
         }
     }
 
-    /// A text that is not empty.
+    /// Text that is not empty.
     pub(crate) fn text(&self, key: &str) -> Result<Option<&'a str>, SceneError> {
         let Some(node) = self.get(key) else { return Ok(None) };
         match &node.value {
@@ -207,7 +211,7 @@ impl<'a> Table<'a> {
         }
     }
 
-    /// One of several words.
+    /// Value of one of several words.
     pub(crate) fn word<T: Copy>(&self, key: &str, words: &[(&str, T)]) -> Result<Option<T>, SceneError> {
         let Some(node) = self.get(key) else { return Ok(None) };
         let names: Vec<&str> = words.iter().map(|(name, _)| *name).collect();
@@ -221,7 +225,7 @@ impl<'a> Table<'a> {
         Err(self.bad(key, format!("give one of {}{near}", names.join(", "))))
     }
 
-    /// Three numbers in a range.
+    /// Vector of three numbers, each in a range.
     pub(crate) fn vector(&self, key: &str, range: Range) -> Result<Option<Vector3<f64>>, SceneError> {
         let Some(numbers) = self.numbers(key, range)? else { return Ok(None) };
         match numbers[..] {
@@ -230,13 +234,13 @@ impl<'a> Table<'a> {
         }
     }
 
-    /// Three numbers in a range that must be there.
+    /// Vector of three numbers, each in a range, under a key that is required.
     pub(crate) fn need_vector(&self, key: &str, range: Range) -> Result<Vector3<f64>, SceneError> {
         let vector = self.vector(key, range)?;
         self.need(vector, key, &format!("give three numbers [x, y, z], each {range}"))
     }
 
-    /// An array of numbers in a range.
+    /// Array of numbers, each in a range.
     pub(crate) fn numbers(&self, key: &str, range: Range) -> Result<Option<Vec<f64>>, SceneError> {
         let Some(items) = self.items(key)? else { return Ok(None) };
         items
@@ -252,7 +256,7 @@ impl<'a> Table<'a> {
             .map(Some)
     }
 
-    /// The items of an array.
+    /// Items of an array.
     pub(crate) fn items(&self, key: &str) -> Result<Option<&'a [Node]>, SceneError> {
         let Some(node) = self.get(key) else { return Ok(None) };
         match &node.value {
@@ -261,9 +265,9 @@ impl<'a> Table<'a> {
         }
     }
 
-    /// A table below a key.
-    pub(crate) fn table(&self, key: &str, known: &[&str]) -> Result<Option<Table<'a>>, SceneError> {
-        self.get(key).map(|node| Table::new(node, self.key(key), known)).transpose()
+    /// Table below a key.
+    pub(crate) fn table(&self, key: &str, known: &[&str]) -> Result<Option<SceneTable<'a>>, SceneError> {
+        self.get(key).map(|node| SceneTable::new(node, self.key(key), known)).transpose()
     }
 }
 

@@ -1,4 +1,4 @@
-//! Files that are either whole or not there.
+//! Writing of files that are either complete or absent.
 
 use crate::SceneError;
 use serde::Serialize;
@@ -6,10 +6,10 @@ use serde::de::DeserializeOwned;
 use std::io::{self, BufWriter, Write};
 use std::path::Path;
 
-/// Writes a file to a temporary name beside it, flushes it to the disk and renames it.
+/// Writes a file under a temporary name beside it, flushes it to the disk and renames it.
 ///
 /// # Errors
-/// What the system says; the file is then as before.
+/// Errors of the operating system; the file is then as before.
 pub fn write_atomically(
     path: &Path,
     content: impl FnOnce(&mut dyn Write) -> io::Result<()>,
@@ -22,7 +22,7 @@ pub fn write_atomically(
         return Err(SceneError::unwritable(path, "it is a directory; name a file"));
     }
     if path.exists() && (!path.is_file() || folder == Path::new("/dev")) {
-        // Renaming would put a file in the place of a device or pipe, or of the link to one (/dev/stdout).
+        // Renaming would replace a device or pipe, or the link to one (/dev/stdout), by a file.
         return Err(SceneError::unwritable(path, "it is a device or pipe; name a file"));
     }
     let write = || -> io::Result<()> {
@@ -31,7 +31,7 @@ pub fn write_atomically(
         #[cfg(unix)]
         {
             use std::os::unix::fs::PermissionsExt as _;
-            // Readable for others as far as the umask allows, as any other output.
+            // Others may read the file as far as the umask allows, as for any other output.
             builder.permissions(std::fs::Permissions::from_mode(0o666));
         }
         let mut writer = BufWriter::with_capacity(1 << 16, builder.tempfile_in(folder)?);
@@ -44,7 +44,7 @@ pub fn write_atomically(
     write().map_err(|error| SceneError::unwritable(path, error))
 }
 
-/// Writes rows of a table as CSV, a header of the fields' names first.
+/// Writes the rows of a table as CSV, after a header with the names of the fields.
 ///
 /// # Errors
 /// As [`write_atomically`].
@@ -56,10 +56,10 @@ pub fn write_table<R: Serialize>(path: &Path, rows: &[R]) -> Result<(), SceneErr
     })
 }
 
-/// Reads what [`write_table`] wrote.
+/// Reads a table that [`write_table`] wrote.
 ///
 /// # Errors
-/// A file that cannot be read, a row of another kind.
+/// Files that cannot be read, and rows with other fields.
 pub fn read_table<R: DeserializeOwned>(path: &Path) -> Result<Vec<R>, SceneError> {
     let file = path.display().to_string();
     let failed =

@@ -1,8 +1,9 @@
-//! Checkpoints: a header that says what the file is, a payload, and a checksum over both.
+//! Checkpoints: a header that identifies the file, a payload, and a checksum over both.
 //!
-//! Layout, little endian: magic (8 bytes), format version (u32), length and text of the program version (u16),
-//! fingerprint of the scene (u64), length of the payload (u64), CRC-32 of everything else (u32), payload
-//! (bincode 2). This module alone knows the format: bincode is no longer maintained and may be replaced here.
+//! Layout, little endian: magic (8 bytes), format version (u32), length and text of the program version
+//! (u16), fingerprint of the scene (u64), length of the payload (u64), CRC-32 of everything else (u32),
+//! payload (bincode 2). Only this module knows the format: bincode is no longer maintained and may be
+//! replaced here.
 
 use super::atomic::write_atomically;
 use crate::SceneError;
@@ -17,10 +18,10 @@ const FORMAT: u32 = 1;
 /// Version of the program that writes and reads.
 const PROGRAM: &str = env!("CARGO_PKG_VERSION");
 
-/// Writes a checkpoint.
+/// Writes a checkpoint of a state, for the scene with the given fingerprint.
 ///
 /// # Errors
-/// What the system says.
+/// Errors of the operating system.
 pub fn write_checkpoint(path: &Path, scene_hash: u64, state: &impl Serialize) -> Result<(), SceneError> {
     let payload = bincode::serde::encode_to_vec(state, bincode::config::standard())
         .map_err(|error| SceneError::unwritable(path, error))?;
@@ -33,6 +34,7 @@ pub fn write_checkpoint(path: &Path, scene_hash: u64, state: &impl Serialize) ->
     })
 }
 
+/// Header of a checkpoint, without the checksum.
 fn header(program: &str, scene_hash: u64, payload: u64) -> Vec<u8> {
     let mut header = MAGIC.to_vec();
     header.extend(FORMAT.to_le_bytes());
@@ -43,6 +45,7 @@ fn header(program: &str, scene_hash: u64, payload: u64) -> Vec<u8> {
     header
 }
 
+/// CRC-32 of header and payload.
 fn checksum(header: &[u8], payload: &[u8]) -> u32 {
     let mut hasher = crc32fast::Hasher::new();
     hasher.update(header);
@@ -53,7 +56,7 @@ fn checksum(header: &[u8], payload: &[u8]) -> u32 {
 /// Reads a checkpoint of the scene with the given fingerprint.
 ///
 /// # Errors
-/// Files that are no checkpoint, of another version, of another scene, cut short or damaged.
+/// Files that are no checkpoint, are of another version or another scene, are cut short or damaged.
 pub fn read_checkpoint<T: DeserializeOwned>(path: &Path, scene_hash: u64) -> Result<T, SceneError> {
     let bad = |problem: String| SceneError::Checkpoint { path: path.to_path_buf(), problem };
     if path.is_dir() {
@@ -65,14 +68,16 @@ pub fn read_checkpoint<T: DeserializeOwned>(path: &Path, scene_hash: u64) -> Res
         .map_err(|error| bad(format!("its state cannot be read ({error}); take another checkpoint")))
 }
 
-/// A state from its bytes. A text or a list in it that says to be far longer than the whole is an error, not memory: bincode asks for a limit that is
-/// known when it is compiled, so that there are four.
+/// Decodes a state from its bytes.
+///
+/// A limit on the memory makes it an error when a damaged text or list claims to be far longer than the whole
+/// payload. bincode needs a limit that is known at compile time, so there are four of them.
 fn decode<T: DeserializeOwned>(payload: &[u8]) -> Result<T, bincode::error::DecodeError> {
     const KILO: usize = 1 << 10;
     const MEGA: usize = 1 << 20;
     const GIGA: usize = 1 << 30;
     let plain = bincode::config::standard();
-    // Small integers take a byte of the file and count eight.
+    // The factor 16: a small integer takes one byte of the file but counts as eight.
     let state = match payload.len() {
         0..KILO => bincode::serde::decode_from_slice(payload, plain.with_limit::<{ 16 * KILO }>()),
         KILO..MEGA => bincode::serde::decode_from_slice(payload, plain.with_limit::<{ 16 * MEGA }>()),
@@ -82,7 +87,7 @@ fn decode<T: DeserializeOwned>(payload: &[u8]) -> Result<T, bincode::error::Deco
     state.map(|(state, _)| state)
 }
 
-/// The payload of a sound file.
+/// Payload of a file that passes all checks.
 fn open(bytes: &[u8], scene_hash: u64) -> Result<&[u8], String> {
     let cut = || "is cut short; take an earlier checkpoint".to_owned();
     let mut rest = bytes;
@@ -108,7 +113,8 @@ fn open(bytes: &[u8], scene_hash: u64) -> Result<&[u8], String> {
     let expected = u32::from_le_bytes(take(4).ok_or_else(cut)?.try_into().expect("four bytes"));
     if rest.len() as u64 != payload {
         return Err(format!(
-            "has {} bytes of state where {payload} were written: cut short or damaged; take an earlier checkpoint",
+            "has {} bytes of state where {payload} were written: cut short or damaged; \
+             take an earlier checkpoint",
             rest.len()
         ));
     }
@@ -124,7 +130,8 @@ fn open(bytes: &[u8], scene_hash: u64) -> Result<&[u8], String> {
     }
     if found != scene_hash {
         return Err(format!(
-            "belongs to another scene (fingerprint {found:016x}, this scene has {scene_hash:016x}); only [output] and time.end_s may change"
+            "belongs to another scene (fingerprint {found:016x}, this scene has {scene_hash:016x}); \
+             only [output] and time.end_s may change"
         ));
     }
     Ok(rest)

@@ -1,4 +1,4 @@
-//! Field CSV and the report beside it.
+//! CSV of a field, and the report beside it.
 
 use super::atomic::write_atomically;
 use crate::SceneError;
@@ -7,14 +7,14 @@ use serde::Serialize;
 use std::collections::BTreeMap;
 use std::path::Path;
 
-/// Columns of a field CSV, all in the order of the input.
+/// Columns of a field CSV, all in the order of the scene's particles.
 #[derive(Clone, Copy, Debug)]
 pub struct FieldColumns<'a> {
-    /// Ids.
+    /// Ids of the particles.
     pub id: &'a [u64],
-    /// E [V/m].
+    /// Field E [V/m].
     pub e: &'a [Vector3<f64>],
-    /// Potential [V] without the grain's own singular term.
+    /// Potential [V], without the particle's own singular term.
     pub potential: &'a [f64],
     /// Parts of E, where they are asked for.
     pub components: Option<FieldComponents<'a>>,
@@ -23,17 +23,17 @@ pub struct FieldColumns<'a> {
 /// Parts of E [V/m]: E = near + middle + far + correction + faces + external.
 #[derive(Clone, Copy, Debug)]
 pub struct FieldComponents<'a> {
-    /// Pairs, and their images, within the cut-off radius.
+    /// Field of pairs, and of their images, within the cut-off radius.
     pub near: &'a [Vector3<f64>],
-    /// Middle grid, only with a field solver.
+    /// Field of the middle grid, only with a field solver.
     pub middle: &'a [Vector3<f64>],
-    /// Everything smooth.
+    /// Smooth field of all charges.
     pub far: &'a [Vector3<f64>],
-    /// What near and far would count twice.
+    /// Correction of what near and far count twice.
     pub correction: &'a [Vector3<f64>],
-    /// Potentials and normal fields of the faces.
+    /// Field of the potentials and normal fields of the faces.
     pub faces: &'a [Vector3<f64>],
-    /// The external field.
+    /// External field.
     pub external: &'a [Vector3<f64>],
 }
 
@@ -51,11 +51,13 @@ impl<'a> FieldComponents<'a> {
     }
 }
 
-/// Writes `id,ex_V_per_m,ey_V_per_m,ez_V_per_m,potential_V` with 17 significant digits. Components add three columns
-/// each, `near_ex_V_per_m` and so on, in the order of the sum.
+/// Writes the columns `id,ex_V_per_m,ey_V_per_m,ez_V_per_m,potential_V`, and the components if there are any.
+///
+/// Numbers have 17 significant digits, so that they are read back bit for bit. Each component adds three columns,
+/// `near_ex_V_per_m` and so on, in the order of the sum.
 ///
 /// # Errors
-/// What the system says.
+/// Errors of the operating system.
 pub fn write_field_csv(path: &Path, columns: &FieldColumns<'_>) -> Result<(), SceneError> {
     let components = columns.components.map(|components| components.named());
     write_atomically(path, |writer| {
@@ -77,23 +79,23 @@ pub fn write_field_csv(path: &Path, columns: &FieldColumns<'_>) -> Result<(), Sc
     })
 }
 
-/// Seconds of one stage over the repetitions.
+/// Times of one stage over the repetitions [s].
 #[derive(Clone, Copy, Debug, PartialEq, Serialize)]
 pub struct FieldReportSeconds {
-    /// Least [s].
+    /// Smallest time [s].
     pub min: f64,
-    /// Median [s].
+    /// Median time [s].
     pub median: f64,
 }
 
-/// What stands in the JSON file beside a field CSV.
+/// Content of the JSON file beside a field CSV.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct FieldReport {
-    /// Method.
+    /// Name of the method.
     pub method: String,
-    /// Every parameter chosen.
+    /// Parameters that were chosen.
     pub parameters: serde_json::Value,
-    /// Per stage, and `total`.
+    /// Times by stage, and `total`.
     pub seconds: BTreeMap<String, FieldReportSeconds>,
     /// Mean number of partners within the cut-off radius.
     pub pairs_per_particle: f64,
@@ -103,7 +105,7 @@ pub struct FieldReport {
     pub error_estimated: Option<f64>,
     /// Relative RMS error measured on a sample; null when not measured.
     pub error_measured: Option<f64>,
-    /// Threads.
+    /// Number of threads.
     pub threads: usize,
     /// Version of the program.
     pub version: String,

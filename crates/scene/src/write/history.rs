@@ -1,4 +1,4 @@
-//! `history.csv`: one row per interval, only the columns of the scene's plan.
+//! File `history.csv`: one row per interval, with only the columns of the scene's plan.
 
 use crate::SceneError;
 use crate::write::atomic::write_text;
@@ -7,37 +7,39 @@ use std::fs::{File, OpenOptions};
 use std::io::Write as _;
 use std::path::{Path, PathBuf};
 
-/// A value of a row.
+/// Value in a row.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub enum Cell {
-    /// A count.
+pub enum HistoryValue {
+    /// Count.
     Count(u64),
-    /// A quantity, written with 17 significant digits.
+    /// Quantity, written with 17 significant digits.
     Number(f64),
 }
 
-/// An open history; every row is on the disk's way once it is appended.
+/// Open history; a row is given to the operating system as soon as it is appended.
 #[derive(Debug)]
-pub struct History {
+pub struct HistoryFile {
     path: PathBuf,
     file: File,
     columns: usize,
 }
 
-impl History {
-    /// A new history with a header. The first column is `step`.
+impl HistoryFile {
+    /// Creates a history with a header, whose first column is `step`.
     ///
     /// # Errors
-    /// What the system says.
+    /// Errors of the operating system.
     pub fn create(path: &Path, columns: &[String]) -> Result<Self, SceneError> {
         write_text(path, &format!("{}\n", columns.join(",")))?;
         Self::open(path, columns.len())
     }
 
-    /// The history of a run that is continued: only rows up to `step` that `is_due` would write are kept.
+    /// Opens the history of a run that is continued.
+    ///
+    /// Only rows up to `step` for which `is_due` holds are kept.
     ///
     /// # Errors
-    /// What the system says; a history with other columns.
+    /// Errors of the operating system, and a history with other columns.
     pub fn resume(
         path: &Path,
         columns: &[String],
@@ -54,6 +56,7 @@ impl History {
             ));
         }
         let mut kept = format!("{header}\n");
+        // A last line without its end was torn when the earlier run was stopped.
         for line in lines.filter(|line| line.ends_with('\n')) {
             let row: Option<u64> = line.split(',').next().and_then(|first| first.parse().ok());
             if row.is_some_and(|row| row <= step && is_due(row)) {
@@ -75,19 +78,19 @@ impl History {
     /// Appends a row.
     ///
     /// # Errors
-    /// What the system says.
+    /// Errors of the operating system.
     ///
     /// # Panics
     /// When the row has another number of cells than the header.
-    pub fn append(&mut self, row: &[Cell]) -> Result<(), SceneError> {
+    pub fn append(&mut self, row: &[HistoryValue]) -> Result<(), SceneError> {
         assert_eq!(row.len(), self.columns, "a row has one cell per column");
         let mut line = String::with_capacity(25 * row.len());
         for (index, cell) in row.iter().enumerate() {
             let comma = if index == 0 { "" } else { "," };
             // Writing to a String cannot fail.
             let _ = match cell {
-                Cell::Count(count) => write!(line, "{comma}{count}"),
-                Cell::Number(number) => write!(line, "{comma}{number:.16e}"),
+                HistoryValue::Count(count) => write!(line, "{comma}{count}"),
+                HistoryValue::Number(number) => write!(line, "{comma}{number:.16e}"),
             };
         }
         line.push('\n');
@@ -104,20 +107,20 @@ mod tests {
         let folder = tempfile::tempdir().unwrap();
         let path = folder.path().join("history.csv");
         let columns = ["step".to_owned(), "time_s".to_owned()];
-        let mut history = History::create(&path, &columns).unwrap();
+        let mut history = HistoryFile::create(&path, &columns).unwrap();
         for step in 0..5 {
-            history.append(&[Cell::Count(step), Cell::Number(0.5)]).unwrap();
+            history.append(&[HistoryValue::Count(step), HistoryValue::Number(0.5)]).unwrap();
         }
         let mut text = std::fs::read_to_string(&path).unwrap();
         text.push_str("1,0.");
         std::fs::write(&path, text).unwrap();
-        let mut history = History::resume(&path, &columns, 2, |_| true).unwrap();
-        history.append(&[Cell::Count(3), Cell::Number(1.0)]).unwrap();
+        let mut history = HistoryFile::resume(&path, &columns, 2, |_| true).unwrap();
+        history.append(&[HistoryValue::Count(3), HistoryValue::Number(1.0)]).unwrap();
         let text = std::fs::read_to_string(&path).unwrap();
         let steps: Vec<&str> = text.lines().skip(1).filter_map(|line| line.split(',').next()).collect();
         assert_eq!(steps, ["0", "1", "2", "3"]);
-        drop(History::resume(&path, &columns, 9, |row| row % 2 == 0).unwrap());
+        drop(HistoryFile::resume(&path, &columns, 9, |row| row % 2 == 0).unwrap());
         assert_eq!(std::fs::read_to_string(&path).unwrap().lines().count(), 3);
-        assert!(History::resume(&path, &["step".to_owned()], 2, |_| true).is_err());
+        assert!(HistoryFile::resume(&path, &["step".to_owned()], 2, |_| true).is_err());
     }
 }

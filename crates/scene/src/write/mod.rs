@@ -1,4 +1,4 @@
-//! Result files. Whatever is final is written to a temporary name in the same folder and renamed.
+//! Result files. A complete file is written under a temporary name in the same folder and then renamed.
 
 mod atomic;
 mod checkpoint;
@@ -11,7 +11,7 @@ mod vtu;
 pub use atomic::{read_table, write_atomically, write_json, write_table, write_text};
 pub use checkpoint::{read_checkpoint, write_checkpoint};
 pub use field_csv::{FieldColumns, FieldComponents, FieldReport, FieldReportSeconds, write_field_csv};
-pub use history::{Cell, History};
+pub use history::{HistoryFile, HistoryValue};
 pub use particles_csv::write_particles_csv;
 pub use pvd::PvdSeries;
 pub use vtu::{FacetCell, write_facets_vtu, write_vtu};

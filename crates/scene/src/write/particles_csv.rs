@@ -1,14 +1,16 @@
-//! Particles as CSV, in the columns that scenes read.
+//! CSV of particles, with the columns that scenes read.
 
 use super::atomic::write_atomically;
 use crate::SceneError;
 use amberfield_core::{Material, Particles};
 use std::path::Path;
 
-/// Writes grains with every column, 17 significant digits; what is read back is bitwise the same.
+/// Writes grains with all columns.
+///
+/// Numbers have 17 significant digits, so that they are read back bit for bit.
 ///
 /// # Errors
-/// What the system says.
+/// Errors of the operating system.
 pub fn write_particles_csv(
     path: &Path,
     particles: &Particles,
@@ -20,7 +22,8 @@ pub fn write_particles_csv(
     write_atomically(path, |writer| {
         writeln!(
             writer,
-            "id,x_m,y_m,z_m,radius_m,charge_C,vx_m_s,vy_m_s,vz_m_s,wx_rad_s,wy_rad_s,wz_rad_s,density_kg_m3,material,group"
+            "id,x_m,y_m,z_m,radius_m,charge_C,vx_m_s,vy_m_s,vz_m_s,wx_rad_s,wy_rad_s,wz_rad_s,\
+             density_kg_m3,material,group"
         )?;
         for index in 0..particles.len() {
             let grain = particles.grain(index);
@@ -36,6 +39,7 @@ pub fn write_particles_csv(
     })
 }
 
+/// Quotes a name that has separators in it.
 fn quoted(name: &str) -> String {
     if name.contains([',', '"', '\n', '\r']) {
         format!("\"{}\"", name.replace('"', "\"\""))

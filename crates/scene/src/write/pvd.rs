@@ -1,61 +1,74 @@
-//! ParaView's list of files over time.
+//! File `.pvd`: ParaView's list of files over time.
 
 use super::atomic::write_text;
 use crate::SceneError;
 use std::fmt::Write as _;
 use std::path::{Path, PathBuf};
 
-/// A `.pvd` file; rewritten whole, so that it is valid at any moment.
+/// Series of files; the `.pvd` file is rewritten as a whole, so that it is valid at any moment.
 #[derive(Clone, Debug)]
 pub struct PvdSeries {
     path: PathBuf,
-    frames: Vec<(f64, String)>,
+    frames: Vec<Frame>,
+}
+
+/// Frame of a series.
+#[derive(Clone, Debug)]
+struct Frame {
+    time_s: f64,
+    /// Path from the folder of the `.pvd` file.
+    file: String,
 }
 
 impl PvdSeries {
-    /// An empty series.
+    /// Empty series.
     #[must_use]
     pub fn new(path: &Path) -> Self {
         Self { path: path.to_path_buf(), frames: Vec::new() }
     }
 
-    /// The series of a run that is continued: only frames whose file `is_kept` are remembered. A file that is not
-    /// there is an empty series.
+    /// Series of a run that is continued: only frames for whose file `is_kept` holds are kept.
+    ///
+    /// Without a `.pvd` file the series is empty.
     #[must_use]
     pub fn resume(path: &Path, is_kept: impl Fn(&str) -> bool) -> Self {
         let mut series = Self::new(path);
         let text = std::fs::read_to_string(path).unwrap_or_default();
         for line in text.lines() {
             if let (Some(time), Some(file)) = (attribute(line, "timestep"), attribute(line, "file"))
-                && let Ok(time) = time.parse::<f64>()
+                && let Ok(time_s) = time.parse::<f64>()
                 && is_kept(file)
             {
-                series.frames.push((time, file.to_owned()));
+                series.frames.push(Frame { time_s, file: file.to_owned() });
             }
         }
         series
     }
 
-    /// Appends a frame: its time [s] and its file, from the `.pvd` file's folder. A frame of the same file is
-    /// replaced.
+    /// Appends a frame: its time [s] and the path of its file from the folder of the `.pvd` file.
+    ///
+    /// A frame of the same file is replaced.
     ///
     /// # Errors
-    /// What the system says.
+    /// Errors of the operating system.
     pub fn append(&mut self, time_s: f64, file: &str) -> Result<(), SceneError> {
-        self.frames.retain(|(_, other)| other != file);
-        self.frames.push((time_s, file.to_owned()));
+        self.frames.retain(|other| other.file != file);
+        self.frames.push(Frame { time_s, file: file.to_owned() });
         let mut text = String::from(
-            "<?xml version=\"1.0\"?>\n<VTKFile type=\"Collection\" version=\"0.1\" byte_order=\"LittleEndian\">\n<Collection>\n",
+            "<?xml version=\"1.0\"?>\n\
+             <VTKFile type=\"Collection\" version=\"0.1\" byte_order=\"LittleEndian\">\n<Collection>\n",
         );
-        for (time, file) in &self.frames {
+        for Frame { time_s, file } in &self.frames {
             // Writing to a String cannot fail.
-            let _ = writeln!(text, "<DataSet timestep=\"{time:?}\" group=\"\" part=\"0\" file=\"{file}\"/>");
+            let _ =
+                writeln!(text, "<DataSet timestep=\"{time_s:?}\" group=\"\" part=\"0\" file=\"{file}\"/>");
         }
         text.push_str("</Collection>\n</VTKFile>\n");
         write_text(&self.path, &text)
     }
 }
 
+/// Value of an attribute in a line of XML.
 fn attribute<'l>(line: &'l str, name: &str) -> Option<&'l str> {
     let (_, rest) = line.split_once(&format!(" {name}=\""))?;
     rest.split('"').next()

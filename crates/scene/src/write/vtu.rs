@@ -1,6 +1,6 @@
-//! Particles for ParaView: VTK XML unstructured grid, one vertex per grain, raw appended data.
+//! File `.vtu` for ParaView: VTK XML unstructured grid with one vertex per grain, and raw appended data.
 //!
-//! Written here rather than by a library: docs/decisions/mesh-and-vtk-files.md says why.
+//! The reason why no library writes it is in docs/decisions/mesh-and-vtk-files.md.
 
 use super::atomic::write_atomically;
 use crate::SceneError;
@@ -9,13 +9,13 @@ use nalgebra::Vector3;
 use std::io::{self, Write};
 use std::path::Path;
 
-/// Values of an array.
+/// Values of a data array.
 enum Values<'a> {
     Vectors(&'a [Vector3<f64>]),
     Numbers(&'a [f64]),
     Ids(&'a [u64]),
     Groups(Vec<u16>),
-    /// 0, 1, 2, … or 1, 2, 3, …: what the cells are made of.
+    /// Consecutive integers `from`, `from` + 1, …
     Count {
         from: i64,
         count: usize,
@@ -26,18 +26,26 @@ enum Values<'a> {
 }
 
 impl Values<'_> {
-    fn kind(&self) -> (&'static str, usize) {
+    /// VTK's name of the type of a number.
+    fn number_type(&self) -> &'static str {
         match self {
-            Self::Vectors(_) => ("Float64", 3),
-            Self::Numbers(_) => ("Float64", 1),
-            Self::Ids(_) => ("UInt64", 1),
-            Self::Groups(_) => ("UInt16", 1),
-            Self::Count { .. } => ("Int64", 1),
-            Self::CellTypes(_) => ("UInt8", 1),
-            Self::Integers(_) => ("Int64", 1),
+            Self::Vectors(_) | Self::Numbers(_) => "Float64",
+            Self::Ids(_) => "UInt64",
+            Self::Groups(_) => "UInt16",
+            Self::Count { .. } | Self::Integers(_) => "Int64",
+            Self::CellTypes(_) => "UInt8",
         }
     }
 
+    /// Numbers of one entry of the array.
+    fn components(&self) -> usize {
+        match self {
+            Self::Vectors(_) => 3,
+            _ => 1,
+        }
+    }
+
+    /// Length of the data [bytes].
     fn bytes(&self) -> usize {
         match self {
             Self::Vectors(values) => 24 * values.len(),
@@ -50,6 +58,7 @@ impl Values<'_> {
         }
     }
 
+    /// Writes the length and the data, little endian.
     fn write(&self, writer: &mut dyn Write) -> io::Result<()> {
         writer.write_all(&(self.bytes() as u64).to_le_bytes())?;
         match self {
@@ -74,19 +83,22 @@ impl Values<'_> {
     }
 }
 
-/// VTK's numbers of cell types.
+/// VTK's number of the cell type vertex.
 const VERTEX: u8 = 1;
+/// VTK's number of the cell type triangle.
 const TRIANGLE: u8 = 5;
+/// VTK's number of the cell type quadrangle.
 const QUAD: u8 = 9;
 
-/// An array with its name.
+/// Data array with its name.
 type Named<'a> = (&'a str, Values<'a>);
 
-/// Writes grains: position, id, radius, charge, velocities, material, group, and further vectors by name, one per
-/// grain.
+/// Writes grains: position, id, radius, charge, velocities, material and group.
+///
+/// `vectors` are further vectors with their names, one for each grain.
 ///
 /// # Errors
-/// What the system says.
+/// Errors of the operating system.
 pub fn write_vtu(
     path: &Path,
     particles: &Particles,
@@ -110,15 +122,15 @@ pub fn write_vtu(
         ("types", Values::CellTypes(vec![VERTEX; count])),
     ];
     let sections = [("PointData", &point_data[..]), ("Points", &points), ("Cells", &cells)];
-    write_sections(path, [count, count], &sections)
+    write_sections(path, &GridSize { points: count, cells: count }, &sections)
 }
 
-/// A facet of a wall.
+/// Charged facet of a wall.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct FacetCell {
     /// Number of the wall.
     pub wall: u32,
-    /// Corners in order [m]; the last is the third of a triangle.
+    /// Corners in order [m]; in a triangle the fourth is equal to the third.
     pub corners: [Vector3<f64>; 4],
     /// Area [m²].
     pub area_m2: f64,
@@ -129,7 +141,7 @@ pub struct FacetCell {
 /// Writes charged facets of walls: triangles and quadrangles with their wall, charge and charge per area.
 ///
 /// # Errors
-/// What the system says.
+/// Errors of the operating system.
 pub fn write_facets_vtu(path: &Path, facets: &[FacetCell]) -> Result<(), SceneError> {
     let corners = |facet: &FacetCell| if facet.corners[2] == facet.corners[3] { 3 } else { 4 };
     let points: Vec<_> =
@@ -156,32 +168,40 @@ pub fn write_facets_vtu(path: &Path, facets: &[FacetCell]) -> Result<(), SceneEr
         ("Points", &[("points_m", Values::Vectors(&points))]),
         ("Cells", &cells),
     ];
-    write_sections(path, [points.len(), facets.len()], &sections)
+    write_sections(path, &GridSize { points: points.len(), cells: facets.len() }, &sections)
 }
 
-/// Writes a grid with so many points and cells.
-fn write_sections(
-    path: &Path,
-    [points, cells]: [usize; 2],
-    sections: &[(&str, &[Named<'_>])],
-) -> Result<(), SceneError> {
+/// Size of a grid.
+struct GridSize {
+    /// Number of points.
+    points: usize,
+    /// Number of cells.
+    cells: usize,
+}
+
+/// Writes a grid of the given size.
+fn write_sections(path: &Path, size: &GridSize, sections: &[(&str, &[Named<'_>])]) -> Result<(), SceneError> {
     write_atomically(path, |writer| {
         writeln!(
             writer,
-            "<?xml version=\"1.0\"?>\n<VTKFile type=\"UnstructuredGrid\" version=\"1.0\" byte_order=\"LittleEndian\" header_type=\"UInt64\">"
+            "<?xml version=\"1.0\"?>\n\
+             <VTKFile type=\"UnstructuredGrid\" version=\"1.0\" byte_order=\"LittleEndian\" \
+             header_type=\"UInt64\">"
         )?;
         writeln!(
             writer,
-            "<UnstructuredGrid>\n<Piece NumberOfPoints=\"{points}\" NumberOfCells=\"{cells}\">"
+            "<UnstructuredGrid>\n<Piece NumberOfPoints=\"{}\" NumberOfCells=\"{}\">",
+            size.points, size.cells
         )?;
         let mut offset = 0;
         for (section, arrays) in sections {
             writeln!(writer, "<{section}>")?;
             for (name, values) in *arrays {
-                let (kind, components) = values.kind();
+                let (number_type, components) = (values.number_type(), values.components());
                 writeln!(
                     writer,
-                    "<DataArray type=\"{kind}\" Name=\"{name}\" NumberOfComponents=\"{components}\" format=\"appended\" offset=\"{offset}\"/>"
+                    "<DataArray type=\"{number_type}\" Name=\"{name}\" NumberOfComponents=\"{components}\" \
+                     format=\"appended\" offset=\"{offset}\"/>"
                 )?;
                 offset += 8 + values.bytes();
             }

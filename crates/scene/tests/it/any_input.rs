@@ -1,4 +1,4 @@
-//! Any bytes: an answer, never a panic; and settings survive being written out.
+//! Robustness: any bytes have an answer, never a panic, and settings survive being written out.
 
 use crate::common::{Folder, GRAINS, PLATE, SCENE};
 use amberfield_core::{CouplingInterval, ForceLimit, Method, Permittivity, Tuning};
@@ -7,12 +7,23 @@ use nalgebra::Vector3;
 use proptest::prelude::*;
 use proptest::sample::Index;
 
-/// Replaces, removes and inserts bytes.
-fn mutate(text: &str, changes: &[(Index, u8, u8)]) -> Vec<u8> {
+/// Change of one byte.
+#[derive(Clone, Debug)]
+struct Change {
+    /// Place of the byte.
+    place: Index,
+    /// Kind: 0 replaces, 1 removes, 2 inserts, 3 cuts the rest off.
+    kind: u8,
+    /// New byte.
+    byte: u8,
+}
+
+/// Replaces, removes and inserts bytes, and cuts the rest off.
+fn mutate(text: &str, changes: &[Change]) -> Vec<u8> {
     let mut bytes = text.as_bytes().to_vec();
-    for (place, kind, byte) in changes {
+    for Change { place, kind, byte } in changes {
         let at = place.index(bytes.len());
-        match kind % 4 {
+        match kind {
             0 => bytes[at] = *byte,
             1 => drop(bytes.remove(at)),
             2 => bytes.insert(at, *byte),
@@ -25,12 +36,16 @@ fn mutate(text: &str, changes: &[(Index, u8, u8)]) -> Vec<u8> {
     bytes
 }
 
-fn changes() -> impl Strategy<Value = Vec<(Index, u8, u8)>> {
-    // Printable bytes mostly: they get further than others.
+fn changes() -> impl Strategy<Value = Vec<Change>> {
+    // Most bytes are printable, since they get further than others, and few changes cut the rest off.
     prop::collection::vec((any::<Index>(), 0..12_u8, prop_oneof![4 => 32..127_u8, 1 => any::<u8>()]), 1..6)
         .prop_map(|list| {
             list.into_iter()
-                .map(|(place, kind, byte)| (place, if kind == 11 { 3 } else { kind % 3 }, byte))
+                .map(|(place, kind, byte)| Change {
+                    place,
+                    kind: if kind == 11 { 3 } else { kind % 3 },
+                    byte,
+                })
                 .collect()
         })
 }
@@ -81,12 +96,16 @@ fn settings() -> impl Strategy<Value = ElectricFieldSettings> {
     })
 }
 
-/// A scene around a section.
+/// Settings that a scene around a section has.
 fn parse(section: &str) -> ElectricFieldSettings {
     let text = format!(
-        "{section}\n[domain]\nmin_m = [0, 0, 0]\nmax_m = [1, 1, 1]\nboundary = {{ x = 'open', y = 'open', z = 'open' }}\n\
+        "{section}\n\
+         [domain]\nmin_m = [0, 0, 0]\nmax_m = [1, 1, 1]\n\
+         boundary = {{ x = 'open', y = 'open', z = 'open' }}\n\
          [particles.generate]\ncount = 1\nradius_m = 0.1\ncharge_C = 0\n\
-         [[materials]]\nname = 'a'\ndensity_kg_m3 = 1\nyoung_Pa = 1\npoisson = 0\nrestitution = 1\nfriction = 0\nwork_function_eV = 1\n\
+         [[materials]]\nname = 'a'\ndensity_kg_m3 = 1\nyoung_Pa = 1\n\
+         poisson = 0\nrestitution = 1\nfriction = 0\n\
+         work_function_eV = 1\n\
          [solver]\nopenfoam_case = '.'\n",
     );
     let scene = parse_scene(&text, "s.toml", std::path::Path::new("."), &[], Purpose::Explain);
@@ -116,7 +135,8 @@ proptest! {
         let folder = Folder::good();
         folder.write("scene.toml", mutate(SCENE, &changes));
         if let Err(error) = folder.read(&[]) {
-            prop_assert!(error.to_string().contains("scene.toml") || error.to_string().contains("grains.csv"), "{error}");
+            let message = error.to_string();
+            prop_assert!(message.contains("scene.toml") || message.contains("grains.csv"), "{message}");
         }
     }
 
@@ -144,13 +164,16 @@ proptest! {
     }
 
     #[test]
-    fn damaged_checkpoints_are_answered(changes in changes(), bytes in prop::collection::vec(any::<u8>(), 0..100)) {
+    fn damaged_checkpoints_are_answered(
+        changes in changes(),
+        bytes in prop::collection::vec(any::<u8>(), 0..100),
+    ) {
         let folder = Folder::good();
         let path = folder.file("a.amber");
         write_checkpoint(&path, 1, &vec![1.0_f64; 20]).unwrap();
         let good = std::fs::read(&path).unwrap();
         let mut damaged = good.clone();
-        for (place, _, byte) in &changes {
+        for Change { place, byte, .. } in &changes {
             let at = place.index(damaged.len());
             damaged[at] = *byte;
         }

@@ -1,9 +1,9 @@
-//! Every kind of bad value is refused by one clear message.
+//! Bad values of all kinds, each refused by one clear message.
 
 use crate::common::{Folder, GRAINS, PLATE, SCENE};
 use std::fmt::Write as _;
 
-/// `(what to replace, by what)` in the good scene.
+/// Changes of the good scene: the text to replace, and its replacement.
 const SCENE_CHANGES: &[(&str, &str)] = &[
     ("tolerance = 1e-2", "tolerence = 1e-2"),
     ("[output]", "[ouput]"),
@@ -73,7 +73,7 @@ const SCENE_CHANGES: &[(&str, &str)] = &[
     ("[time]", "[time]\nstep_s = 1e-5"),
 ];
 
-/// The same for the grains.
+/// Changes of the good particles file: the text to replace, and its replacement.
 const GRAIN_CHANGES: &[(&str, &str)] = &[
     ("charge_C", "charge"),
     (",charge_C,", ",group,"),

@@ -1,9 +1,9 @@
-//! A folder with a good scene and its files, for tests to spoil.
+//! Folder with a good scene and its files, which tests then spoil.
 
 use amberfield_scene::{Purpose, Scene, SceneError, read_scene};
 use std::path::{Path, PathBuf};
 
-/// A good scene with every kind of section that a run may have.
+/// Good scene with every kind of section that a run may have.
 pub(crate) const SCENE: &str = r#"
 [domain]
 min_m = [0.0, 0.0, 0.0]
@@ -57,20 +57,22 @@ formats = ["vtk", "csv"]
 checkpoint_every_s = 1e-2
 "#;
 
-/// Good grains for it.
+/// Good particles file of the scene.
 pub(crate) const GRAINS: &str = "id,x_m,y_m,z_m,radius_m,charge_C,material,group\n\
     1,0.001,0.001,0.001,1e-4,1e-14,glass,fine\n\
     2,0.002,0.001,0.001,1e-4,-1e-14,glass,\n\
     7,0.003,0.001,0.001,2e-4,0,steel,coarse\n";
 
-/// A good plate.
-pub(crate) const PLATE: &str = "solid p\nfacet normal 0 0 1\n outer loop\n  vertex 0 0 1\n  vertex 20 0 1\n  vertex 0 20 1\n endloop\nendfacet\nendsolid p\n";
+/// Good STL surface of the scene.
+pub(crate) const PLATE: &str = "solid p\nfacet normal 0 0 1\n outer loop\n  \
+                                vertex 0 0 1\n  vertex 20 0 1\n  vertex 0 20 1\n \
+                                endloop\nendfacet\nendsolid p\n";
 
-/// A folder that is removed at the end.
+/// Folder that is removed at the end.
 pub(crate) struct Folder(tempfile::TempDir);
 
 impl Folder {
-    /// The good files.
+    /// Folder with the good files.
     pub(crate) fn good() -> Self {
         let folder = Self(tempfile::tempdir().unwrap());
         folder.write("scene.toml", SCENE);
@@ -101,7 +103,7 @@ impl Folder {
         read_scene(&self.file("scene.toml"), &overrides, purpose)
     }
 
-    /// The message of a scene that must be refused, without the folder's name.
+    /// Message of a scene that must be refused, without the name of the folder.
     pub(crate) fn refusal(&self, overrides: &[&str]) -> String {
         match self.read(overrides) {
             Ok(_) => panic!("accepted"),

@@ -1,4 +1,4 @@
-//! Random fills: no overlaps, no face touched, the asked distribution, one seed.
+//! Random fills: no overlaps, no contact with faces, the distribution of the scene, one seed.
 
 use crate::common::Folder;
 use amberfield_core::{Domain, Particles};
@@ -41,7 +41,7 @@ fn shortest(domain: &Domain, mut difference: Vector3<f64>) -> Vector3<f64> {
     difference
 }
 
-/// Smallest distance between surfaces over the sum of radii, all pairs.
+/// Smallest distance between the surfaces of two grains, over the sum of their radii.
 fn smallest_gap(scene: &Scene) -> f64 {
     let (domain, grains) = (scene.domain.as_ref().unwrap(), &scene.particles);
     let mut smallest = f64::INFINITY;
@@ -84,7 +84,8 @@ fn dense_fills_are_relaxed() {
 #[test]
 fn mixed_sizes_and_planes_are_respected() {
     let plane = "[[walls]]\nplane = { point_m = [0, 0, 5e-3], normal = [0, 1, 1] }\n";
-    let generate = "count = 1500\nradius_m = { sizes = { radius_m = [1e-3, 1e-4, 1e-5], fraction = [0.01, 0.5, 0.49] } }";
+    let generate = "count = 1500\n\
+                    radius_m = { sizes = { radius_m = [1e-3, 1e-4, 1e-5], fraction = [0.01, 0.5, 0.49] } }";
     let scene = scene(generate, plane).unwrap();
     assert!(smallest_gap(&scene) > 0.0 && clear_of_faces(&scene));
     let normal = Vector3::new(0.0, 1.0, 1.0).normalize();
@@ -98,7 +99,8 @@ fn mixed_sizes_and_planes_are_respected() {
 #[test]
 fn cylinders_hold_their_grains() {
     let generate = "count = 800\nradius_m = { uniform = { min = 1e-4, max = 4e-4 } }\n\
-        region = { cylinder = { base_m = [5e-3, 5e-3, 1e-3], axis = [0, 0, 1], radius_m = 4e-3, length_m = 8e-3 } }\n\
+        region = { cylinder = { base_m = [5e-3, 5e-3, 1e-3], axis = [0, 0, 1], \
+        radius_m = 4e-3, length_m = 8e-3 } }\n\
         charge_C = { normal = { mean = 0.0, std = 1e-14 } }";
     let scene = scene(generate, "").unwrap();
     assert!(smallest_gap(&scene) > 0.0);

@@ -1,4 +1,4 @@
-//! What good scenes mean.
+//! Meaning of good scenes.
 
 use crate::common::{Folder, GRAINS, SCENE};
 use amberfield_core::{Boundary, CouplingInterval, Method, Skin, Step, WallCharging, WallShape};
@@ -96,7 +96,8 @@ fn a_field_needs_neither_materials_nor_time_nor_sizes() {
     let folder = Folder::good();
     folder.write(
         "scene.toml",
-        "domain = { min_m = [0, 0, 0], max_m = [1, 1, 1], boundary = { x = 'open', y = 'open', z = 'open' } }\n\
+        "domain = { min_m = [0, 0, 0], max_m = [1, 1, 1], \
+         boundary = { x = 'open', y = 'open', z = 'open' } }\n\
          particles.file = 'grains.csv'\n[electric_field]\n",
     );
     folder.write("grains.csv", "charge_C,radius_m,z_m,y_m,x_m,id\n1e-9,0,0.5,0.5,0.5,3\n");
@@ -127,7 +128,8 @@ fn a_command_line_is_the_same_as_keys() {
         .unwrap();
     let line = folder
         .read(&[
-            "electric_field={ command = \"enable_electric_field field_cutoff_radius 3e-3 enable_collision_charge_transfer yes\" }",
+            "electric_field={ command = \"enable_electric_field field_cutoff_radius 3e-3 \
+             enable_collision_charge_transfer yes\" }",
             "materials.1.work_function_eV=4.0",
         ])
         .unwrap();

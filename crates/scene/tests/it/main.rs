@@ -1,4 +1,4 @@
-//! The scene crate through its public functions.
+//! Tests of the scene crate through its public functions.
 
 #![expect(clippy::unwrap_used, reason = "helpers of tests fail as tests do")]
 

@@ -1,4 +1,4 @@
-//! Result files: columns, digits, structure.
+//! Result files: columns, digits and structure.
 
 use crate::common::Folder;
 use amberfield_scene::{FieldColumns, FieldComponents, write_field_csv, write_vtu};
