@@ -1,4 +1,4 @@
-//! Every case, run by the binary at smoke size and compared with its README's number.
+//! Checks of all cases, each run by the binary at smoke size and compared with the number in its README.
 //! `AMBERFIELD_CASES=full cargo test -p amberfield-cli --test cases` runs them at full size.
 
 mod support;

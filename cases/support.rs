@@ -1,4 +1,4 @@
-//! Running the binary on a copy of a case, and reading what it writes.
+//! Helpers that run the binary on a copy of a case and read what it writes.
 
 use amberfield_core::Vector3;
 use std::fs;
@@ -6,18 +6,18 @@ use std::path::{Path, PathBuf};
 use std::process::Command;
 use tempfile::TempDir;
 
-/// 1/(4πε₀) [V·m/C], CODATA 2018; not taken from the code under test.
+/// Coulomb's constant 1/(4πε₀) [V·m/C], CODATA 2018; not taken from the code under test.
 pub(crate) const COULOMB: f64 = 8.987_551_792_3e9;
 
-/// Whether cases run at full size: `AMBERFIELD_CASES=full`. Else at smoke size.
+/// Tells whether cases run at full size (`AMBERFIELD_CASES=full`) or at smoke size.
 pub(crate) fn full_size() -> bool {
     std::env::var("AMBERFIELD_CASES").is_ok_and(|size| size == "full")
 }
 
-/// A curve of a case's plot.
+/// Curve in the plot of a case.
 pub(crate) use amberfield_draw::Series as Curve;
 
-/// Draws curves into the case's folder at full size, and beside what was built at smoke size.
+/// Draws curves: at full size into the case's folder, at smoke size into the folder of build results.
 pub(crate) fn plot(case: &str, name: &str, [x, y]: [&str; 2], logarithmic: bool, curves: Vec<Curve>) {
     use amberfield_draw::{Plot, Scale, write_plot};
     let root = Path::new(env!("CARGO_MANIFEST_DIR")).join("../..");
@@ -29,7 +29,7 @@ pub(crate) fn plot(case: &str, name: &str, [x, y]: [&str; 2], logarithmic: bool,
     write_plot(&folder.join(format!("{name}.svg")), &plot).expect("a plot");
 }
 
-/// A copy of a case's folder that may be changed and run.
+/// Copy of a case's folder that may be changed and run.
 pub(crate) struct Case {
     folder: TempDir,
 }
@@ -59,43 +59,43 @@ impl Case {
         case
     }
 
-    /// A path in the copy.
+    /// Path of a file in the copy.
     pub(crate) fn path(&self, file: &str) -> PathBuf {
         self.folder.path().join(file)
     }
 
-    /// Writes a file of the copy.
+    /// Writes a file into the copy.
     pub(crate) fn write(&self, file: &str, text: &str) {
         fs::write(self.path(file), text).expect("a file is written");
     }
 
-    /// Replaces text in a file of the copy; it must be there.
+    /// Replaces a text in a file of the copy; the text must be there.
     pub(crate) fn replace(&self, file: &str, from: &str, to: &str) {
         let text = fs::read_to_string(self.path(file)).expect("a file");
         assert!(text.contains(from), "{file} does not contain {from:?}");
         self.write(file, &text.replace(from, to));
     }
 
-    /// A CSV file of the copy.
-    pub(crate) fn table(&self, file: &str) -> Table {
-        Table::read(&self.path(file))
+    /// Table from a CSV file of the copy.
+    pub(crate) fn table(&self, file: &str) -> NumberTable {
+        NumberTable::read(&self.path(file))
     }
 
-    /// `amberfield field scene.toml` with more arguments: the field CSV.
-    pub(crate) fn field(&self, arguments: &[&str]) -> Table {
+    /// Runs `amberfield field scene.toml` with more arguments; returns the table of the field.
+    pub(crate) fn field(&self, arguments: &[&str]) -> NumberTable {
         let out = self.path("field.csv");
         let out = out.to_str().expect("a readable path");
         self.execute(&[&["field", "scene.toml", "--out", out], arguments].concat());
-        Table::read(Path::new(out))
+        NumberTable::read(Path::new(out))
     }
 
-    /// `amberfield study` of a file of that name: its page.
+    /// Runs `amberfield study` on a file; returns the page with the given name.
     pub(crate) fn study(&self, file: &str, name: &str) -> String {
         self.execute(&["study", file, "--out", "study"]);
         fs::read_to_string(self.path("study").join(format!("{name}.md"))).expect("a page")
     }
 
-    /// `amberfield run scene.toml` with more arguments: the run folder.
+    /// Runs `amberfield run scene.toml` with more arguments; returns the run folder.
     pub(crate) fn run(&self, arguments: &[&str]) -> Run<'_> {
         self.execute(&[&["run", "scene.toml", "--out", "run"], arguments].concat());
         Run { case: self }
@@ -113,29 +113,29 @@ impl Case {
     }
 }
 
-/// A run folder.
+/// Run folder.
 pub(crate) struct Run<'a> {
     case: &'a Case,
 }
 
 impl Run<'_> {
-    /// A path in the run folder.
+    /// Path of a file in the run folder.
     pub(crate) fn path(&self, file: &str) -> PathBuf {
         self.case.path("run").join(file)
     }
 
-    /// `history.csv`.
-    pub(crate) fn history(&self) -> Table {
-        Table::read(&self.path("history.csv"))
+    /// Table from `history.csv`.
+    pub(crate) fn history(&self) -> NumberTable {
+        NumberTable::read(&self.path("history.csv"))
     }
 
-    /// The last particles CSV.
-    pub(crate) fn last_particles(&self) -> Table {
-        Table::read(self.particle_files().last().expect("a particles CSV"))
+    /// Table from the last particles CSV.
+    pub(crate) fn last_particles(&self) -> NumberTable {
+        NumberTable::read(self.particle_files().last().expect("a particles CSV"))
     }
 
-    /// All particles CSVs with their times [s].
-    pub(crate) fn frames(&self) -> Vec<(f64, Table)> {
+    /// Tables from all particles CSVs, with their times.
+    pub(crate) fn frames(&self) -> Vec<Frame> {
         let summary = fs::read_to_string(self.path("summary.json")).expect("a summary");
         let (_, step) = summary.split_once("\"step_s\": ").expect("a step");
         let step: f64 = step.split([',', '\n']).next().expect("a number").trim().parse().expect("a number");
@@ -143,7 +143,10 @@ impl Run<'_> {
             let name = path.file_stem().expect("a name").to_string_lossy().into_owned();
             name.rsplit('_').next().expect("a step").parse::<f64>().expect("a step")
         };
-        self.particle_files().iter().map(|path| (step * number(path), Table::read(path))).collect()
+        self.particle_files()
+            .iter()
+            .map(|path| Frame { time_s: step * number(path), grains: NumberTable::read(path) })
+            .collect()
     }
 
     fn particle_files(&self) -> Vec<PathBuf> {
@@ -157,31 +160,45 @@ impl Run<'_> {
     }
 }
 
-/// Numbers of a CSV file by column; cells that are no numbers are NaN.
-pub(crate) struct Table {
-    path: PathBuf,
-    columns: Vec<(String, Vec<f64>)>,
+/// Grains at one moment of a run.
+pub(crate) struct Frame {
+    pub(crate) time_s: f64,
+    pub(crate) grains: NumberTable,
 }
 
-impl Table {
+/// Table of the numbers in a CSV file; cells that are no numbers are NaN.
+pub(crate) struct NumberTable {
+    path: PathBuf,
+    columns: Vec<Column>,
+}
+
+/// Column of a table.
+struct Column {
+    name: String,
+    numbers: Vec<f64>,
+}
+
+impl NumberTable {
     fn read(path: &Path) -> Self {
         let text = fs::read_to_string(path).unwrap_or_else(|error| panic!("{}: {error}", path.display()));
         let mut lines = text.lines();
         let header = lines.next().expect("a header");
-        let mut columns: Vec<(String, Vec<f64>)> =
-            header.split(',').map(|name| (name.trim().to_owned(), Vec::new())).collect();
+        let mut columns: Vec<Column> = header
+            .split(',')
+            .map(|name| Column { name: name.trim().to_owned(), numbers: Vec::new() })
+            .collect();
         for line in lines {
-            for ((_, column), cell) in columns.iter_mut().zip(line.split(',')) {
-                column.push(cell.trim().parse().unwrap_or(f64::NAN));
+            for (column, cell) in columns.iter_mut().zip(line.split(',')) {
+                column.numbers.push(cell.trim().parse().unwrap_or(f64::NAN));
             }
         }
         Self { path: path.to_owned(), columns }
     }
 
-    /// A column by name.
+    /// Numbers of the column with a name.
     pub(crate) fn column(&self, name: &str) -> &[f64] {
-        let column = self.columns.iter().find(|(known, _)| known == name);
-        &column.unwrap_or_else(|| panic!("{} has no column {name}", self.path.display())).1
+        let column = self.columns.iter().find(|column| column.name == name);
+        &column.unwrap_or_else(|| panic!("{} has no column {name}", self.path.display())).numbers
     }
 
     fn vectors(&self, names: [&str; 3]) -> Vec<Vector3<f64>> {

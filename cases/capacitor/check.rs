@@ -1,4 +1,4 @@
-//! Parallel plates with a space charge.
+//! Case of parallel plates with a space charge.
 
 use crate::support::Case;
 use amberfield_core::constants::VACUUM_PERMITTIVITY;
@@ -11,10 +11,11 @@ const PLATES: ParallelPlates = ParallelPlates {
     upper_potential: 5000.0,
     charge_density: 2e-13 / (5e-4 * 5e-4 * 5e-4),
 };
-/// Sheets of charges instead of an even density, over the RMS field; see the README.
+/// Error because sheets of charges replace an even density, over the RMS field; see the README.
 const DISCRETE: f64 = 5e-3;
-/// Height at which the field vanishes [m] and what the sheets leave uncertain.
+/// Height at which the field vanishes [m].
 const ZERO_M: f64 = 7.767e-3;
+/// Uncertainty of that height because of the sheets [m].
 const ZERO_TOLERANCE_M: f64 = 2e-5;
 
 #[test]

@@ -1,17 +1,25 @@
-//! Charging curves of soft and stiffer grains, both corrected.
+//! Case of a charging gas: charging curves of soft and stiffer grains, both corrected.
 
 use crate::support::{Case, Curve, full_size, plot};
 
 const YOUNG_PA: [f64; 2] = [1e5, 5e6];
-/// What is beyond the spread of a few replicas: their mean is uncertain by about as much.
+/// Largest difference of two means, over the spread of the replicas; the mean of a few replicas is uncertain
+/// by about their spread.
 const SPREADS: f64 = 1.5;
-/// A soft contact lasts 0.1 ms of the 4 ms between two impacts on a wall, and the stiff one a fifth: that many fewer impacts, with the grains' own.
+/// Share by which soft grains have fewer impacts: a soft contact lasts 0.1 ms of the 4 ms between two impacts
+/// on a wall, and a stiff contact a fifth of that. Impacts between grains add to it.
 const SLOWER: f64 = 0.1;
 
-/// Times [s], collisions, charge of the grains [C].
-type History = Vec<[f64; 3]>;
+/// Row of a charging curve.
+#[derive(Clone, Copy)]
+struct Moment {
+    time_s: f64,
+    collisions: f64,
+    charge_c: f64,
+}
 
-fn run(young: f64, seed: u32) -> History {
+/// Charging curve of a run.
+fn run(young: f64, seed: u32) -> Vec<Moment> {
     let case = Case::new("charging-gas");
     case.replace("scene.toml", "young_Pa = 5e6", &format!("young_Pa = {young:e}"));
     case.replace("scene.toml", "seed = 1", &format!("seed = {seed}"));
@@ -29,10 +37,12 @@ fn run(young: f64, seed: u32) -> History {
     for (charge, wall) in charge.iter().zip(wall) {
         assert!((charge + wall).abs() <= 1e-12 * charge.abs(), "{charge:e} {wall:e}");
     }
-    (0..time.len()).map(|row| [time[row], collisions[row], charge[row]]).collect()
+    let moment =
+        |row: usize| Moment { time_s: time[row], collisions: collisions[row], charge_c: charge[row] };
+    (0..time.len()).map(moment).collect()
 }
 
-/// Smallest, mean and largest.
+/// Smallest, mean and largest value.
 fn spread(values: &[f64]) -> [f64; 3] {
     let low = values.iter().copied().fold(f64::INFINITY, f64::min);
     let high = values.iter().copied().fold(f64::NEG_INFINITY, f64::max);
@@ -43,20 +53,24 @@ fn spread(values: &[f64]) -> [f64; 3] {
 fn corrected_charging_curves_coincide() {
     let seeds = if full_size() { 1..=3 } else { 1..=2 };
     let runs = YOUNG_PA.map(|young| seeds.clone().map(|seed| run(young, seed)).collect::<Vec<_>>());
-    let end = |history: &History| history[history.len() - 1];
-    let spreads = |of: fn([f64; 3]) -> f64| {
+    let end = |curve: &Vec<Moment>| curve[curve.len() - 1];
+    let spreads = |of: fn(Moment) -> f64| {
         runs.each_ref().map(|runs| spread(&runs.iter().map(|run| of(end(run))).collect::<Vec<_>>()))
     };
-    let [soft, stiff] = spreads(|[_, collisions, charge]| charge / collisions);
+    let [soft, stiff] = spreads(|end| end.charge_c / end.collisions);
     let spread = (soft[2] - soft[0]).max(stiff[2] - stiff[0]);
     assert!(soft[2] < 0.0 && stiff[2] < 0.0, "the higher work function ends negative");
     assert!((soft[1] - stiff[1]).abs() < SPREADS * spread, "charge per collision: {soft:?} {stiff:?}");
-    let [soft, stiff] = spreads(|[_, _, charge]| charge);
+    let [soft, stiff] = spreads(|end| end.charge_c);
     assert!((soft[1] / stiff[1] - 1.0).abs() < SLOWER, "charge: {soft:?} {stiff:?}");
-    for (name, x, of) in [("charge", "time [s]", 0), ("charge-over-collisions", "collisions", 1)] {
-        let curve = |young: f64, seed: usize, run: &History| Curve {
+    let abscissas: [(&str, &str, fn(&Moment) -> f64); 2] = [
+        ("charge", "time [s]", |moment| moment.time_s),
+        ("charge-over-collisions", "collisions", |moment| moment.collisions),
+    ];
+    for (name, x, of) in abscissas {
+        let curve = |young: f64, seed: usize, run: &[Moment]| Curve {
             name: format!("Y = {young:e} Pa, replica {}", seed + 1),
-            points: run.iter().map(|row| (row[of], row[2])).collect(),
+            points: run.iter().map(|moment| (of(moment), moment.charge_c)).collect(),
         };
         let all = YOUNG_PA.iter().zip(&runs).flat_map(|(young, runs)| {
             runs.iter().enumerate().map(move |(seed, run)| curve(*young, seed, run))

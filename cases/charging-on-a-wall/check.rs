@@ -1,4 +1,4 @@
-//! A ball charges on a grounded plate, bounce by bounce.
+//! Case of a ball that charges on a grounded plate, bounce by bounce.
 
 use crate::support::{Case, Curve, full_size, plot};
 use amberfield_oracle::HertzImpact;
@@ -6,10 +6,10 @@ use amberfield_oracle::HertzImpact;
 const RADIUS_M: f64 = 75e-6;
 const GRAVITY_M_S2: f64 = 9.81;
 const STEADY_C: f64 = -6.2587e-13;
-/// Integration with more than 300 steps in a contact, 90 times in a row.
+/// Error of the integration with more than 300 steps in a contact, 90 times in a row.
 const ERROR: f64 = 5e-4;
 
-/// αA_max of one bounce from a height of one diameter.
+/// Product αA_max of one bounce from a height of one diameter.
 fn relaxation() -> f64 {
     let pair = HertzImpact::equal_spheres(RADIUS_M, 1000.0, 1e5, 0.3, 1.0);
     let fall = |overlap: f64| (2.0 * GRAVITY_M_S2 * (2.0 * RADIUS_M + overlap)).sqrt();
@@ -32,7 +32,7 @@ fn charge_follows_the_closed_form() {
     let history = run.history();
     let (charge, wall) = (history.column("net_charge_C"), history.column("wall_charge_C"));
     let contacts = history.column("contacts");
-    // Rows between two bounces: the charge stays for a while.
+    // Between two bounces the charge is constant for some rows.
     let mut bounces: Vec<f64> = Vec::new();
     for row in 1..charge.len() {
         let rests = contacts[row] == 0.0 && contacts[row - 1] == 0.0 && charge[row] == charge[row - 1];

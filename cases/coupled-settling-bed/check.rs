@@ -1,9 +1,9 @@
-//! A bed of charged grains settles, its far field from OpenFOAM.
+//! Case of a bed of charged grains that settles, with its far field from OpenFOAM.
 
 use crate::settling_charged_bed::{SMOKE_EDGE_M, check_packing, shrink};
 use crate::support::{Case, full_size};
 
-/// The two tolerances of 1e-2, whose squares add.
+/// Relative difference of two fields with tolerances of 1e-2, whose squares add.
 const AGREEMENT: f64 = 1.4e-2;
 
 #[test]
@@ -22,7 +22,7 @@ fn bed_settles_as_on_the_internal_grid() {
             case.replace(mesh, from, to);
         }
     }
-    let e = |table: crate::support::Table| {
+    let e = |table: crate::support::NumberTable| {
         ["ex_V_per_m", "ey_V_per_m", "ez_V_per_m"].map(|column| table.column(column).to_vec())
     };
     let coupled = e(case.field(&[]));

@@ -1,4 +1,4 @@
-//! The field of an electrode in a floor, and what it does to grains.
+//! Case of an electrode in a floor: its field, and the grains that it lifts.
 
 use crate::support::{Case, full_size};
 use amberfield_core::Vector3;
@@ -9,10 +9,10 @@ const VOLTS: f64 = 1000.0;
 const HALF_WIDTH_M: f64 = 4e-3;
 const PERIOD_M: f64 = 0.02;
 const HEIGHT_M: f64 = 0.01;
-/// Over the larger of |E| and V₀/H.
+/// Largest error of E, over the larger of |E| and V₀/H.
 const MOST: f64 = 1.2e-2;
 
-/// E of the electrode alone.
+/// Field E [V/m] of the electrode alone, by its Fourier series.
 fn exact(place: Vector3<f64>) -> Vector3<f64> {
     let mut e = Vector3::z() * (2.0 * HALF_WIDTH_M / PERIOD_M * VOLTS / HEIGHT_M);
     for n in 1..=60 {
@@ -34,7 +34,7 @@ fn field_is_that_of_the_series_and_grains_over_the_electrode_rise() {
             Vector3::new(1e-3 + 2e-3 * across, 1e-3 + 4e-4 * across, 3.5e-3 + 1.2e-3 * up)
         })
         .collect();
-    // Charges too small to be felt.
+    // The charges are too small to change the field.
     let mut probes = "id,x_m,y_m,z_m,radius_m,charge_C\n".to_owned();
     for (id, place) in places.iter().enumerate() {
         writeln!(probes, "{id},{},{},{},0,1e-20", place.x, place.y, place.z).expect("a string");

@@ -1,4 +1,5 @@
-//! The smoke study: the command fails when an error is above what is promised or stated.
+//! Smoke study of error against run time: the command fails when an error is above its promised or stated
+//! bound.
 
 use crate::support::Case;
 
@@ -9,6 +10,6 @@ fn smoke_study_keeps_its_bounds() {
     for section in ["## What it says", "## The error model", "## What failed\n\nNothing."] {
         assert!(page.contains(section), "no {section:?} in\n{page}");
     }
-    // The published hybrid and the cut-off sum err by tens of per cent on the same grains.
+    // The published hybrid method and the cut-off sum have errors of tens of per cent on the same grains.
     assert!(page.contains("kolehmainen") && page.contains("cut-off"), "{page}");
 }

@@ -1,8 +1,8 @@
-//! The table of extremes: the command fails where anything is not as it was said before.
+//! Table of extreme scenes: the command fails where a scene does not end as the study expects.
 
 use crate::support::{Case, full_size};
 
-/// Marks what takes longer than all the rest.
+/// Mark of scenes that take longer than all others together.
 const FULL: &str = "[[extremes]] # at full size only\n";
 
 #[test]

@@ -1,10 +1,11 @@
-//! Terminal speeds in still air.
+//! Case of terminal speeds in still air.
 
 use crate::support::Case;
 
-/// README's speeds: the balance of weight, buoyancy and drag, solved apart from the program [m/s].
+/// Terminal speeds in the README, from the balance of weight, buoyancy and drag, solved without the program
+/// [m/s].
 const SPEEDS_M_S: [f64; 3] = [0.169_911, 1.411_443, 3.689_976];
-/// Agreement asked for.
+/// Largest allowed relative difference.
 const AGREEMENT: f64 = 5e-3;
 
 #[test]

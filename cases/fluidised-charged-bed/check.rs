@@ -1,25 +1,36 @@
-//! What charge does to a bubbling bed.
+//! Case of a bubbling bed: the effect of charge on its height and its walls.
 
-use crate::support::{Case, Curve, Table, full_size, plot};
+use crate::support::{Case, Curve, NumberTable, full_size, plot};
 
-/// Radius of the grains [m], their weight [N], and gaps over the radius at which they touch a wall.
+/// Radius of the grains [m].
 const RADIUS_M: f64 = 5e-4;
+/// Weight of a grain [N].
 const WEIGHT_N: f64 = 1500.0 * 4.0 / 3.0 * std::f64::consts::PI * RADIUS_M * RADIUS_M * RADIUS_M * 9.81;
+/// Distance from a wall over the radius, below which a grain counts as touching.
 const TOUCHING: f64 = 1.1;
 
-/// The bed, or an eighth of it.
-struct Bed {
+/// Size of the bed.
+struct BedSize {
+    /// Edges across the flow [m].
     edges_m: [f64; 2],
+    /// Number of grains.
     grains: f64,
-    /// From when on it bubbles [s].
+    /// Time from which on the bed bubbles [s].
     from_s: f64,
+    /// Charges of a grain in the three runs [C].
     charges_c: [f64; 3],
 }
 
-fn bed(case: &Case) -> Bed {
+/// Sets the size of the bed: the whole bed, or an eighth of it.
+fn bed(case: &Case) -> BedSize {
     case.replace("scene.toml", "formats = [\"vtk\", \"png\"]", "formats = [\"csv\"]");
     if full_size() {
-        return Bed { edges_m: [0.04, 0.01], grains: 12_000.0, from_s: 0.2, charges_c: [0.0, 2e-12, 4e-12] };
+        return BedSize {
+            edges_m: [0.04, 0.01],
+            grains: 12_000.0,
+            from_s: 0.2,
+            charges_c: [0.0, 2e-12, 4e-12],
+        };
     }
     for (from, to) in [
         ("max_m = [0.04, 0.01, 0.12]", "max_m = [0.02, 0.005, 0.06]"),
@@ -35,11 +46,21 @@ fn bed(case: &Case) -> Bed {
     for (from, to) in [("convertToMeters 1e-3", "convertToMeters 5e-4"), ("(16 4 48)", "(8 2 24)")] {
         case.replace("foam/system/blockMeshDict", from, to);
     }
-    Bed { edges_m: [0.02, 0.005], grains: 1500.0, from_s: 0.1, charges_c: [0.0, 4e-12, 8e-12] }
+    BedSize { edges_m: [0.02, 0.005], grains: 1500.0, from_s: 0.1, charges_c: [0.0, 4e-12, 8e-12] }
 }
 
-/// Mean and standard deviation of the mean height [mm], from the time on that it bubbles.
-fn height(history: &Table, bed: &Bed) -> (f64, f64, Vec<(f64, f64)>) {
+/// Mean height of the grains over time.
+struct MeanHeight {
+    /// Mean over the time in which the bed bubbles [mm].
+    mean: f64,
+    /// Standard deviation over that time [mm].
+    spread: f64,
+    /// Times [s] and heights [mm].
+    curve: Vec<(f64, f64)>,
+}
+
+/// Mean height of the grains, from their potential energy.
+fn height(history: &NumberTable, bed: &BedSize) -> MeanHeight {
     let to_mm = 1e3 / (bed.grains * WEIGHT_N);
     let curve: Vec<_> = history
         .column("time_s")
@@ -50,11 +71,11 @@ fn height(history: &Table, bed: &Bed) -> (f64, f64, Vec<(f64, f64)>) {
     let late: Vec<f64> = curve.iter().filter(|(t, _)| *t >= bed.from_s).map(|(_, height)| *height).collect();
     let mean = late.iter().sum::<f64>() / late.len() as f64;
     let spread = (late.iter().map(|height| (height - mean).powi(2)).sum::<f64>() / late.len() as f64).sqrt();
-    (mean, spread, curve)
+    MeanHeight { mean, spread, curve }
 }
 
 /// Share of the grains that touch a grounded wall.
-fn at_walls(grains: &Table, bed: &Bed) -> f64 {
+fn at_walls(grains: &NumberTable, bed: &BedSize) -> f64 {
     let near = |x: f64, edge: f64| x.min(edge - x) < TOUCHING * RADIUS_M;
     let places = grains.column("x_m").iter().zip(grains.column("y_m"));
     let touching = places.filter(|(x, y)| near(**x, bed.edges_m[0]) || near(**y, bed.edges_m[1])).count();
@@ -69,12 +90,12 @@ fn charge_calms_a_bubbling_bed_and_coats_its_walls() {
     for charge in bed.charges_c {
         let set = format!("particles.generate.charge_C={{ constant = {charge:e} }}");
         let run = case.run(&["--overwrite", "--set", &set]);
-        let (mean, spread, curve) = height(&run.history(), &bed);
+        let MeanHeight { mean, spread, curve } = height(&run.history(), &bed);
         let late: Vec<f64> = run
             .frames()
             .iter()
-            .filter(|(t, _)| *t >= bed.from_s)
-            .map(|(_, grains)| at_walls(grains, &bed))
+            .filter(|frame| frame.time_s >= bed.from_s)
+            .map(|frame| at_walls(&frame.grains, &bed))
             .collect();
         let share = late.iter().sum::<f64>() / late.len() as f64;
         println!(

@@ -1,4 +1,4 @@
-//! The image force of a grounded plane.
+//! Case of the image force of a grounded plane.
 
 use crate::support::{COULOMB, Case};
 use amberfield_core::Vector3;
@@ -6,7 +6,7 @@ use amberfield_oracle::{ErrorNorms, GroundedPlane, field_scale};
 
 const CHARGE_C: f64 = 1e-12;
 const VOLUME_M3: f64 = 1e-6;
-/// The scene's tolerance.
+/// Tolerance of the scene.
 const TOLERANCE: f64 = 1e-3;
 const HEADER: &str = "id,x_m,y_m,z_m,radius_m,charge_C\n";
 
@@ -55,6 +55,7 @@ fn a_row_of_grains_feels_all_images() {
     assert!(norms.relative_rms <= TOLERANCE, "{norms:?}");
 }
 
+/// Exact field [V/m] at a grain, with the images of all grains.
 fn exact_field(grains: &[(Vector3<f64>, f64)], at: usize) -> Vector3<f64> {
     let mut field = Vector3::zeros();
     for (index, (place, charge)) in grains.iter().enumerate() {

@@ -1,11 +1,12 @@
-//! Grains in a grounded hollow sphere against Kelvin's images, and where they go.
+//! Case of grains in a grounded hollow sphere: their field against Kelvin's images, and their places at the
+//! end.
 
 use crate::support::{COULOMB, Case};
 use amberfield_oracle::{ErrorNorms, grounded_cavity, rms};
 
 const RADIUS_M: f64 = 6e-3;
 const GRAIN_M: f64 = 2e-4;
-/// Over the RMS field.
+/// Largest allowed RMS error, over the RMS field.
 const MOST: f64 = 1.5e-2;
 
 #[test]

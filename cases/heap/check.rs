@@ -1,13 +1,13 @@
-//! A column of grains collapses.
+//! Case of a column of grains that collapses.
 
 use crate::support::{Case, full_size};
 
 const GRAIN_RADIUS_M: f64 = 5e-4;
-/// Run-out over the column's height (Lube and others, 2004).
+/// Run-out over the height of the column (Lube et al., 2004).
 const SPREAD: f64 = 1.24;
-/// Scatter of experiments and finite size, see the README.
+/// Scatter of experiments and effect of the finite size, see the README.
 const SCATTER: f64 = 0.15;
-/// Kinetic energy at rest over the energy set free: far below any motion that a picture could show.
+/// Kinetic energy of a heap at rest over the energy set free; no picture could show such a motion.
 const REST: f64 = 1e-12;
 
 #[test]
@@ -15,7 +15,8 @@ fn heap_spreads_as_far_as_measured_and_rests() {
     let case = Case::new("heap");
     let (mut radius, mut height) = (0.012, 0.009);
     if !full_size() {
-        // The same column, half as wide and half as high: an eighth of the grains, and falls are shorter.
+        // A column half as wide and half as high has an eighth of the grains, and they fall for a shorter
+        // time.
         (radius, height) = (0.006, 0.0045);
         case.replace("scene.toml", "count = 4000", "count = 500");
         case.replace(

@@ -1,14 +1,14 @@
-//! Head-on impact.
+//! Case of a head-on impact.
 
 use crate::support::Case;
 use amberfield_oracle::HertzImpact;
 
 const SPEED_M_S: f64 = 0.1;
 const STEP_S: f64 = 1e-7;
-/// Error of the integration with some 400 steps in a contact. It falls with the step at an observed order of
+/// Error of the integration with about 400 steps in a contact. It falls with the step at an observed order of
 /// about 1 where damping is strong (`crates/dem` tests it): 4.9e-4 at 100 steps, 1.1e-4 at 400 for e = 0.5.
 const INTEGRATION: f64 = 5.6e-4;
-/// The contact starts and ends within a step.
+/// Uncertainty of the contact time [steps], since the contact starts and ends within a step.
 const STEPS_UNCERTAIN: f64 = 2.0;
 
 #[test]

@@ -1,4 +1,4 @@
-//! Madelung constant of rock salt in a periodic box.
+//! Case of the Madelung constant of rock salt in a periodic box.
 
 use crate::support::{COULOMB, Case};
 use amberfield_core::Vector3;
@@ -7,12 +7,12 @@ use amberfield_oracle::{ErrorNorms, MADELUNG_NACL, field_scale};
 const CHARGE_C: f64 = 1e-12;
 const SPACING_M: f64 = 1e-3;
 const VOLUME_M3: f64 = 64e-9;
-/// The direct sum promises 1e-9.
+/// Error that the direct sum promises.
 const DIRECT: f64 = 1e-9;
-/// The scene's tolerance; it speaks of E.
+/// Tolerance of the scene, which is that of E.
 const TOLERANCE: f64 = 1e-4;
-/// The potential has no tolerance of its own. Its error is that of E times about the splitting's width, which is
-/// of the order of the distance of neighbours.
+/// Error of the potential. It has no tolerance of its own: its error is about that of E times the width of
+/// the splitting, which is of the order of the distance of neighbours.
 const POTENTIAL: f64 = 1e-3;
 
 #[test]

@@ -1,14 +1,15 @@
-//! A bed of charged grains settles between grounded plates.
+//! Case of a bed of charged grains that settles between grounded plates.
 
 use crate::support::{Case, Run, full_size};
 use std::f64::consts::PI;
 
 const RADIUS_M: f64 = 1e-4;
-/// Volume fractions of loose and dense random packings, with room for a bed that is a few grains wide and whose
-/// charges hold it open.
+/// Volume fraction of a loose random packing, with room for a bed that is a few grains wide and whose charges
+/// hold it open.
 const LOOSE: f64 = 0.52;
+/// Volume fraction of a dense random packing.
 const DENSE: f64 = 0.66;
-/// Speed of a grain that falls by its own radius [m/s]: slower means at rest.
+/// Speed of a grain that has fallen by its own radius [m/s]; a slower grain counts as at rest.
 const SLOW_M_S: f64 = 0.04;
 
 /// Width of the bed at smoke size [m].
@@ -26,7 +27,7 @@ fn bed_settles_to_a_random_packing() {
     check_packing(&case.run(&[]), edge);
 }
 
-/// The same bed, a quarter as wide and half as high.
+/// Changes the bed to one that is a quarter as wide and half as high.
 pub(crate) fn shrink(case: &Case) {
     for (from, to) in [
         ("max_m = [0.006, 0.006, 0.01]", "max_m = [0.0015, 0.0015, 0.005]"),
@@ -39,7 +40,7 @@ pub(crate) fn shrink(case: &Case) {
     }
 }
 
-/// The bed rests, as dense as a random packing, and no charge is lost.
+/// Checks that the bed rests, is as dense as a random packing, and has lost no charge.
 pub(crate) fn check_packing(run: &Run<'_>, edge: f64) {
     let grains = run.last_particles();
     let heights = grains.column("z_m");

@@ -1,4 +1,4 @@
-//! Charge of an impact over its speed, soft and corrected.
+//! Case of the charge that impacts move, for soft grains and with the correction of their stiffness.
 
 use crate::support::{Case, Curve, plot};
 use amberfield_oracle::{DampedHertzImpact, HertzImpact};
@@ -6,15 +6,15 @@ use amberfield_oracle::{DampedHertzImpact, HertzImpact};
 const RADIUS_M: f64 = 75e-6;
 const CHARGE_C: f64 = 1e-13;
 const YOUNG_PA: [f64; 4] = [1e5, 1e6, 1e7, 1e8];
-/// Integration with at least 400 steps in a contact, and the field of the other pairs.
+/// Error of the integration with at least 400 steps in a contact, and of the field of the other pairs.
 const ERROR: f64 = 2e-4;
-/// The same at e = 0.3, whose strong damping is integrated to first order.
+/// Error with the correction; at e = 0.3 the strong damping is integrated to first order.
 const COLLAPSE: f64 = 4e-4;
 
 /// Speeds [m/s] and charges moved [C].
 fn impacts(young: f64, restitution: f64, corrected: bool) -> Vec<(f64, f64)> {
     let case = Case::new("stiffness-collapse");
-    // Contacts last as Y^{−2/5}.
+    // The duration of a contact goes as Y^{−2/5}.
     let time = (young / 1e6).powf(-0.4);
     let replace = |from: &str, to: String| case.replace("scene.toml", from, &to);
     replace("young_Pa = 1e6", format!("young_Pa = {young:e}"));

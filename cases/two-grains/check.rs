@@ -1,4 +1,4 @@
-//! Two grains that push each other apart.
+//! Case of two grains that push each other apart.
 
 use crate::support::{COULOMB, Case};
 use amberfield_core::Vector3;
@@ -6,7 +6,7 @@ use amberfield_core::Vector3;
 const DISTANCE_M: f64 = 8e-4;
 const SPEED_M_S: f64 = 0.103_576_54;
 const CHARGE_C: f64 = 1e-12;
-/// The scene's tolerance of E: force, energy and path follow it.
+/// Tolerance of E in the scene; force, energy and path have errors of the same size.
 const TOLERANCE: f64 = 1e-3;
 
 #[test]

@@ -1,20 +1,31 @@
-//! A run in two containers, as docker/compose.yaml says it; `cargo xtask images` builds the images.
+//! Run in two containers, as described in docker/compose.yaml; `cargo xtask images` builds the images.
 
 #![expect(clippy::unwrap_used, reason = "helpers of tests fail as tests do")]
 
-use amberfield_tests::{DEADLINE, FoamBox, Table};
+use amberfield_tests::{CsvTable, DEADLINE, FoamBox};
 use std::process::{Command, Output};
 use std::time::{Duration, Instant};
 
-/// A case between two containers; removed with all that belongs to them.
+/// Two containers with a run and its solver; they are removed at the end with all that belongs to them.
 struct Pair {
     scene: FoamBox,
+    /// Name of the project, which is unique to the test.
     project: String,
+    /// Size of the shared memory.
     memory: &'static str,
 }
 
+/// End of a service.
+#[derive(Debug)]
+struct Ended {
+    /// Exit code.
+    code: i32,
+    /// Output of the service.
+    said: String,
+}
+
 impl Pair {
-    /// Starts both; `memory` is the size of what they share.
+    /// Starts both containers; `memory` is the size of the memory that they share.
     fn start(scene: FoamBox, memory: &'static str) -> Self {
         let folder = scene.bench.path("");
         let project = folder.file_name().unwrap().to_string_lossy().to_lowercase().replace('.', "");
@@ -36,15 +47,15 @@ impl Pair {
         command.output().expect("docker-compose starts; `cargo xtask images` installs it")
     }
 
-    /// The container of a service.
+    /// Id of the container of a service.
     fn container(&self, service: &str) -> String {
         let output = self.compose(&["ps", "-a", "-q", service]);
         let output = if output.status.success() { output } else { self.compose(&["ps", "-q", service]) };
         String::from_utf8_lossy(&output.stdout).trim().to_owned()
     }
 
-    /// Waits for a service's end: its exit code and what it said.
-    fn end(&self, service: &str) -> (i32, String) {
+    /// Waits for the end of a service.
+    fn end(&self, service: &str) -> Ended {
         let container = self.container(service);
         let running = || text(&["inspect", "-f", "{{.State.Running}}", &container]).contains("true");
         let begun = Instant::now();
@@ -57,7 +68,7 @@ impl Pair {
             std::thread::sleep(Duration::from_millis(50));
         }
         let code = text(&["inspect", "-f", "{{.State.ExitCode}}", &container]);
-        (code.trim().parse().unwrap(), text(&["logs", &container]))
+        Ended { code: code.trim().parse().unwrap(), said: text(&["logs", &container]) }
     }
 
     fn wait_until_it_steps(&self) {
@@ -76,7 +87,7 @@ impl Pair {
         let _ = text(&["kill", "-s", "KILL", &self.container(service)]);
     }
 
-    /// What is left in the memory that both shared.
+    /// Names of the files that are left in the shared memory.
     fn left(&self) -> String {
         let volume = format!("{}_memory:/dev/shm", self.project);
         text(&[
@@ -100,21 +111,21 @@ impl Drop for Pair {
     }
 }
 
-/// What docker says.
+/// Output of docker.
 fn text(arguments: &[&str]) -> String {
     let output = Command::new("docker").args(arguments).output().expect("docker starts");
     String::from_utf8_lossy(&output.stdout).into_owned() + &String::from_utf8_lossy(&output.stderr)
 }
 
-fn rows(scene: &FoamBox, out: &str) -> Table {
-    Table::parse(&scene.bench.read(&format!("{out}/history.csv"))).without_clocks()
+fn rows(scene: &FoamBox, out: &str) -> CsvTable {
+    CsvTable::parse(&scene.bench.read(&format!("{out}/history.csv"))).without_clocks()
 }
 
-/// The box, with a row a time step.
+/// Scene of the grounded box, with a row of the history for each step.
 fn scene(end_s: f64) -> FoamBox {
     let scene = FoamBox::grounded();
     let text = scene.bench.read("scene.toml").replace("end_s = 1e-3", &format!("end_s = {end_s}"));
-    // Hardly charged grains without weight stay where they are, however long it takes to kill somebody.
+    // Grains with little charge and no weight stay at their places, however long it takes to kill a process.
     let text =
         text.replace("1e-12", "1e-15").replace("-9.81", "0").replace("timeout_s = 20.0", "timeout_s = 10.0");
     scene.bench.write("scene.toml", text + "[output]\nhistory_every_s = 1e-5\n");
@@ -124,9 +135,9 @@ fn scene(end_s: f64) -> FoamBox {
 #[test]
 fn the_answer_is_that_of_one_machine_without_containers() {
     let pair = Pair::start(scene(1e-3), "256m");
-    let (code, said) = pair.end("dem");
+    let Ended { code, said } = pair.end("dem");
     assert_eq!(code, 0, "{said}");
-    assert_eq!(pair.end("field").0, 0);
+    assert_eq!(pair.end("field").code, 0);
     assert_eq!(pair.left().trim(), "");
     let alone = pair.scene.bench.run(&["run", "scene.toml", "--out", "alone", "--no-progress"]);
     assert_eq!(alone.code, Some(0), "{}", alone.stderr);
@@ -137,7 +148,7 @@ fn the_answer_is_that_of_one_machine_without_containers() {
 fn a_killed_solver_ends_the_run_and_leaves_a_checkpoint() {
     let pair = Pair::start(scene(1e3), "256m");
     pair.kill("field");
-    let (code, said) = pair.end("dem");
+    let Ended { code, said } = pair.end("dem");
     assert_eq!(code, 3, "{said}");
     assert!(said.contains("field solver") && said.contains("--resume"), "{said}");
     assert!(!pair.scene.bench.names("out/checkpoints").is_empty());
@@ -148,7 +159,7 @@ fn a_killed_solver_ends_the_run_and_leaves_a_checkpoint() {
 fn a_killed_run_ends_the_solver_which_cleans_up() {
     let pair = Pair::start(scene(1e3), "256m");
     pair.kill("dem");
-    let (code, said) = pair.end("field");
+    let Ended { code, said } = pair.end("field");
     assert_ne!(code, 0, "{said}");
     assert!(said.contains("DEM process is gone"), "{said}");
     assert_eq!(pair.left().trim(), "");
@@ -156,13 +167,13 @@ fn a_killed_run_ends_the_solver_which_cleans_up() {
 
 #[test]
 fn too_little_shared_memory_is_said_before_the_first_step() {
-    // Not even room for the channels; then for them, but not for the mesh.
+    // The first size has no room for the channels; the second has, but not for the mesh.
     let dem = Pair::start(scene(1e-3), "64k").end("dem");
-    assert!(dem.0 == 3 && dem.1.contains("make /dev/shm larger"), "{dem:?}");
+    assert!(dem.code == 3 && dem.said.contains("make /dev/shm larger"), "{dem:?}");
     let pair = Pair::start(scene(1e-3), "1200k");
-    let (code, said) = pair.end("field");
+    let Ended { code, said } = pair.end("field");
     assert!(code != 0 && said.contains("make /dev/shm larger"), "{code} {said}");
-    assert_eq!(pair.end("dem").0, 3);
+    assert_eq!(pair.end("dem").code, 3);
 }
 
 #[test]

@@ -1,9 +1,9 @@
-//! The fuzzer's corpora, and changes of them, through everything that is read.
+//! Corpora of the fuzzer, and changes of them, sent through all readers.
 
 use amberfield_tests::any_bytes::TARGETS;
 use std::path::Path;
 
-/// Changed copies of every file of a corpus.
+/// Number of changed copies of each file of a corpus.
 const CHANGES: u64 = 300;
 
 #[test]
@@ -23,7 +23,7 @@ fn whatever_is_read_is_answered() {
     }
 }
 
-/// Some bytes replaced, removed or inserted.
+/// Copy with some bytes replaced, removed or inserted.
 fn changed(good: &[u8], seed: u64) -> Vec<u8> {
     // Steele and Vigna's splitmix64.
     let mut state = seed;

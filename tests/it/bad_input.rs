@@ -1,12 +1,12 @@
-//! Bad input is exit 2, says where, and leaves nothing behind.
+//! Bad input: exit code 2, a message that says where, and no files left behind.
 
 use crate::scenes::{CHARGED, PAIR, PAIR_CSV};
-use amberfield_tests::Bench;
+use amberfield_tests::Workbench;
 
-/// A scene changed in one place, and what the message must hold.
+/// Checks that a scene that is changed in one place is refused with a message that holds `parts`.
 fn refused(from: &str, to: &str, parts: &[&str]) {
     assert!(CHARGED.contains(from), "{from}");
-    let bench = Bench::new(&CHARGED.replacen(from, to, 1));
+    let bench = Workbench::new(&CHARGED.replacen(from, to, 1));
     let answer = bench.run(&["run", "scene.toml", "--out", "out"]);
     assert_eq!(answer.code, Some(2), "{to}: {}", answer.stderr);
     for part in parts {
@@ -42,7 +42,7 @@ fn what_charge_transfer_and_gas_need_is_said_by_name() {
 
 #[test]
 fn what_has_no_effect_is_said() {
-    let bench = Bench::new(&CHARGED.replace("tuning = \"model\"", "tuning = \"model\"\noverlap = true"));
+    let bench = Workbench::new(&CHARGED.replace("tuning = \"model\"", "tuning = \"model\"\noverlap = true"));
     let answer = bench.run(&["explain", "scene.toml"]);
     assert_eq!(answer.code, Some(0), "{}", answer.stderr);
     let said = "electric_field.overlap has no effect without [solver]";
@@ -55,7 +55,7 @@ fn overlapping_and_coincident_grains_are_refused_before_anything_runs() {
         + "[particles]\nfile = \"g.csv\"\n[time]"
         + CHARGED.split_once("[time]").unwrap().1;
     for (second, part) in [("1e-3", "same centre"), ("1.05e-3", "overlap")] {
-        let bench = Bench::new(&scene);
+        let bench = Workbench::new(&scene);
         bench.write(
             "g.csv",
             format!(
@@ -71,7 +71,7 @@ fn overlapping_and_coincident_grains_are_refused_before_anything_runs() {
 
 #[test]
 fn bad_command_lines_are_exit_2() {
-    let bench = Bench::new(PAIR);
+    let bench = Workbench::new(PAIR);
     bench.write("pair.csv", PAIR_CSV);
     for arguments in [
         &["run"][..],

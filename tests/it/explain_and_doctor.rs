@@ -1,11 +1,11 @@
-//! `amberfield explain` and `amberfield doctor`.
+//! Commands `amberfield explain` and `amberfield doctor`.
 
 use crate::scenes::{CHARGED, PAIR, PAIR_CSV, plain};
-use amberfield_tests::Bench;
+use amberfield_tests::Workbench;
 
 #[test]
 fn explain_prints_plan_limits_and_both_forms() {
-    let bench = Bench::new(&CHARGED.replace("tuning = \"model\"", "field_cutoff_radius = 8e-4"));
+    let bench = Workbench::new(&CHARGED.replace("tuning = \"model\"", "field_cutoff_radius = 8e-4"));
     let answer = bench.run(&["explain", "scene.toml"]);
     assert_eq!(answer.code, Some(0), "{}", answer.stderr);
     for part in [
@@ -24,7 +24,7 @@ fn explain_prints_plan_limits_and_both_forms() {
 
 #[test]
 fn the_printed_forms_are_scenes_of_the_same_field() {
-    let bench = Bench::new(PAIR);
+    let bench = Workbench::new(PAIR);
     bench.write("pair.csv", PAIR_CSV);
     let set = [
         "--set",
@@ -46,7 +46,7 @@ fn the_printed_forms_are_scenes_of_the_same_field() {
 
 #[test]
 fn a_scene_without_a_field_says_so() {
-    let bench = Bench::new(&plain());
+    let bench = Workbench::new(&plain());
     let answer = bench.run(&["explain", "scene.toml"]);
     assert!(answer.stdout.contains("no [electric_field]"), "{}", answer.stdout);
     assert!(answer.stdout.contains("0.0 kB for the field"), "{}", answer.stdout);
@@ -54,7 +54,7 @@ fn a_scene_without_a_field_says_so() {
 
 #[test]
 fn doctor_knows_the_machine() {
-    let bench = Bench::new("");
+    let bench = Workbench::new("");
     let answer = bench.run(&["doctor", "--threads", "2"]);
     assert_eq!(answer.code, Some(0), "{}", answer.stderr);
     for part in ["threads: 2", "memory:", "OpenFOAM", "stale runs: none"] {

@@ -1,18 +1,18 @@
-//! What breaks from outside: nothing is lost, nothing is half-written under its final name.
+//! Faults from outside: nothing is lost, and nothing is half-written under its final name.
 
 use crate::scenes::CHARGED;
-use amberfield_tests::{Answer, Bench, DEADLINE, Table};
+use amberfield_tests::{Answer, CsvTable, DEADLINE, Workbench};
 use rustix::process::{Pid, Signal, kill_process};
 use std::collections::BTreeMap;
 use std::process::{Command, Stdio};
 use std::time::{Duration, Instant};
 
-/// Kills of the run that is killed over and over.
+/// Number of kills of the run that is killed again and again.
 const KILLS: usize = 100;
 /// Longest life of a run after it has begun to step [ms].
 const LIFE_MS: u64 = 40;
 
-/// Writes often, and takes longer than all lives together.
+/// Scene of a run that writes often and takes longer than all lives together.
 fn endless() -> String {
     CHARGED
         .replace("end_s = 2e-3", "end_s = 1e3")
@@ -20,9 +20,9 @@ fn endless() -> String {
         .replace("checkpoint_every_s = 5e-4", "checkpoint_every_s = 1e-4")
 }
 
-/// The files of the grains and the history without clocks.
-fn results(bench: &Bench, out: &str) -> (Table, BTreeMap<String, Vec<u8>>) {
-    let history = Table::parse(&bench.read(&format!("{out}/history.csv"))).without_clocks();
+/// Results of a run: the history without clock readings, and the files of the grains.
+fn results(bench: &Workbench, out: &str) -> (CsvTable, BTreeMap<String, Vec<u8>>) {
+    let history = CsvTable::parse(&bench.read(&format!("{out}/history.csv"))).without_clocks();
     let file = |name: String| {
         let content = std::fs::read(bench.path(&format!("{out}/particles/{name}"))).unwrap();
         (name, content)
@@ -30,8 +30,8 @@ fn results(bench: &Bench, out: &str) -> (Table, BTreeMap<String, Vec<u8>>) {
     (history, bench.names(&format!("{out}/particles")).into_iter().map(file).collect())
 }
 
-/// Fails where a file under its final name is not whole.
-fn all_whole(bench: &Bench, out: &str) {
+/// Checks that each file under its final name is complete.
+fn all_whole(bench: &Workbench, out: &str) {
     for folder in ["particles", ""] {
         for name in bench.names(&format!("{out}/{folder}")) {
             let path = bench.path(&format!("{out}/{folder}/{name}"));
@@ -52,12 +52,14 @@ fn all_whole(bench: &Bench, out: &str) {
     }
 }
 
-fn newest(bench: &Bench, out: &str) -> Option<String> {
+/// Newest checkpoint of a run folder.
+fn newest(bench: &Workbench, out: &str) -> Option<String> {
     let names = bench.names(&format!("{out}/checkpoints"));
     let last = names.into_iter().rfind(|name| name.ends_with(".amber"))?;
     Some(format!("{out}/checkpoints/{last}"))
 }
 
+/// Step in the name of a checkpoint.
 fn step_of(checkpoint: &str) -> u64 {
     let name = checkpoint.rsplit('/').next().unwrap();
     name.trim_matches(|c: char| !c.is_ascii_digit()).parse().unwrap()
@@ -65,7 +67,7 @@ fn step_of(checkpoint: &str) -> u64 {
 
 #[test]
 fn a_run_killed_a_hundred_times_is_bit_for_bit_the_undisturbed_one() {
-    let bench = Bench::new(&endless());
+    let bench = Workbench::new(&endless());
     // Numerical Recipes' generator: lives of any length, the same in every run of the test.
     let mut random = 1_u64;
     for _ in 0..KILLS {
@@ -98,12 +100,13 @@ fn a_run_killed_a_hundred_times_is_bit_for_bit_the_undisturbed_one() {
     assert!(!bench.names("out/checkpoints").iter().chain(&bench.names("out/particles")).any(parts));
 }
 
-fn owner(bench: &Bench) -> Option<u32> {
+/// Process that has marked the run folder.
+fn owner(bench: &Workbench) -> Option<u32> {
     std::fs::read_to_string(bench.path("out/run.lock")).ok()?.parse().ok()
 }
 
-/// Runs a command in a file system of its own; `mount` is what is done to the folder `out` before, in the shell.
-fn mounted(bench: &Bench, mount: &str, arguments: &[&str]) -> Answer {
+/// Runs a command in a file system of its own; `mount` is the shell command that prepares the folder `out`.
+fn mounted(bench: &Workbench, mount: &str, arguments: &[&str]) -> Answer {
     std::fs::create_dir_all(bench.path("out")).unwrap();
     let run = bench.command(arguments);
     let script = format!("{mount} && {{ \"$@\"; code=$?; cp -a out kept; exit $code; }}");
@@ -124,11 +127,11 @@ fn mounted(bench: &Bench, mount: &str, arguments: &[&str]) -> Answer {
 
 #[test]
 fn a_full_disk_ends_the_run_which_goes_on_when_there_is_room() {
-    let whole = Bench::new(CHARGED);
+    let whole = Workbench::new(CHARGED);
     assert_eq!(whole.run(&["run", "scene.toml", "--out", "kept", "--no-progress"]).code, Some(0));
     let mut failed = 0;
     for kibibytes in [0, 4, 12, 20, 36, 60, 100, 160, 240, 320, 400, 520] {
-        let bench = Bench::new(CHARGED);
+        let bench = Workbench::new(CHARGED);
         // One block is the least that can be mounted; 0 is no room for a folder.
         let mount =
             format!("mount -t tmpfs -o size={}k,nr_inodes={} none out", kibibytes.max(4), 4 + 2 * kibibytes);
@@ -154,7 +157,7 @@ fn a_full_disk_ends_the_run_which_goes_on_when_there_is_room() {
 
 #[test]
 fn a_folder_that_cannot_be_written_is_said_before_anything_runs() {
-    let bench = Bench::new(CHARGED);
+    let bench = Workbench::new(CHARGED);
     let run = ["run", "scene.toml", "--out", "out", "--no-progress"];
     let answer = mounted(&bench, "mount --bind out out && mount -o remount,ro,bind out", &run);
     assert_eq!(answer.code, Some(2), "{}", answer.stderr);
@@ -171,7 +174,7 @@ fn a_folder_that_cannot_be_written_is_said_before_anything_runs() {
 
 #[test]
 fn a_folder_that_is_removed_ends_the_run_with_its_name() {
-    let bench = Bench::new(&endless());
+    let bench = Workbench::new(&endless());
     let mut command = bench.command(&["run", "scene.toml", "--no-progress", "--out", "out"]);
     let mut run = command.stdout(Stdio::null()).stderr(Stdio::piped()).spawn().unwrap();
     let begun = Instant::now();
@@ -179,7 +182,8 @@ fn a_folder_that_is_removed_ends_the_run_with_its_name() {
         assert!(begun.elapsed() < DEADLINE && run.try_wait().unwrap().is_none(), "the run must begin");
         std::thread::sleep(Duration::from_millis(1));
     }
-    // All at once: file by file, the run could end in between, and would name a checkpoint that is about to go.
+    // The folder is renamed first so that it is gone at once. If it went file by file, the run could end in
+    // between and name a checkpoint that is about to be removed.
     std::fs::rename(bench.path("out"), bench.path("gone")).unwrap();
     std::fs::remove_dir_all(bench.path("gone")).unwrap();
     while run.try_wait().unwrap().is_none() {
@@ -194,7 +198,7 @@ fn a_folder_that_is_removed_ends_the_run_with_its_name() {
 
 #[test]
 fn a_damaged_checkpoint_is_refused_and_an_older_one_offered() {
-    let bench = Bench::new(CHARGED);
+    let bench = Workbench::new(CHARGED);
     assert_eq!(bench.run(&["run", "scene.toml", "--out", "out", "--no-progress"]).code, Some(0));
     let names = bench.names("out/checkpoints");
     let [older, last] =
@@ -217,12 +221,13 @@ fn a_damaged_checkpoint_is_refused_and_an_older_one_offered() {
     assert_eq!(bench.run(&["run", "scene.toml", "--no-progress", "--resume", &older]).code, Some(0));
 }
 
-fn offers(bench: &Bench, damaged: &str, older: &str, words: &str) {
+/// Checks that a damaged checkpoint is refused and an older one offered.
+fn offers(bench: &Workbench, damaged: &str, older: &str, words: &str) {
     let answer = bench.run(&["run", "scene.toml", "--no-progress", "--resume", damaged]);
     assert_eq!(answer.code, Some(2), "{}", answer.stderr);
     let errors = answer.stderr.lines().filter(|line| line.starts_with("error")).count();
     assert_eq!(errors, 1, "{}", answer.stderr);
-    for part in [words, damaged, &format!("go on with --resume {older}")] {
+    for part in [words, damaged, &format!("continue with --resume {older}")] {
         assert!(answer.stderr.contains(part), "no {part:?} in {}", answer.stderr);
     }
 }

@@ -1,15 +1,15 @@
-//! `amberfield field`.
+//! Command `amberfield field`.
 
 use crate::scenes::{PAIR, PAIR_CSV};
-use amberfield_tests::{Bench, Table};
+use amberfield_tests::{CsvTable, Workbench};
 
-/// Rounding of two terms and of reading 17 digits.
+/// Error of rounding two terms and of reading 17 digits.
 const ROUND_OFF: f64 = 1e-14;
-/// 1/(4πε0), CODATA 2018 [V·m/C].
+/// Coulomb's constant 1/(4πε₀) [V·m/C], CODATA 2018.
 const COULOMB: f64 = 8.987_551_792_261_171e9;
 
-fn bench() -> Bench {
-    let bench = Bench::new(PAIR);
+fn bench() -> Workbench {
+    let bench = Workbench::new(PAIR);
     bench.write("pair.csv", PAIR_CSV);
     bench
 }
@@ -19,7 +19,7 @@ fn two_charges_feel_coulomb() {
     let bench = bench();
     let answer = bench.run(&["field", "scene.toml", "--out", "e.csv", "--repeat", "3"]);
     assert_eq!(answer.code, Some(0), "{}", answer.stderr);
-    let table = Table::parse(&bench.read("e.csv"));
+    let table = CsvTable::parse(&bench.read("e.csv"));
     assert_eq!(table.columns, ["id", "ex_V_per_m", "ey_V_per_m", "ez_V_per_m", "potential_V"]);
     assert_eq!(table.numbers("id"), [5.0, 3.0]);
     for (found, expected) in [
@@ -59,7 +59,7 @@ fn components_add_up() {
         "electric_field.external_field_V_m=[10, 0, 0]",
     ]);
     assert_eq!(answer.code, Some(0), "{}", answer.stderr);
-    let table = Table::parse(&bench.read("e.csv"));
+    let table = CsvTable::parse(&bench.read("e.csv"));
     assert_eq!(table.columns.len(), 23);
     let total = table.numbers("ex_V_per_m");
     for (row, total) in total.iter().enumerate() {
@@ -86,12 +86,13 @@ fn the_command_line_overrides_the_scene() {
 #[test]
 fn grains_outside_the_group_neither_make_nor_feel_the_field() {
     let bench = bench();
-    let rows = "id,x_m,y_m,z_m,radius_m,charge_C,group\n1,0.25,0.5,0.5,0,1e-9,a\n2,0.5,0.5,0.5,0,1e-6,\n3,0.75,0.5,0.5,0,-2e-9,a\n";
+    let rows = "id,x_m,y_m,z_m,radius_m,charge_C,group\n1,0.25,0.5,0.5,0,1e-9,a\n2,0.5,0.5,0.5,0,1e-6,\n\
+        3,0.75,0.5,0.5,0,-2e-9,a\n";
     bench.write("pair.csv", rows);
     let answer =
         bench.run(&["field", "scene.toml", "--out", "e.csv", "--set", "electric_field.particle_group=a"]);
     assert_eq!(answer.code, Some(0), "{}", answer.stderr);
-    let ex = Table::parse(&bench.read("e.csv")).numbers("ex_V_per_m");
+    let ex = CsvTable::parse(&bench.read("e.csv")).numbers("ex_V_per_m");
     assert!((ex[0] / (COULOMB * 2e-9 / 0.25) - 1.0).abs() < ROUND_OFF);
     assert_eq!(ex[1], 0.0);
 }
@@ -113,6 +114,6 @@ fn unit_charges_and_metres_are_a_scene() {
         .write("pair.csv", "id,x_m,y_m,z_m,radius_m,charge_C\n5,0.25,0.5,0.5,0,2.5\n3,0.75,0.5,0.5,0,-1.5\n");
     let answer = bench.run(&["field", "scene.toml", "--out", "e.csv"]);
     assert_eq!(answer.code, Some(0), "{}", answer.stderr);
-    let potential = Table::parse(&bench.read("e.csv")).numbers("potential_V");
+    let potential = CsvTable::parse(&bench.read("e.csv")).numbers("potential_V");
     assert!((potential[0] / (-COULOMB * 1.5 / 0.5) - 1.0).abs() < ROUND_OFF, "{potential:?}");
 }

@@ -1,9 +1,9 @@
-//! The C library in a host program: `crates/capi/examples/host.c`, compiled by the system's C compiler.
+//! C library in a host program: `crates/capi/examples/host.c`, compiled by the system's C compiler.
 
 use super::openfoam::{AGREEMENT, difference};
 use amberfield_core::{Boundary, Domain, FieldSettings, Tuning, Vector3};
 use amberfield_field::{ElectricField, FieldValues, Wanted};
-use amberfield_tests::Bench;
+use amberfield_tests::Workbench;
 use amberfield_tests::foam_case::{Random, cube, write_case};
 use std::fmt::Write as _;
 use std::io::Write as _;
@@ -12,8 +12,8 @@ use std::process::{Command, Output, Stdio};
 
 const EDGE: f64 = 0.012;
 
-/// Builds the library as this test is built, and the program with it.
-fn host(bench: &Bench) -> PathBuf {
+/// Builds the library with the profile of this test, and the program with the library.
+fn host(bench: &Workbench) -> PathBuf {
     let root = Path::new(env!("CARGO_MANIFEST_DIR")).join("..");
     let mut folder = std::env::current_exe().unwrap();
     folder.pop();
@@ -54,7 +54,7 @@ fn values(output: &Output) -> (Vec<f64>, Vec<f64>) {
 
 #[test]
 fn a_host_program_gets_the_field_from_the_grid_and_from_openfoam() {
-    let bench = Bench::new("");
+    let bench = Workbench::new("");
     let program = host(&bench);
     let mut random = Random(5);
     let positions: Vec<Vector3<f64>> =
@@ -67,7 +67,7 @@ fn a_host_program_gets_the_field_from_the_grid_and_from_openfoam() {
     let edge = EDGE.to_string();
     let (grid, potential) = values(&run(&program, &[&edge], &particles));
 
-    // What Rust gets, to the last digit.
+    // The same field from Rust is equal to the last digit.
     let domain = Domain::new(Vector3::zeros(), Vector3::repeat(EDGE), [[Boundary::Grounded; 2]; 3]).unwrap();
     let settings = FieldSettings { tuning: Tuning::Model, ..FieldSettings::default() };
     let mut field = ElectricField::new(&domain, &settings, &positions, &charges).unwrap();
@@ -91,7 +91,7 @@ fn a_host_program_gets_the_field_from_the_grid_and_from_openfoam() {
 
 #[test]
 fn a_host_program_is_told_what_is_wrong() {
-    let bench = Bench::new("");
+    let bench = Workbench::new("");
     let program = host(&bench);
     for (arguments, particles, expected) in [
         (["-1", ""], "", "-1"),

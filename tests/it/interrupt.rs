@@ -1,7 +1,7 @@
-//! Ctrl-C.
+//! Interrupts by Ctrl-C.
 
 use crate::scenes::plain;
-use amberfield_tests::Bench;
+use amberfield_tests::Workbench;
 use rustix::process::{Pid, Signal, kill_process};
 use std::process::Stdio;
 use std::time::{Duration, Instant};
@@ -12,7 +12,7 @@ const DEADLINE: Duration = Duration::from_secs(60);
 #[test]
 fn one_interrupt_ends_with_a_checkpoint_that_goes_on() {
     // Far more steps than the test waits for.
-    let bench = Bench::new(
+    let bench = Workbench::new(
         &plain()
             .replace("end_s = 2e-3", "end_s = 1e3")
             .replace("every_s = 2.5e-4", "every_s = 1")
@@ -47,7 +47,7 @@ fn one_interrupt_ends_with_a_checkpoint_that_goes_on() {
 
 #[test]
 fn a_killed_run_is_stale_and_the_doctor_cleans_it() {
-    let bench = Bench::new(&plain().replace("end_s = 2e-3", "end_s = 1e3"));
+    let bench = Workbench::new(&plain().replace("end_s = 2e-3", "end_s = 1e3"));
     let mut child = bench
         .command(&["run", "scene.toml", "--out", "out"])
         .stdout(Stdio::null())

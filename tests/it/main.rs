@@ -1,4 +1,4 @@
-//! The commands as SCENES describes them: exit codes, messages, files.
+//! Tests of the commands: exit codes, messages, files.
 
 #![expect(clippy::unwrap_used, reason = "helpers of tests fail as tests do")]
 

@@ -1,9 +1,10 @@
-//! `amberfield run`.
+//! Command `amberfield run`.
 
 use crate::scenes::{CHARGED, plain};
-use amberfield_tests::{Bench, Table};
+use amberfield_tests::{CsvTable, Workbench};
 
-fn last_frame(bench: &Bench, folder: &str) -> String {
+/// Text of the last particle file.
+fn last_frame(bench: &Workbench, folder: &str) -> String {
     let names = bench.names(&format!("{folder}/particles"));
     let last = names.iter().rfind(|name| name.ends_with(".csv")).unwrap();
     bench.read(&format!("{folder}/particles/{last}"))
@@ -11,7 +12,7 @@ fn last_frame(bench: &Bench, folder: &str) -> String {
 
 #[test]
 fn a_run_writes_what_it_promises() {
-    let bench = Bench::new(CHARGED);
+    let bench = Workbench::new(CHARGED);
     let answer = bench.run(&["run", "scene.toml", "--out", "out", "--threads", "2"]);
     assert_eq!(answer.code, Some(0), "{}", answer.stderr);
     assert_eq!(answer.stdout.lines().count(), 2, "{}", answer.stdout);
@@ -22,7 +23,7 @@ fn a_run_writes_what_it_promises() {
     assert!(!names.contains(&"run.lock".to_owned()));
     assert_eq!(bench.names("out/checkpoints").len(), 4);
     assert_eq!(bench.names("out/particles").len(), 2 * 9);
-    let history = Table::parse(&bench.read("out/history.csv"));
+    let history = CsvTable::parse(&bench.read("out/history.csv"));
     let expected = "step,time_s,kinetic_J,contact_J,gravity_J,electric_J,net_charge_C,contacts,wall_s";
     assert_eq!(history.columns[..9].join(","), expected);
     assert!(history.columns[9..].iter().all(|column| column.starts_with("wall_s_")));
@@ -39,7 +40,7 @@ fn a_run_writes_what_it_promises() {
 
 #[test]
 fn columns_without_a_stage_are_not_there() {
-    let bench = Bench::new(&plain());
+    let bench = Workbench::new(&plain());
     let answer = bench.run(&[
         "run",
         "scene.toml",
@@ -51,14 +52,14 @@ fn columns_without_a_stage_are_not_there() {
         "time.gravity_m_s2=[0,0,0]",
     ]);
     assert_eq!(answer.code, Some(0), "{}", answer.stderr);
-    let history = Table::parse(&bench.read("out/history.csv"));
+    let history = CsvTable::parse(&bench.read("out/history.csv"));
     assert_eq!(history.without_clocks().columns, ["step", "time_s", "kinetic_J", "contact_J", "contacts"]);
     assert!(!bench.names("out").contains(&"tuning.json".to_owned()));
 }
 
 #[test]
 fn a_continued_run_is_bitwise_the_uninterrupted_one() {
-    let bench = Bench::new(CHARGED);
+    let bench = Workbench::new(CHARGED);
     assert_eq!(bench.run(&["run", "scene.toml", "--out", "whole"]).code, Some(0));
     // 377 lies on no schedule.
     assert_eq!(bench.run(&["run", "scene.toml", "--out", "parts", "--steps", "377"]).code, Some(0));
@@ -69,7 +70,8 @@ fn a_continued_run_is_bitwise_the_uninterrupted_one() {
     // The run folder's own scene is the same scene.
     let answer = bench.run(&["run", "parts/scene.toml", "--out", "parts", "--resume", checkpoint]);
     assert_eq!(answer.code, Some(0), "{}", answer.stderr);
-    let history = |folder: &str| Table::parse(&bench.read(&format!("{folder}/history.csv"))).without_clocks();
+    let history =
+        |folder: &str| CsvTable::parse(&bench.read(&format!("{folder}/history.csv"))).without_clocks();
     assert_eq!(history("parts"), history("whole"));
     assert_eq!(last_frame(&bench, "parts"), last_frame(&bench, "whole"));
     assert_eq!(bench.names("parts/particles"), bench.names("whole/particles"));
@@ -78,21 +80,21 @@ fn a_continued_run_is_bitwise_the_uninterrupted_one() {
 
 #[test]
 fn a_run_goes_on_from_an_older_checkpoint_and_to_a_later_end() {
-    let bench = Bench::new(CHARGED);
+    let bench = Workbench::new(CHARGED);
     let later = ["--set", "time.end_s=2.5e-3"];
     assert_eq!(bench.run(&["run", "scene.toml", "--out", "out"]).code, Some(0));
-    let before = Table::parse(&bench.read("out/history.csv")).without_clocks();
+    let before = CsvTable::parse(&bench.read("out/history.csv")).without_clocks();
     let older = "out/checkpoints/step_000000000250.amber";
     let answer = bench.run(&["run", "scene.toml", "--resume", older, later[0], later[1]]);
     assert_eq!(answer.code, Some(0), "{}", answer.stderr);
-    let after = Table::parse(&bench.read("out/history.csv")).without_clocks();
+    let after = CsvTable::parse(&bench.read("out/history.csv")).without_clocks();
     assert_eq!(after.rows[..before.rows.len()], before.rows);
     assert_eq!(after.numbers("step").last(), Some(&1250.0));
 }
 
 #[test]
 fn thread_counts_do_not_change_results() {
-    let bench = Bench::new(CHARGED);
+    let bench = Workbench::new(CHARGED);
     for threads in ["1", "3"] {
         let arguments = ["run", "scene.toml", "--out", threads, "--threads", threads, "--steps", "300"];
         assert_eq!(bench.run(&arguments).code, Some(0));
@@ -102,7 +104,7 @@ fn thread_counts_do_not_change_results() {
 
 #[test]
 fn an_existing_run_folder_is_kept_unless_asked() {
-    let bench = Bench::new(&plain());
+    let bench = Workbench::new(&plain());
     let first = ["run", "scene.toml", "--out", "out", "--steps", "5"];
     assert_eq!(bench.run(&first).code, Some(0));
     let again = bench.run(&first);
@@ -119,7 +121,7 @@ fn an_existing_run_folder_is_kept_unless_asked() {
 
 #[test]
 fn bad_checkpoints_are_refused() {
-    let bench = Bench::new(&plain());
+    let bench = Workbench::new(&plain());
     assert_eq!(bench.run(&["run", "scene.toml", "--out", "out", "--steps", "5"]).code, Some(0));
     let path = "out/checkpoints/step_000000000005.amber";
     let good = std::fs::read(bench.path(path)).unwrap();
@@ -147,7 +149,7 @@ fn bad_checkpoints_are_refused() {
 
 #[test]
 fn a_grain_that_leaves_is_exit_4() {
-    let bench = Bench::new(
+    let bench = Workbench::new(
         &plain()
             .replace("[time]", "[time]\nskin_m = 5e-5")
             .replace("z = \"grounded\"", "z = \"open\"")
@@ -162,18 +164,22 @@ fn a_grain_that_leaves_is_exit_4() {
     assert_eq!(answer.code, Some(0), "{}", answer.stderr);
 }
 
-/// A grain falls on a floor with steps four times too long: it is thrown out of it.
+/// Case of a grain that falls on a floor with steps four times too long, so that the floor throws it out.
 #[test]
 fn a_run_that_is_no_longer_sound_stops_and_names_grain_and_checkpoint() {
-    let scene = "[domain]\nmin_m = [0, 0, 0]\nmax_m = [0.01, 0.01, 0.05]\n[domain.boundary]\nx = 'periodic'\ny = 'periodic'\nz = 'open'\n\
+    let scene = "[domain]\nmin_m = [0, 0, 0]\nmax_m = [0.01, 0.01, 0.05]\n[domain.boundary]\nx = 'periodic'\n\
+        y = 'periodic'\nz = 'open'\n\
          [[walls]]\nplane = { point_m = [0, 0, 0], normal = [0, 0, 1] }\nmaterial = 'glass'\n\
-         [[materials]]\nname = 'glass'\ndensity_kg_m3 = 2500.0\nyoung_Pa = 1e7\npoisson = 0.22\nrestitution = 1.0\nfriction = 0.0\n\
-         [particles]\non_exit = 'delete'\nfile = 'grains.csv'\n[time]\nstep_s = 2e-4\nend_s = 0.5\nallow_unstable = true\ngravity_m_s2 = [0, 0, -9.81]\n\
+         [[materials]]\nname = 'glass'\ndensity_kg_m3 = 2500.0\nyoung_Pa = 1e7\npoisson = 0.22\n\
+         restitution = 1.0\nfriction = 0.0\n\
+         [particles]\non_exit = 'delete'\nfile = 'grains.csv'\n[time]\nstep_s = 2e-4\nend_s = 0.5\n\
+         allow_unstable = true\ngravity_m_s2 = [0, 0, -9.81]\n\
          [output]\nevery_s = 1e-2\nhistory_every_s = 1e-3\ncheckpoint_every_s = 1e-3\nformats = ['csv']\n";
-    let bench = Bench::new(scene);
+    let bench = Workbench::new(scene);
     bench.write(
         "grains.csv",
-        "id,x_m,y_m,z_m,radius_m,charge_C,material\n7,0.005,0.005,0.002,1e-3,0,glass\n8,0.005,0.005,0.0041,1e-3,0,glass\n",
+        "id,x_m,y_m,z_m,radius_m,charge_C,material\n7,0.005,0.005,0.002,1e-3,0,glass\n\
+         8,0.005,0.005,0.0041,1e-3,0,glass\n",
     );
     let answer = bench.run(&["run", "scene.toml", "--out", "out", "--no-progress"]);
     assert_eq!(answer.code, Some(4), "{}", answer.stderr);

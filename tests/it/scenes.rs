@@ -1,4 +1,4 @@
-//! Small scenes.
+//! Small scenes for tests.
 
 /// Charged grains that fall and collide between grounded plates.
 pub(crate) const CHARGED: &str = r#"
@@ -40,16 +40,17 @@ formats = ["vtk", "csv"]
 checkpoint_every_s = 5e-4
 "#;
 
-/// The same grains without charge and field.
+/// Scene `CHARGED` without charge and field.
 pub(crate) fn plain() -> String {
     let (before, rest) = CHARGED.split_once("[electric_field]").unwrap();
     let (_, after) = rest.split_once("[output]").unwrap();
     format!("{before}[output]{after}").replace("charge_C = { bipolar = 1e-14 }\n", "")
 }
 
-/// Two charges in free space, no materials, no time.
-pub(crate) const PAIR: &str = "domain = { min_m = [0, 0, 0], max_m = [1, 1, 1], boundary = { x = 'open', y = 'open', z = 'open' } }\n\
+/// Scene of two charges in free space, without materials and time.
+pub(crate) const PAIR: &str = "domain = { min_m = [0, 0, 0], max_m = [1, 1, 1], \
+    boundary = { x = 'open', y = 'open', z = 'open' } }\n\
     particles.file = 'pair.csv'\n[electric_field]\nmethod = 'direct'\n";
-/// Their file: 1 nC and −2 nC, half a metre apart.
+/// Particles file of the scene `PAIR`: 1 nC and −2 nC, half a metre apart.
 pub(crate) const PAIR_CSV: &str =
     "id,x_m,y_m,z_m,radius_m,charge_C\n5,0.25,0.5,0.5,0,1e-9\n3,0.75,0.5,0.5,0,-2e-9\n";

@@ -1,14 +1,18 @@
-//! `amberfield study` and `amberfield tune`.
+//! Commands `amberfield study` and `amberfield tune`.
 
-use amberfield_tests::{Bench, Table};
+use amberfield_tests::{CsvTable, Workbench};
 
-const BOX: &str = "[domain]\nmin_m = [0, 0, 0]\nmax_m = [0.01, 0.01, 0.01]\n[domain.boundary]\nx = 'periodic'\ny = 'periodic'\nz = 'grounded'\n\
-     [particles]\ngenerate = { material = 'glass', count = 300, radius_m = 3e-4, seed = 1, charge_C = { bipolar = 1e-14 } }\n\
-     [[materials]]\nname = 'glass'\ndensity_kg_m3 = 2500.0\nyoung_Pa = 1e7\npoisson = 0.2\nrestitution = 0.9\nfriction = 0.3\n[electric_field]\n";
+const BOX: &str = "[domain]\nmin_m = [0, 0, 0]\nmax_m = [0.01, 0.01, 0.01]\n[domain.boundary]\n\
+    x = 'periodic'\ny = 'periodic'\nz = 'grounded'\n\
+     [particles]\ngenerate = { material = 'glass', count = 300, radius_m = 3e-4, seed = 1, \
+     charge_C = { bipolar = 1e-14 } }\n\
+     [[materials]]\nname = 'glass'\ndensity_kg_m3 = 2500.0\nyoung_Pa = 1e7\npoisson = 0.2\n\
+     restitution = 0.9\nfriction = 0.3\n[electric_field]\n";
 
-fn bench(methods: &str) -> Bench {
-    let bench = Bench::new(BOX);
-    let head = "name = 'small'\ntitle = 'Small'\npasses = 2\nleast_s = 0.0\n[[problems]]\nname = 'a box'\nscene = 'scene.toml'\n";
+fn bench(methods: &str) -> Workbench {
+    let bench = Workbench::new(BOX);
+    let head = "name = 'small'\ntitle = 'Small'\npasses = 2\nleast_s = 0.0\n[[problems]]\nname = 'a box'\n\
+        scene = 'scene.toml'\n";
     bench.write("study.toml", format!("{head}{methods}"));
     bench
 }
@@ -17,7 +21,8 @@ fn bench(methods: &str) -> Bench {
 fn study_writes_rows_plots_and_a_page_that_say_the_same() {
     let bench = bench(
         "[[methods]]\nname = 'p3m'\nsweep = { key = 'electric_field.tolerance', values = [1e-1, 1e-2] }\n\
-         [[methods]]\nname = 'cut-off'\nset = ['electric_field.method=cutoff']\nsweep = { key = 'electric_field.field_cutoff_radius', values = [3], times = 6e-4 }\n\
+         [[methods]]\nname = 'cut-off'\nset = ['electric_field.method=cutoff']\n\
+         sweep = { key = 'electric_field.field_cutoff_radius', values = [3], times = 6e-4 }\n\
          [[methods]]\nname = 'far too fine'\nset = ['electric_field.tolerance=7']\n",
     );
     let answer = bench.run(&["study", "study.toml", "--out", "out"]);
@@ -36,16 +41,20 @@ fn study_writes_rows_plots_and_a_page_that_say_the_same() {
 
 #[test]
 fn whole_runs_are_compared_with_a_finer_one() {
-    let walls = "[time]\nstep_s = 2e-6\nend_s = 4e-4\ngravity_m_s2 = [0, 0, -9.81]\n[output]\nevery_s = 4e-4\nformats = ['csv']\n";
-    let bench = Bench::new(&format!("{BOX}{walls}"));
-    let study = "name = 'runs'\ntitle = 'Runs'\n[[motions]]\nname = 'falling'\nscene = 'scene.toml'\nreference = ['electric_field.tolerance=1e-5', 'electric_field.coupling_interval=1', 'electric_field.tuning=model']\n\
-         replicas = { key = 'particles.generate.seed', values = [2, 3] }\n[[motions.variants]]\nname = 'tolerance'\nsweep = { key = 'electric_field.tolerance', values = [1e-2, 1e-5] }\n";
+    let walls = "[time]\nstep_s = 2e-6\nend_s = 4e-4\ngravity_m_s2 = [0, 0, -9.81]\n[output]\n\
+        every_s = 4e-4\nformats = ['csv']\n";
+    let bench = Workbench::new(&format!("{BOX}{walls}"));
+    let study = "name = 'runs'\ntitle = 'Runs'\n[[motions]]\nname = 'falling'\nscene = 'scene.toml'\n\
+        reference = ['electric_field.tolerance=1e-5', 'electric_field.coupling_interval=1', \
+        'electric_field.tuning=model']\n\
+         replicas = { key = 'particles.generate.seed', values = [2, 3] }\n[[motions.variants]]\n\
+         name = 'tolerance'\nsweep = { key = 'electric_field.tolerance', values = [1e-2, 1e-5] }\n";
     bench.write("study.toml", study);
     let answer = bench.run(&["study", "study.toml", "--out", "out"]);
     assert_eq!(answer.code, Some(0), "{}", answer.stderr);
     let data = bench.names("out/data");
     assert!(data.len() == 1 && data[0].ends_with("-runs-motions.csv"), "{data:?}");
-    let table = Table::parse(&bench.read(&format!("out/data/{}", data[0])));
+    let table = CsvTable::parse(&bench.read(&format!("out/data/{}", data[0])));
     let error = table.numbers("position_error");
     assert!(error[0] > 1e-12 && error[0] < 1e-6, "{error:?}");
     assert_eq!(error[1], 0.0, "the reference's own settings");
@@ -55,7 +64,8 @@ fn whole_runs_are_compared_with_a_finer_one() {
 #[test]
 fn study_fails_where_an_error_is_above_its_bound() {
     let bench = bench(
-        "[[methods]]\nname = 'cut-off'\nset = ['electric_field.method=cutoff', 'electric_field.field_cutoff_radius=1e-3']\nmost_error = 1e-3\n",
+        "[[methods]]\nname = 'cut-off'\nset = ['electric_field.method=cutoff', \
+         'electric_field.field_cutoff_radius=1e-3']\nmost_error = 1e-3\n",
     );
     let answer = bench.run(&["study", "study.toml", "--out", "out"]);
     assert_eq!(answer.code, Some(4), "{}", answer.stderr);
@@ -75,19 +85,19 @@ fn bad_studies_are_refused_by_name() {
 
 #[test]
 fn tune_lists_candidates_and_checks_its_choice() {
-    let bench = Bench::new(BOX);
+    let bench = Workbench::new(BOX);
     let answer = bench.run(&["tune", "scene.toml", "--tolerance", "1e-3", "--out", "tune.csv"]);
     assert_eq!(answer.code, Some(0), "{}", answer.stderr);
     assert!(answer.stdout.contains("against the direct sum"), "{}", answer.stdout);
     let table = bench.read("tune.csv");
     assert!(table.lines().last().expect("a line").starts_with("true,"), "{table}");
-    let seconds = Table::parse(&table).numbers("seconds");
+    let seconds = CsvTable::parse(&table).numbers("seconds");
     assert!(seconds.len() > 2 && seconds.iter().all(|seconds| *seconds > 0.0), "{table}");
 }
 
 #[test]
 fn tune_ends_with_an_answer_whatever_the_charges() {
-    let bench = Bench::new(BOX);
+    let bench = Workbench::new(BOX);
     let tune = |set: &[&str]| {
         let set: Vec<&str> = set.iter().flat_map(|set| ["--set", set]).collect();
         bench.run(&[&["tune", "scene.toml", "--out", "tune.csv"], &set[..]].concat())

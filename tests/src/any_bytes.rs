@@ -1,5 +1,7 @@
-//! Any bytes at everything that is read: an answer, never a panic. For the fuzzer (`cargo xtask fuzz`) and for the test that sends its corpora and
-//! changes of them through.
+//! Readers that must answer any bytes with a result and never panic.
+//!
+//! The fuzzer (`cargo xtask fuzz`) uses them, and a test that sends its corpora, and changes of them,
+//! through.
 
 use amberfield_core::{Boundary, Domain, Vector3};
 use amberfield_coupling::{GrainsInCells, MeshArrays, MeshPart, Question, assemble};
@@ -12,10 +14,10 @@ use amberfield_wire::{Block64, Header, Section, SectionEntry, Sections};
 use std::path::PathBuf;
 use std::sync::OnceLock;
 
-/// Reads bytes.
+/// Function that reads bytes.
 pub type Reader = fn(&[u8]);
 
-/// What bytes are sent to, by name.
+/// Readers with their names.
 pub const TARGETS: [(&str, Reader); 6] = [
     ("scene", scene),
     ("grains", grains),
@@ -25,13 +27,15 @@ pub const TARGETS: [(&str, Reader); 6] = [
     ("mesh", mesh),
 ];
 
-/// A scene with every kind of section, and its files.
+/// Good scene with every kind of section.
 const SCENE: &str = include_str!("../fuzz/good/scene.toml");
+/// Good particles file of the scene.
 const GRAINS: &str = include_str!("../fuzz/good/grains.csv");
+/// Good surface of the scene.
 const SURFACE: &str = include_str!("../fuzz/good/surface.stl");
-/// Fingerprint that checkpoints are read with.
+/// Fingerprint with which checkpoints are read.
 const HASH: u64 = 42;
-/// Sections' numbers, past the last.
+/// Sections of messages.
 const SECTIONS: [Section; 32] = [
     Section::Text,
     Section::Positions,
@@ -67,11 +71,11 @@ const SECTIONS: [Section; 32] = [
     Section::FlowStateSizes,
 ];
 
-/// A folder of this process with a good scene, one file of it replaced.
+/// Reads a good scene in which the bytes replace one file.
 fn read_with(name: &str, bytes: &[u8]) {
     static FOLDER: OnceLock<tempfile::TempDir> = OnceLock::new();
     let folder = FOLDER.get_or_init(|| tempfile::tempdir().expect("a folder"));
-    // Threads of a test each have a folder of their own.
+    // Each thread of a test has a folder of its own.
     let own: PathBuf = folder.path().join(format!("{:?}", std::thread::current().id()));
     std::fs::create_dir_all(&own).expect("a folder");
     for (good, text) in [("scene.toml", SCENE), ("grains.csv", GRAINS), ("surface.stl", SURFACE)] {
@@ -81,29 +85,29 @@ fn read_with(name: &str, bytes: &[u8]) {
     let scene = read_scene(&own.join("scene.toml"), &[], Purpose::Explain);
     if let Ok(scene) = scene {
         let finite = scene.particles.position.iter().flatten().all(|number| number.is_finite());
-        assert!(finite, "grains are somewhere");
+        assert!(finite, "positions are finite");
     }
 }
 
-/// A scene file.
+/// Reads the bytes as a scene file.
 fn scene(bytes: &[u8]) {
-    // Fills of millions of grains are no mistake, but take their time.
+    // Fills of millions of grains are no mistake, but take long.
     if !bytes.windows(8).any(|word| word == b"generate") {
         read_with("scene.toml", bytes);
     }
 }
 
-/// A CSV file of grains.
+/// Reads the bytes as a CSV file of particles.
 fn grains(bytes: &[u8]) {
     read_with("grains.csv", bytes);
 }
 
-/// An STL file.
+/// Reads the bytes as an STL file.
 fn surface(bytes: &[u8]) {
     read_with("surface.stl", bytes);
 }
 
-/// A checkpoint: the bytes as a file, and behind a header that fits them.
+/// Reads the bytes as a checkpoint, and as the state behind a header that fits them.
 fn checkpoint(bytes: &[u8]) {
     type State = (u64, Vec<f64>, String, Option<[f64; 3]>);
     static FOLDER: OnceLock<tempfile::TempDir> = OnceLock::new();
@@ -115,7 +119,7 @@ fn checkpoint(bytes: &[u8]) {
     let _answer = read_checkpoint::<State>(&path, HASH);
 }
 
-/// Bytes that encode as themselves.
+/// Bytes that are encoded as themselves.
 struct Raw<'a>(&'a [u8]);
 
 impl serde::Serialize for Raw<'_> {
@@ -127,7 +131,7 @@ impl serde::Serialize for Raw<'_> {
     }
 }
 
-/// A message: header and payload from the bytes.
+/// Reads the bytes as the header and the payload of a message.
 fn message(bytes: &[u8]) {
     let mut bytes = bytes.iter().copied();
     let mut number = |size: usize| {
@@ -178,6 +182,7 @@ fn message(bytes: &[u8]) {
     }
 }
 
+/// Block of at most 64 bytes, little endian.
 fn block(bytes: &[u8]) -> Block64 {
     let mut words = [0_u64; 8];
     for (place, byte) in bytes.iter().enumerate() {
@@ -186,7 +191,7 @@ fn block(bytes: &[u8]) -> Block64 {
     Block64 { words }
 }
 
-/// A mesh of a few cells whose numbers are changed: the bytes say which and into what.
+/// Reads a mesh of a few cells in which the bytes change numbers: each eleven bytes say which, and into what.
 fn mesh(bytes: &[u8]) {
     static GOOD: OnceLock<(FarMesh, MeshArrays)> = OnceLock::new();
     let (good, arrays) = GOOD.get_or_init(|| {
@@ -247,11 +252,13 @@ fn mesh(bytes: &[u8]) {
     }
 }
 
+/// Sets a number of a list; the place is taken modulo the length.
 fn set<T>(numbers: &mut [T], place: usize, number: T) {
     let count = numbers.len();
     numbers[place % count] = number;
 }
 
+/// Sets a number in a list of vectors; the place is taken modulo the length.
 fn set_in<const N: usize>(vectors: &mut [[f64; N]], place: usize, number: f64) {
     let count = vectors.len() * N;
     vectors[place % count / N][place % N] = number;

@@ -1,24 +1,24 @@
-//! A box of charged grains with a case of OpenFOAM's around it.
+//! Box of charged grains with an OpenFOAM case of the same box.
 
 #![expect(clippy::unwrap_used, reason = "helpers of tests fail as tests do")]
 
 use crate::foam_case::{brick, write_case};
-use crate::{Answer, Bench, Table};
+use crate::{Answer, CsvTable, Workbench};
 use rustix::process::Pid;
 use std::process::{Child, Stdio};
 use std::time::{Duration, Instant};
 
 /// Longest wait for something that takes a fraction of a second.
 pub const DEADLINE: Duration = Duration::from_secs(60);
-/// Half-and-half charged grains in a box; every boundary as `phiE` and `[domain.boundary]` say it.
+/// Box of charged grains, whose boundaries are given in `phiE` and in `[domain.boundary]`.
 #[derive(Debug)]
 pub struct FoamBox {
-    /// Its folder.
-    pub bench: Bench,
+    /// Folder of the box.
+    pub bench: Workbench,
 }
 
 impl FoamBox {
-    /// A box whose patches have a kind and a condition each, in the order x0, x1, y0, y1, z0, z1.
+    /// Box with a kind and a condition for each patch, in the order x0, x1, y0, y1, z0, z1.
     ///
     /// # Panics
     /// When its folder cannot be written.
@@ -26,47 +26,51 @@ impl FoamBox {
     pub fn new(sides: &[(&str, &str); 6], faces: &str, charge: &str) -> Self {
         let scene = format!(
             "[domain]\nmin_m = [0, 0, 0]\nmax_m = [0.012, 0.012, 0.01]\n[domain.boundary]\n{faces}\n\
-             [[materials]]\nname = 'glass'\ndensity_kg_m3 = 2500.0\nyoung_Pa = 5e5\npoisson = 0.22\nrestitution = 0.6\nfriction = 0.3\n\
-             [particles]\non_exit = 'delete'\ngenerate = {{ material = 'glass', count = 3000, radius_m = 2.5e-4, seed = 3, charge_C = {{ {charge} }} }}\n\
-             [electric_field]\ntuning = 'model'\n[time]\nstep_s = 'auto'\nend_s = 1e-3\ngravity_m_s2 = [0, 0, -9.81]\n\
+             [[materials]]\nname = 'glass'\ndensity_kg_m3 = 2500.0\nyoung_Pa = 5e5\npoisson = 0.22\n\
+             restitution = 0.6\nfriction = 0.3\n\
+             [particles]\non_exit = 'delete'\n\
+             generate = {{ material = 'glass', count = 3000, radius_m = 2.5e-4, seed = 3, charge_C = {{ \
+             {charge} }} }}\n\
+             [electric_field]\ntuning = 'model'\n[time]\nstep_s = 'auto'\nend_s = 1e-3\n\
+             gravity_m_s2 = [0, 0, -9.81]\n\
              [solver]\nopenfoam_case = 'foam'\ntimeout_s = 20.0\n"
         );
-        let bench = Bench::new(&scene);
-        let (mesh, conditions) = brick([12.0, 12.0, 10.0], [12, 12, 10], sides);
-        write_case(&bench, &mesh, &conditions, "Gauss linear");
+        let bench = Workbench::new(&scene);
+        let brick = brick([12.0, 12.0, 10.0], [12, 12, 10], sides);
+        write_case(&bench, &brick.mesh, &brick.conditions, "Gauss linear");
         Self { bench }
     }
 
-    /// All faces grounded.
+    /// Box with all faces grounded.
     #[must_use]
     pub fn grounded() -> Self {
         let wall = ("wall", "type fixedValue; value uniform 0;");
         Self::new(&[wall; 6], "x = 'grounded'\ny = 'grounded'\nz = 'grounded'", "bipolar = 1e-12")
     }
 
-    /// The field of its grains.
+    /// Computes the field of the grains.
     #[must_use]
     pub fn field(&self, out: &str, options: &[&str]) -> Answer {
         self.bench.run(&[&["field", "scene.toml", "--out", out], options].concat())
     }
 
-    /// E of a result.
+    /// Components of E in a result [V/m], first those along x of all grains.
     #[must_use]
     pub fn e(&self, out: &str) -> Vec<f64> {
-        let table = Table::parse(&self.bench.read(out));
+        let table = CsvTable::parse(&self.bench.read(out));
         ["ex_V_per_m", "ey_V_per_m", "ez_V_per_m"].iter().flat_map(|name| table.numbers(name)).collect()
     }
 
-    /// Without `[solver]` from now on.
+    /// Removes `[solver]` from the scene.
     ///
     /// # Panics
-    /// When there was none.
+    /// When the scene has none.
     pub fn alone(&self) {
         let scene = self.bench.read("scene.toml");
         self.bench.write("scene.toml", &scene[..scene.find("[solver]").unwrap()]);
     }
 
-    /// Starts a run that goes on for ever and waits until it has begun to step.
+    /// Starts a run without end and waits until it has begun to step.
     ///
     /// # Panics
     /// When it does not.
@@ -97,7 +101,7 @@ impl FoamBox {
         }
     }
 
-    /// The field solver of this folder's case.
+    /// Process of the field solver of this box.
     ///
     /// # Panics
     /// When none runs.

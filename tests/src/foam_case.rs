@@ -1,76 +1,91 @@
-//! Cases of OpenFOAM's with meshes of many shapes.
+//! OpenFOAM cases with meshes of many shapes.
 
 #![expect(clippy::unwrap_used, reason = "helpers of tests fail as tests do")]
 
-use crate::Bench;
+use crate::Workbench;
 use amberfield_coupling::foam_command;
 use std::fmt::Write as _;
 
-/// The six sides of a hexahedron whose corners are numbered as OpenFOAM does.
+/// Corners of the six sides of a hexahedron, numbered as in OpenFOAM.
 const SIDES: [[usize; 4]; 6] =
     [[0, 4, 7, 3], [1, 2, 6, 5], [0, 1, 5, 4], [3, 7, 6, 2], [0, 3, 2, 1], [4, 5, 6, 7]];
+/// Signs of the coordinates of the corners of a hexahedron, in the order of OpenFOAM.
 const CORNERS: [[i32; 3]; 8] =
     [[-1, -1, -1], [1, -1, -1], [1, 1, -1], [-1, 1, -1], [-1, -1, 1], [1, -1, 1], [1, 1, 1], [-1, 1, 1]];
-/// Half the inner cube of a ball or cylinder over the radius.
+/// Half the edge of the inner cube of a ball or cylinder, over the radius.
 const CORE: f64 = 0.42;
 
-/// Writes a case into the folder `foam`: a recipe for its mesh, conditions of the potential by patch, a scheme for gradients.
-pub fn write_case(bench: &Bench, mesh: &str, conditions: &str, gradient: &str) {
+/// Writes a case into the folder `foam`.
+///
+/// `mesh` is a recipe for `blockMesh`, `conditions` are those of the potential by patch, `gradient` is the
+/// scheme for gradients.
+pub fn write_case(bench: &Workbench, mesh: &str, conditions: &str, gradient: &str) {
     let file = |name: &str, class: &str, text: &str| write_file(bench, name, class, text);
     file("system/blockMeshDict", "dictionary", mesh);
     file(
         "system/controlDict",
         "dictionary",
-        "startFrom startTime; startTime 0; stopAt endTime; endTime 1; deltaT 1; writeControl timeStep; writeInterval 1;\n",
+        "startFrom startTime; startTime 0; stopAt endTime; endTime 1; deltaT 1; writeControl timeStep; \
+         writeInterval 1;\n",
     );
     file(
         "system/fvSchemes",
         "dictionary",
         &format!(
-            "ddtSchemes {{ default none; }} gradSchemes {{ default {gradient}; }} divSchemes {{ default none; }}\n\
-             laplacianSchemes {{ default Gauss linear corrected; }} interpolationSchemes {{ default linear; }} snGradSchemes {{ default corrected; }}\n"
+            "ddtSchemes {{ default none; }} gradSchemes {{ default {gradient}; }} divSchemes {{ default \
+             none; }}\n\
+             laplacianSchemes {{ default Gauss linear corrected; }} interpolationSchemes {{ default linear; \
+             }} snGradSchemes {{ default corrected; }}\n"
         ),
     );
     file("system/fvSolution", "dictionary", "solvers {}\n");
     write_potential(bench, conditions);
 }
 
-/// Writes the potential of the case in the folder `foam`, with conditions by patch.
-pub fn write_potential(bench: &Bench, conditions: &str) {
+/// Writes the potential of the case in the folder `foam`; `conditions` are given by patch.
+pub fn write_potential(bench: &Workbench, conditions: &str) {
     let text = format!(
         "dimensions [1 2 -3 0 0 -1 0];\ninternalField uniform 0;\nboundaryField {{ {conditions} }}\n"
     );
     write_file(bench, "0/phiE", "volScalarField", &text);
 }
 
-/// Writes a file of the case in the folder `foam`, its header first.
-pub fn write_file(bench: &Bench, name: &str, class: &str, text: &str) {
+/// Writes a file of the case in the folder `foam`, with its header.
+pub fn write_file(bench: &Workbench, name: &str, class: &str, text: &str) {
     let (folder, object) = name.rsplit_once('/').unwrap();
     std::fs::create_dir_all(bench.path("foam").join(folder)).unwrap();
     let head = format!("FoamFile {{ version 2.0; format ascii; class {class}; object {object}; }}\n");
     bench.write(&format!("foam/{name}"), head + text);
 }
 
-/// Writes a case of a gas into the folder `foam`: a recipe for its mesh, conditions of U and p (over the density) by patch, kinematic viscosity [m²/s].
-pub fn write_gas_case(bench: &Bench, mesh: &str, velocity: &str, pressure: &str, viscosity: f64) {
+/// Writes a case of a gas into the folder `foam`.
+///
+/// `mesh` is a recipe for `blockMesh`, `velocity` and `pressure` are conditions by patch of U and of p over
+/// the density, `viscosity` is the kinematic viscosity [m²/s].
+pub fn write_gas_case(bench: &Workbench, mesh: &str, velocity: &str, pressure: &str, viscosity: f64) {
     let file = |name: &str, class: &str, text: &str| write_file(bench, name, class, text);
     file("system/blockMeshDict", "dictionary", mesh);
     file(
         "system/controlDict",
         "dictionary",
-        "startFrom startTime; startTime 0; stopAt endTime; endTime 1e9; deltaT 1; writeControl none; writeInterval 1e9;\n",
+        "startFrom startTime; startTime 0; stopAt endTime; endTime 1e9; deltaT 1; writeControl none; \
+         writeInterval 1e9;\n",
     );
     file(
         "system/fvSchemes",
         "dictionary",
-        "ddtSchemes { default Euler; } gradSchemes { default Gauss linear; } divSchemes { default Gauss linear; div(alphaPhi,U) Gauss limitedLinearV 1; \"div\\(alphaPhi,(k|epsilon)\\)\" Gauss upwind; }\n\
-         laplacianSchemes { default Gauss linear corrected; } interpolationSchemes { default linear; } snGradSchemes { default corrected; }\n",
+        "ddtSchemes { default Euler; } gradSchemes { default Gauss linear; } divSchemes { default Gauss \
+         linear; div(alphaPhi,U) Gauss limitedLinearV 1; \"div\\(alphaPhi,(k|epsilon)\\)\" Gauss upwind; }\n\
+         laplacianSchemes { default Gauss linear corrected; } interpolationSchemes { default linear; } \
+         snGradSchemes { default corrected; }\n",
     );
     file(
         "system/fvSolution",
         "dictionary",
-        "solvers { \"p.*\" { solver GAMG; smoother GaussSeidel; tolerance 1e-10; relTol 0; } \"(U|k|epsilon).*\" { solver PBiCGStab; preconditioner DILU; tolerance 1e-12; relTol 0; } }\n\
-         PIMPLE { nOuterCorrectors 4; nCorrectors 3; nNonOrthogonalCorrectors 0; momentumPredictor yes; pRefCell 0; pRefValue 0; }\n",
+        "solvers { \"p.*\" { solver GAMG; smoother GaussSeidel; tolerance 1e-10; relTol 0; } \
+         \"(U|k|epsilon).*\" { solver PBiCGStab; preconditioner DILU; tolerance 1e-12; relTol 0; } }\n\
+         PIMPLE { nOuterCorrectors 4; nCorrectors 3; nNonOrthogonalCorrectors 0; momentumPredictor yes; \
+         pRefCell 0; pRefValue 0; }\n",
     );
     file(
         "constant/transportProperties",
@@ -92,19 +107,21 @@ pub fn write_gas_case(bench: &Bench, mesh: &str, velocity: &str, pressure: &str,
     );
 }
 
-/// A program of OpenFOAM's, run on the case.
+/// Runs a program of OpenFOAM on the case.
 ///
 /// # Panics
 /// When it fails.
-pub fn foam_program(bench: &Bench, program: &str, options: &[&str]) {
+pub fn foam_program(bench: &Workbench, program: &str, options: &[&str]) {
     let mut command = foam_command(program);
-    // Some leave pictures of what they found where they run.
+    // Some programs write pictures into the folder in which they run.
     command.args(options).arg("-case").arg(bench.path("foam")).current_dir(bench.path(""));
     let output = command.output().expect("OpenFOAM is there; `cargo xtask openfoam` installs it");
     assert!(output.status.success(), "{program}: {}", String::from_utf8_lossy(&output.stderr));
 }
 
-/// Recipe of a cube of an edge \[mm\], its cells of so different sizes along each axis, and one patch `wall`.
+/// Recipe of a cube with an edge \[mm\] and one patch `wall`.
+///
+/// `grading` is the ratio of the last cell to the first along each axis.
 #[must_use]
 pub fn cube(edge_mm: f64, cells: usize, grading: f64) -> String {
     let vertex =
@@ -112,17 +129,28 @@ pub fn cube(edge_mm: f64, cells: usize, grading: f64) -> String {
     let vertices: Vec<String> = CORNERS.iter().map(vertex).collect();
     let faces: Vec<String> = SIDES.iter().map(|side| quad(side, 0)).collect();
     format!(
-        "scale 1e-3;\nvertices ({});\nblocks (hex (0 1 2 3 4 5 6 7) ({cells} {cells} {cells}) simpleGrading ({grading} {grading} {grading}));\n\
+        "scale 1e-3;\nvertices ({});\nblocks (hex (0 1 2 3 4 5 6 7) ({cells} {cells} {cells}) simpleGrading \
+         ({grading} {grading} {grading}));\n\
          boundary ( wall {{ type wall; faces ({}); }} );\n",
         vertices.join(" "),
         faces.join(" ")
     )
 }
 
-/// Recipe of a box of edges \[mm\] with a patch on each side, `x0`, `x1`, `y0` …: their kinds and conditions in this order; and the
-/// conditions of all.
+/// Recipe of a box.
+#[derive(Clone, Debug)]
+pub struct Brick {
+    /// Recipe of the mesh for `blockMesh`.
+    pub mesh: String,
+    /// Conditions of a field, by patch.
+    pub conditions: String,
+}
+
+/// Recipe of a box of edges \[mm\] with a patch on each side.
+///
+/// `sides` are the kinds and the conditions of the patches `x0`, `x1`, `y0`, `y1`, `z0`, `z1`.
 #[must_use]
-pub fn brick(edges_mm: [f64; 3], cells: [usize; 3], sides: &[(&str, &str); 6]) -> (String, String) {
+pub fn brick(edges_mm: [f64; 3], cells: [usize; 3], sides: &[(&str, &str); 6]) -> Brick {
     const NAMES: [&str; 6] = ["x0", "x1", "y0", "y1", "z0", "z1"];
     let (mut patches, mut conditions) = (String::new(), String::new());
     for (side, (kind, condition)) in sides.iter().enumerate() {
@@ -136,13 +164,16 @@ pub fn brick(edges_mm: [f64; 3], cells: [usize; 3], sides: &[(&str, &str); 6]) -
     let vertices: Vec<String> = CORNERS.iter().map(vertex).collect();
     let [x, y, z] = cells;
     let mesh = format!(
-        "scale 1e-3;\nvertices ({});\nblocks (hex (0 1 2 3 4 5 6 7) ({x} {y} {z}) simpleGrading (1 1 1));\nboundary ({patches});\n",
+        "scale 1e-3;\nvertices ({});\nblocks (hex (0 1 2 3 4 5 6 7) ({x} {y} {z}) simpleGrading (1 1 1));\n\
+         boundary ({patches});\n",
         vertices.join(" ")
     );
-    (mesh, conditions)
+    Brick { mesh, conditions }
 }
 
-/// Recipe of a ball around the origin: an inner cube of `cells` and as many on each of six sides, `layers` deep.
+/// Recipe of a ball around the origin with a radius \[mm\].
+///
+/// It has an inner cube of `cells` along each edge, and as many on each of six sides, `layers` deep.
 #[must_use]
 pub fn ball(radius_mm: f64, cells: usize, layers: usize) -> String {
     let corner = |scale: f64| {
@@ -177,14 +208,17 @@ pub fn ball(radius_mm: f64, cells: usize, layers: usize) -> String {
         }
     }
     format!(
-        "scale 1e-3;\ngeometry {{ ball {{ type searchableSphere; centre (0 0 0); radius {radius_mm}; }} }}\nvertices ({});\nblocks ({blocks});\n\
+        "scale 1e-3;\ngeometry {{ ball {{ type searchableSphere; centre (0 0 0); radius {radius_mm}; }} }}\n\
+         vertices ({});\nblocks ({blocks});\n\
          edges ({edges});\nfaces ({projected});\nboundary ( wall {{ type wall; faces ({faces}); }} );\n",
         vertices.join(" ")
     )
 }
 
-/// Recipe of a cylinder around the z axis from z = 0: an inner square of `cells` and as many on each of four sides,
-/// `layers` deep.
+/// Recipe of a cylinder around the z axis from z = 0 with a radius and a length \[mm\].
+///
+/// It has an inner square of `cells` across and along the axis, and as many on each of four sides, `layers`
+/// deep.
 #[must_use]
 pub fn cylinder(radius_mm: f64, length_mm: f64, cells: [usize; 2], layers: usize) -> String {
     let square = [[-1.0, -1.0], [1.0, -1.0], [1.0, 1.0], [-1.0, 1.0]];
@@ -224,11 +258,11 @@ pub fn cylinder(radius_mm: f64, length_mm: f64, cells: [usize; 2], layers: usize
     )
 }
 
-/// Moves the inner points of a cube's mesh by up to a share of its cells \[m\], and those of its faces within them.
+/// Moves the points of a cube's mesh by up to a share of its cells; those on a face stay on it.
 ///
 /// # Panics
 /// Without a mesh.
-pub fn perturb(bench: &Bench, edge_mm: f64, cells: usize, share: f64) {
+pub fn perturb(bench: &Workbench, edge_mm: f64, cells: usize, share: f64) {
     let text = bench.read("foam/constant/polyMesh/points");
     let (edge, most) = (1e-3 * edge_mm, 1e-3 * share * edge_mm / cells as f64);
     let mut random = Random(1);
@@ -252,8 +286,9 @@ pub fn perturb(bench: &Bench, edge_mm: f64, cells: usize, share: f64) {
     bench.write("foam/constant/polyMesh/points", lines.join("\n"));
 }
 
-/// Makes a mesh of tetrahedra, six for each of a cube's cells with moved corners; with `dual` its polyhedra.
-pub fn tetrahedra(bench: &Bench, edge_mm: f64, cells: usize, dual: bool) {
+/// Makes a mesh of tetrahedra, six for each cell of a cube with moved corners; with `dual`, a mesh of the
+/// dual polyhedra.
+pub fn tetrahedra(bench: &Workbench, edge_mm: f64, cells: usize, dual: bool) {
     const MOVED: f64 = 0.1;
     let mut random = Random(2);
     let size = 1e-3 * edge_mm / cells as f64;
@@ -294,7 +329,10 @@ pub fn tetrahedra(bench: &Bench, edge_mm: f64, cells: usize, dual: bool) {
     let points = (cells + 1).pow(3);
     bench.write(
         "mesh.msh",
-        format!("$MeshFormat\n2.2 0 8\n$EndMeshFormat\n$Nodes\n{points}\n{nodes}$EndNodes\n$Elements\n{count}\n{elements}$EndElements\n"),
+        format!(
+            "$MeshFormat\n2.2 0 8\n$EndMeshFormat\n$Nodes\n{points}\n{nodes}$EndNodes\n$Elements\n\
+            {count}\n{elements}$EndElements\n"
+        ),
     );
     foam_program(bench, "gmshToFoam", &[&bench.path("mesh.msh").display().to_string()]);
     if dual {
@@ -305,12 +343,13 @@ pub fn tetrahedra(bench: &Bench, edge_mm: f64, cells: usize, dual: bool) {
     }
 }
 
-/// Equally distributed numbers in \[0, 1) that are the same everywhere (Marsaglia's xorshift64*).
+/// Generator of equally distributed numbers in \[0, 1) that are the same on each machine (xorshift64*,
+/// Vigna).
 #[derive(Debug)]
 pub struct Random(pub u64);
 
 impl Random {
-    /// The next one.
+    /// Next number.
     pub fn number(&mut self) -> f64 {
         self.0 ^= self.0 >> 12;
         self.0 ^= self.0 << 25;
@@ -319,6 +358,7 @@ impl Random {
     }
 }
 
+/// Visits the points of a cubic lattice.
 fn for_each_of(count: usize, mut visit: impl FnMut([usize; 3])) {
     for x in 0..count {
         for y in 0..count {
@@ -329,10 +369,12 @@ fn for_each_of(count: usize, mut visit: impl FnMut([usize; 3])) {
     }
 }
 
+/// Coordinate of a corner on a side, −1 or 1.
 fn at(edge: f64, side: i32) -> f64 {
     if side < 0 { 0.0 } else { edge }
 }
 
+/// Text of the corners of a side, each increased by `add`.
 fn quad(side: &[usize; 4], add: usize) -> String {
     let [a, b, c, d] = side.map(|corner| corner + add);
     format!("({a} {b} {c} {d})")

@@ -1,9 +1,9 @@
-//! Running the `amberfield` binary in a folder of its own.
+//! Helpers of tests that run the `amberfield` binary in a folder of their own.
 
 pub mod any_bytes;
-mod bench;
 mod foam_box;
 pub mod foam_case;
+mod workbench;
 
-pub use bench::{Answer, Bench, Table};
 pub use foam_box::{DEADLINE, FoamBox};
+pub use workbench::{Answer, CsvTable, Workbench};

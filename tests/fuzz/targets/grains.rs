@@ -1,4 +1,4 @@
-//! See `amberfield_tests::any_bytes`.
+//! Fuzzing target `grains` of `amberfield_tests::any_bytes`.
 #![no_main]
 
 use amberfield_tests::any_bytes::TARGETS;

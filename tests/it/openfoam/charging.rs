@@ -1,17 +1,20 @@
-//! Contacts that trade charge while OpenFOAM computes the field of it.
+//! Charge transfer at contacts while OpenFOAM computes the field.
 
 use super::good;
-use amberfield_tests::{FoamBox, Table};
+use amberfield_tests::{CsvTable, FoamBox};
 
-/// Charge that a floor of steel takes from grains of glass, and the net charge of both, at the start and at the end [C]; the floor is a
-/// mesh that a patch of the solver stands for, or a plane.
+/// Scene in which a floor of steel takes charge from grains of glass.
+///
+/// The floor is a mesh with the surface of a patch of the solver, or a plane.
 fn floor_of(mesh: bool) -> FoamBox {
     let (cyclic, wall) = (("cyclic", "type cyclic;"), ("wall", "type fixedValue; value uniform 0;"));
     let faces = "x = 'periodic'\ny = 'periodic'\nz = 'grounded'";
     let scene = FoamBox::new(&[cyclic, cyclic, cyclic, cyclic, wall, wall], faces, "bipolar = 1e-13");
     let corners = "solid floor\n\
-         facet normal 0 0 1\nouter loop\nvertex -0.02 -0.02 0\nvertex 0.04 -0.02 0\nvertex 0.04 0.04 0\nendloop\nendfacet\n\
-         facet normal 0 0 1\nouter loop\nvertex -0.02 -0.02 0\nvertex 0.04 0.04 0\nvertex -0.02 0.04 0\nendloop\nendfacet\n\
+         facet normal 0 0 1\nouter loop\nvertex -0.02 -0.02 0\nvertex 0.04 -0.02 0\nvertex 0.04 0.04 0\n\
+         endloop\nendfacet\n\
+         facet normal 0 0 1\nouter loop\nvertex -0.02 -0.02 0\nvertex 0.04 0.04 0\nvertex -0.02 0.04 0\n\
+         endloop\nendfacet\n\
          endsolid floor\n";
     scene.bench.write("floor.stl", corners);
     let floor = if mesh {
@@ -20,7 +23,8 @@ fn floor_of(mesh: bool) -> FoamBox {
         "plane = { point_m = [0, 0, 0], normal = [0, 0, 1] }\ncharging = 'grounded'\n"
     };
     let solids = format!(
-        "work_function_eV = 4.5\n[[materials]]\nname = 'steel'\ndensity_kg_m3 = 7800.0\nyoung_Pa = 5e5\npoisson = 0.3\nrestitution = 0.6\nfriction = 0.3\n\
+        "work_function_eV = 4.5\n[[materials]]\nname = 'steel'\ndensity_kg_m3 = 7800.0\nyoung_Pa = 5e5\n\
+         poisson = 0.3\nrestitution = 0.6\nfriction = 0.3\n\
          work_function_eV = 5.0\n[[walls]]\nmaterial = 'steel'\n{floor}[particles]"
     );
     let text = scene
@@ -30,15 +34,15 @@ fn floor_of(mesh: bool) -> FoamBox {
         .replace("[electric_field]", "[electric_field]\nenable_collision_charge_transfer = true")
         .replace("end_s = 1e-3", "end_s = 4e-3")
         .replace("on_exit = 'delete'", "on_exit = 'delete'\nallow_overlap = true")
-        // A tenth of the fall's time.
+        // A hundred times the gravity makes the fall ten times as short.
         .replace("-9.81]", "-981.0]\n[output]\nhistory_every_s = 1e-4\nevery_s = 4e-3\nformats = ['csv']");
     scene.bench.write("scene.toml", text);
     scene
 }
 
-fn history(scene: &FoamBox, out: &str) -> Table {
+fn history(scene: &FoamBox, out: &str) -> CsvTable {
     good(&scene.bench.run(&["run", "scene.toml", "--out", out, "--no-progress"]));
-    Table::parse(&scene.bench.read(&format!("{out}/history.csv")))
+    CsvTable::parse(&scene.bench.read(&format!("{out}/history.csv")))
 }
 
 #[test]
@@ -49,7 +53,7 @@ fn a_floor_takes_as_much_over_openfoam_as_on_the_internal_grid() {
     let coupled = history(&scene, "coupled");
     scene.alone();
     let alone = history(&scene, "alone");
-    let taken = |table: &Table| *table.numbers("wall_charge_C").last().expect("a row");
+    let taken = |table: &CsvTable| *table.numbers("wall_charge_C").last().expect("a row");
     for table in [&mesh, &coupled, &alone] {
         let [grains, walls] = ["net_charge_C", "wall_charge_C"].map(|column| table.numbers(column));
         let moved = *table.numbers("contact_charge_C").last().expect("a row");

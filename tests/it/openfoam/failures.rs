@@ -1,7 +1,7 @@
-//! What happens when things go wrong: nothing is lost, nothing stays behind.
+//! Failures of the solver or the run: nothing is lost, and nothing stays behind.
 
 use super::{AGREEMENT, difference, good};
-use amberfield_tests::{DEADLINE, FoamBox, Table};
+use amberfield_tests::{CsvTable, DEADLINE, FoamBox};
 use rustix::process::{Pid, Signal, kill_process, test_kill_process};
 use std::process::Stdio;
 use std::time::{Duration, Instant};
@@ -67,7 +67,7 @@ fn a_killed_solver_ends_the_run_which_goes_on_bit_for_bit() {
     good(&scene.bench.run(&[&whole[..], &["--set", "output.history_every_s=1e-5"]].concat()));
     let last = |out: &str| {
         let name = format!("{out}/checkpoints/step_{:012}.amber", step + 40);
-        Table::parse(&scene.bench.read(&format!("{out}/history.csv")))
+        CsvTable::parse(&scene.bench.read(&format!("{out}/history.csv")))
             .without_clocks()
             .rows
             .pop()
@@ -76,7 +76,7 @@ fn a_killed_solver_ends_the_run_which_goes_on_bit_for_bit() {
     assert_eq!(last("out").unwrap().0, last("whole").unwrap().0);
 }
 
-/// A run of 6 ms whose solver is killed as soon as it has begun; what it said.
+/// Messages of a run of 6 ms whose solver is killed as soon as it has begun.
 fn lose_the_solver(scene: &FoamBox, on_loss: &str) -> String {
     let text = scene.bench.read("scene.toml")
         + &format!(
@@ -99,8 +99,8 @@ fn lose_the_solver(scene: &FoamBox, on_loss: &str) -> String {
     said
 }
 
-fn rows(scene: &FoamBox, out: &str) -> Table {
-    Table::parse(&scene.bench.read(&format!("{out}/history.csv"))).without_clocks()
+fn rows(scene: &FoamBox, out: &str) -> CsvTable {
+    CsvTable::parse(&scene.bench.read(&format!("{out}/history.csv"))).without_clocks()
 }
 
 #[test]
@@ -118,7 +118,7 @@ fn a_run_that_falls_back_goes_on_with_the_internal_grid_and_resumes_without_a_so
     assert!(said.contains("internal grid and field solver differ by"), "{said}");
     assert!(said.contains("the internal grid takes the field solver's place"), "{said}");
     let (lost, quiet) = (rows(&scene, "out"), rows(&scene, "quiet"));
-    let energy = |table: &Table| table.numbers("electric_J");
+    let energy = |table: &CsvTable| table.numbers("electric_J");
     let error = difference(&energy(&lost), &energy(&quiet));
     assert!(error > 0.0 && error < AGREEMENT, "{error:e}");
 
@@ -176,7 +176,7 @@ fn a_killed_dem_process_leaves_neither_solver_nor_shared_memory() {
         entries.into_iter().any(|entry| entry.file_name().to_string_lossy().starts_with(&name))
     };
     let begun = Instant::now();
-    // Whoever inherits the dead process's child may be slow to bury it.
+    // The process that inherits the solver may be slow to collect its exit status, which leaves a zombie (Z).
     let lives = || {
         let state = std::fs::read_to_string(format!("/proc/{}/stat", solver.as_raw_nonzero()));
         state.is_ok_and(|state| !state.contains(") Z "))
@@ -215,7 +215,7 @@ fn an_interrupt_ends_both_in_peace() {
     assert!(scene.bench.read("foam/log.electricFieldFoam").contains("The run is over."));
 }
 
-/// A program that stands for the solver.
+/// Command of a run in which a script takes the place of the solver.
 fn stand_in(scene: &FoamBox, script: &str) -> std::process::Command {
     scene.bench.write("solver.sh", format!("#!/bin/sh\n{script}\n"));
     let program = scene.bench.path("solver.sh");
@@ -282,7 +282,8 @@ fn a_grain_outside_the_mesh_is_named() {
         scene.bench.write("scene.toml", format!("{}file = 'grains.csv'{}", &text[..generate], &text[line..]));
         let grains = |z: &str| {
             format!(
-                "id,x_m,y_m,z_m,radius_m,charge_C\n1,5e-3,5e-3,5e-3,2.5e-4,1e-12\n2,5e-3,5e-3,{z},2.5e-4,-1e-12\n"
+                "id,x_m,y_m,z_m,radius_m,charge_C\n1,5e-3,5e-3,5e-3,2.5e-4,1e-12\n\
+                 2,5e-3,5e-3,{z},2.5e-4,-1e-12\n"
             )
         };
         let options = ["--method", method, "--set", "electric_field.field_cutoff_radius=2e-3"];

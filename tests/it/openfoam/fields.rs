@@ -1,4 +1,4 @@
-//! What comes back: against the internal grid, and against more exact fields.
+//! Fields over OpenFOAM, compared with the internal grid and with more exact fields.
 
 use super::{AGREEMENT, difference, good};
 use amberfield_tests::FoamBox;
@@ -29,7 +29,8 @@ fn mixed_box_agrees_with_the_internal_grid() {
         (wall, "type fixedValue; value uniform 0;"),
         (wall, "type fixedValue; value uniform 300;"),
     ];
-    let faces = "x = 'periodic'\ny_min = 'insulating'\ny_max = { normal_field_V_m = 2000.0 }\nz_min = 'grounded'\nz_max = { potential_V = 300.0 }";
+    let faces = "x = 'periodic'\ny_min = 'insulating'\ny_max = { normal_field_V_m = 2000.0 }\n\
+        z_min = 'grounded'\nz_max = { potential_V = 300.0 }";
     agrees_with_the_internal_grid(&FoamBox::new(&sides, faces, "bipolar = 1e-12"));
 }
 
@@ -43,7 +44,7 @@ fn periodic_box_agrees_and_refuses_a_net_charge() {
     assert!(answer.stderr.contains("net charge"), "{}", answer.stderr);
 }
 
-/// The published hybrid: the same cells, the same operator, the same gradient.
+/// Case of the published hybrid method on the same cells, with the same operator and the same gradient.
 #[test]
 fn kolehmainen_over_openfoam_is_that_of_the_internal_grid() {
     let scene = FoamBox::grounded();
@@ -63,7 +64,7 @@ fn kolehmainen_over_openfoam_is_that_of_the_internal_grid() {
     assert!(error < 1e-6, "{error:e}");
 }
 
-/// 20 000 grains, three tenths of the volume, on cells of 2.9 diameters.
+/// Case of 20 000 grains that fill three tenths of the volume, on cells of 2.9 diameters.
 #[test]
 fn coarse_mesh_errs_by_less_than_8_in_1000() {
     const MOST: f64 = 8e-3;
@@ -75,7 +76,7 @@ fn coarse_mesh_errs_by_less_than_8_in_1000() {
         good(&scene.field("coupled.csv", &[&many[..], &["--tolerance", "5e-3"]].concat()));
         scene.alone();
         good(&scene.field("exact.csv", &[&many[..], &["--tolerance", "1e-5"]].concat()));
-        // The published hybrid on as many cells of its own.
+        // The published hybrid method on as many cells of the internal grid.
         let hybrid = ["--method", "kolehmainen", "--set", "electric_field.field_cutoff_radius=1.8e-3"];
         let cells = ["--set", "electric_field.grid.cells=[12, 12, 10]"];
         good(&scene.field("hybrid.csv", &[&many[..], &hybrid, &cells].concat()));

@@ -1,10 +1,10 @@
-//! The same inside another solver: Debian's DPMFoam on the Goldschmidt bed of OpenFOAM's examples.
+//! Function object in another solver: Debian's DPMFoam on the Goldschmidt bed of OpenFOAM's examples.
 
 use super::{difference, good};
-use amberfield_tests::{Bench, Table};
+use amberfield_tests::{CsvTable, Workbench};
 use std::path::Path;
 
-/// The bed as `openfoam-examples` installs it.
+/// Folder of the bed in the package `openfoam-examples`.
 const EXAMPLE: &str = "/usr/share/doc/openfoam-examples/examples/lagrangian/DPMFoam/Goldschmidt";
 const POTENTIAL: &str = "FoamFile { version 2.0; format ascii; class volScalarField; object phiE; }
 dimensions [1 2 -3 0 0 -1 0];
@@ -46,9 +46,9 @@ openfoam_case = 'foam'
 history_every_s = 1e-5
 ";
 
-/// The example with 10 steps of gas, two parts where it is cut.
-fn bed() -> Bench {
-    let bench = Bench::new(SCENE);
+/// Copy of the example with 10 steps of the gas, cut into two parts for two ranks.
+fn bed() -> Workbench {
+    let bench = Workbench::new(SCENE);
     copy(Path::new(EXAMPLE), &bench.path("foam"));
     bench.write("foam/0/phiE", POTENTIAL);
     let change = |file: &str, changes: &[(&str, &str)]| {
@@ -88,9 +88,9 @@ fn copy(from: &Path, to: &Path) {
     }
 }
 
-fn run(bench: &Bench, out: &str, options: &[&str]) -> Table {
+fn run(bench: &Workbench, out: &str, options: &[&str]) -> CsvTable {
     good(&bench.run(&[&["run", "scene.toml", "--out", out, "--no-progress"], options].concat()));
-    Table::parse(&bench.read(&format!("{out}/history.csv"))).without_clocks()
+    CsvTable::parse(&bench.read(&format!("{out}/history.csv"))).without_clocks()
 }
 
 #[test]
@@ -106,11 +106,11 @@ fn grains_in_dpmfoam_move_as_over_the_program_of_our_own() {
     assert!(log.contains("Time = 0.0001\n") && log.contains("the grains' run is over"), "{log}");
     assert!(bench.path("foam/0.0001/electricField:E").is_file(), "{:?}", bench.names("foam"));
 
-    // Two ranks, and grains that go on after the gas: it goes on answering.
+    // Two ranks, and grains that move longer than the gas: the solver continues to answer.
     let longer = ["--set", "solver.ranks=2", "--set", "time.end_s=1e-3"];
     let two = run(&bench, "two", &[&inside[..], &longer].concat());
     assert!(bench.read("foam/log.DPMFoam").contains("the solver has ended, the grains go on"));
-    let energy = |table: &Table| table.numbers("electric_J")[..own.rows.len()].to_vec();
+    let energy = |table: &CsvTable| table.numbers("electric_J")[..own.rows.len()].to_vec();
     let error = difference(&energy(&two), &energy(&own));
     assert!(error < 1e-4, "one rank and two: {error:e}");
 }

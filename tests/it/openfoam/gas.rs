@@ -1,11 +1,11 @@
-//! A gas whose flow OpenFOAM computes, between grains that this test moves itself.
+//! Gas whose flow OpenFOAM computes, between grains that this test moves itself.
 
 use amberfield_core::{DragLaw, Gas, GasFlow, GasModel, Vector3};
 use amberfield_coupling::{Announced, RemoteFlow, SolverSettings};
 use amberfield_gas::{Exchange, FlowSolver as _, GrainsView};
 use amberfield_laws::drag;
 use amberfield_laws::particle_reynolds::Slip;
-use amberfield_tests::Bench;
+use amberfield_tests::Workbench;
 use amberfield_tests::foam_case::{brick, write_gas_case};
 use std::f64::consts::PI;
 use std::time::Duration;
@@ -35,17 +35,25 @@ fn gas(drag: DragLaw, model: GasModel) -> (Gas, GasFlow) {
     (gas, flow)
 }
 
-/// A case of a box of edges [mm] with so many cells and, by side, a kind, a condition of U and one of p; its solver with so many processes.
-fn solver(edges_mm: [f64; 3], cells: [usize; 3], sides: &[[&str; 3]; 6], ranks: u32) -> (Bench, RemoteFlow) {
-    let bench = Bench::new("");
-    let (mesh, velocity) = brick(edges_mm, cells, &sides.map(|[kind, velocity, _]| (kind, velocity)));
-    let (_, pressure) = brick(edges_mm, cells, &sides.map(|[kind, _, pressure]| (kind, pressure)));
-    write_gas_case(&bench, &mesh, &velocity, &pressure, VISCOSITY / DENSITY);
+/// Starts the solver of a box with edges [mm] and a number of cells per axis, with `ranks` processes.
+///
+/// Each side has a kind, a condition of U and a condition of p.
+fn solver(
+    edges_mm: [f64; 3],
+    cells: [usize; 3],
+    sides: &[[&str; 3]; 6],
+    ranks: u32,
+) -> (Workbench, RemoteFlow) {
+    let bench = Workbench::new("");
+    let velocity = brick(edges_mm, cells, &sides.map(|[kind, velocity, _]| (kind, velocity)));
+    let pressure = brick(edges_mm, cells, &sides.map(|[kind, _, pressure]| (kind, pressure)));
+    let viscosity = VISCOSITY / DENSITY;
+    write_gas_case(&bench, &velocity.mesh, &velocity.conditions, &pressure.conditions, viscosity);
     let flow = start(&bench, ranks);
     (bench, flow)
 }
 
-fn start(bench: &Bench, ranks: u32) -> RemoteFlow {
+fn start(bench: &Workbench, ranks: u32) -> RemoteFlow {
     let settings = SolverSettings {
         case: bench.path("foam"),
         application: None,
@@ -59,19 +67,19 @@ fn start(bench: &Bench, ranks: u32) -> RemoteFlow {
     Announced::new(settings).and_then(Announced::connect).expect("the solver answers").flow()
 }
 
-/// Periodic sides.
+/// Kind and conditions of a periodic side.
 fn cyclic() -> [&'static str; 3] {
     [CYCLIC.0, CYCLIC.1, CYCLIC.1]
 }
 
-/// Grains that this test moves.
-struct Grains {
+/// MovedGrains that this test moves.
+struct MovedGrains {
     centre: Vec<[f64; 4]>,
     velocity: Vec<Vector3<f64>>,
     inverse_mass: Vec<f64>,
 }
 
-impl Grains {
+impl MovedGrains {
     fn new(places: impl IntoIterator<Item = [f64; 3]>, radius: f64, density: f64) -> Self {
         let centre: Vec<_> = places.into_iter().map(|[x, y, z]| [x, y, z, radius]).collect();
         let mass = density * 4.0 / 3.0 * PI * radius.powi(3);
@@ -91,7 +99,7 @@ impl Grains {
         }
     }
 
-    /// Moves them through an interval between exchanges in so many steps.
+    /// Moves the grains through an interval [s] between exchanges, in `steps` steps.
     fn go(&mut self, exchange: &mut Exchange, gravity: Vector3<f64>, interval: f64, steps: usize) {
         let step = interval / steps as f64;
         for _ in 0..steps {
@@ -104,7 +112,7 @@ impl Grains {
         }
     }
 
-    /// Holds them where they are for an interval; the force on all of them.
+    /// Holds the grains at their places for an interval [s]; returns the force on all of them [N].
     fn hold(&self, exchange: &mut Exchange, interval: f64) -> Vector3<f64> {
         let mut force = vec![Vector3::zeros(); self.centre.len()];
         exchange.add_forces(&self.velocity, interval, &mut force);
@@ -116,12 +124,14 @@ impl Grains {
     }
 }
 
+/// Places [m] of a cubic lattice with a spacing [m].
 fn lattice(counts: [usize; 3], spacing: f64) -> impl Iterator<Item = [f64; 3]> {
     let at = move |i: usize| (i as f64 + 0.5) * spacing;
     let [x, y, z] = counts;
     (0..x * y * z).map(move |i| [at(i % x), at(i / x % y), at(i / (x * y))])
 }
 
+/// Ergun's pressure drop [Pa/m] for a void fraction, a diameter [m] and a superficial velocity [m/s].
 fn ergun(void: f64, diameter: f64, superficial: f64) -> f64 {
     let solid = 1.0 - void;
     150.0 * VISCOSITY * solid * solid * superficial / (void.powi(3) * diameter * diameter)
@@ -144,7 +154,7 @@ fn fixed_bed_has_erguns_pressure_drop() {
         let (gas, settings) = gas(DragLaw::Gidaspow, model);
         let mut exchange =
             Exchange::new(gas, settings, NO_GRAVITY, Box::new(flow), 1e-3).expect("a good mesh");
-        let grains = Grains::new(lattice([8, 8, 16], 1e-3), 0.5e-3, 2500.0);
+        let grains = MovedGrains::new(lattice([8, 8, 16], 1e-3), 0.5e-3, 2500.0);
         for k in 0..60 {
             exchange.exchange(&domain, &grains.view(), 1e-3, f64::from(k) * 1e-3).expect("a good flow");
             grains.hold(&mut exchange, 1e-3);
@@ -155,7 +165,8 @@ fn fixed_bed_has_erguns_pressure_drop() {
         let superficial = void * values.velocity[cell].z;
         let (found, expected) = (-values.pressure_gradient[cell].z, ergun(void, 1e-3, superficial));
         println!(
-            "model {model:?}: void {void:.4}, U {superficial:.4} m/s, {found:.2} Pa/m, Ergun {expected:.2} Pa/m"
+            "model {model:?}: void {void:.4}, U {superficial:.4} m/s, {found:.2} Pa/m, Ergun {expected:.2} \
+             Pa/m"
         );
         assert!((void - (1.0 - PI / 6.0)).abs() < 1e-3, "{void}");
         assert!((found / expected - 1.0).abs() < 0.01, "{model:?}: {found} {expected}");
@@ -190,9 +201,10 @@ fn a_bed_lifts_off_at_erguns_least_velocity() {
         let (gas, settings) = gas(DragLaw::Gidaspow, GasModel::A);
         let mut exchange =
             Exchange::new(gas, settings, gravity, Box::new(flow), DIAMETER).expect("a good mesh");
-        // Free gas below and above a bed of 120 layers: its ends, smoothed over two and a half, resist less.
+        // Free gas lies below and above the bed of 120 layers. Its ends, which smoothing spreads over two and
+        // a half layers, resist less.
         let places = lattice([8, 8, 120], DIAMETER).map(|[x, y, z]| [x, y, z + 20e-3]);
-        let grains = Grains::new(places, 0.5 * DIAMETER, SOLIDS);
+        let grains = MovedGrains::new(places, 0.5 * DIAMETER, SOLIDS);
         let mut force = Vector3::zeros();
         for k in 0..60 {
             exchange.exchange(&domain, &grains.view(), 1e-3, f64::from(k) * 1e-3).expect("a good flow");
@@ -214,7 +226,7 @@ fn grains_and_gas_keep_their_momentum() {
     let mesh = flow.mesh().clone();
     let (gas, settings) = gas(DragLaw::Gidaspow, GasModel::A);
     let mut exchange = Exchange::new(gas, settings, NO_GRAVITY, Box::new(flow), 1e-3).expect("a good mesh");
-    let mut grains = Grains::new(lattice([7, 6, 5], 1.4e-3), 0.5e-3, 100.0);
+    let mut grains = MovedGrains::new(lattice([7, 6, 5], 1.4e-3), 0.5e-3, 100.0);
     for (i, v) in grains.velocity.iter_mut().enumerate() {
         let k = i as f64;
         *v = Vector3::new(0.3 + 0.2 * (1.7 * k).sin(), 0.2 * (2.3 * k).cos(), 0.1 * (3.1 * k).sin());
@@ -242,7 +254,9 @@ fn grains_and_gas_keep_their_momentum() {
     assert!(missing < 1e-10, "{missing}");
 }
 
-/// Two hundred exchanges of a cloud that falls through a box whose gas stirs it, the grains' velocities at its end. At the half the flow goes on in another process where `parted`.
+/// Velocities [m/s] of a cloud of grains after two hundred exchanges with the gas of a box in which it falls.
+///
+/// With `parted`, the second half of the flow is computed by another process.
 fn stirred(ranks: u32, parted: bool) -> Vec<Vector3<f64>> {
     let wall = ["wall", "type noSlip;", "type zeroGradient;"];
     let (bench, flow) = solver([10.0; 3], [6; 3], &[cyclic(), cyclic(), wall, wall, wall, wall], ranks);
@@ -251,7 +265,7 @@ fn stirred(ranks: u32, parted: bool) -> Vec<Vector3<f64>> {
     let settings = GasFlow { viscous_force: true, saffman_lift: true, ..settings };
     let begin = |flow| Exchange::new(gas, settings, NO_GRAVITY, Box::new(flow), 1e-3).expect("a good mesh");
     let mut exchange = begin(flow);
-    let mut grains = Grains::new(lattice([5, 5, 4], 2e-3), 0.4e-3, 500.0);
+    let mut grains = MovedGrains::new(lattice([5, 5, 4], 2e-3), 0.4e-3, 500.0);
     for (i, v) in grains.velocity.iter_mut().enumerate() {
         *v = Vector3::new(0.5, 0.1 * (1.3 * i as f64).sin(), 0.0);
     }
@@ -301,7 +315,7 @@ fn between_plates_a_gas_flows_through_grains_at_rest_as_brinkmans() {
     let (gas, settings) = gas(DragLaw::Stokes, GasModel::A);
     let settings = GasFlow { smoothing_length_m: Some(1.5e-3), ..settings };
     let mut exchange = Exchange::new(gas, settings, NO_GRAVITY, Box::new(flow), 1e-4).expect("a good mesh");
-    let grains = Grains::new(lattice([20, 4, 16], 0.5e-3), RADIUS, 2500.0);
+    let grains = MovedGrains::new(lattice([20, 4, 16], 0.5e-3), RADIUS, 2500.0);
     for k in 0..200 {
         exchange.exchange(mesh.domain(), &grains.view(), 5e-3, f64::from(k) * 5e-3).expect("a good flow");
         grains.hold(&mut exchange, 5e-3);
@@ -347,7 +361,7 @@ fn a_grain_falls_at_the_terminal_speed_of_its_drag_law() {
         let (gas, settings) = gas(law, GasModel::A);
         let mut exchange =
             Exchange::new(gas, settings, gravity, Box::new(flow), diameter).expect("a good mesh");
-        let mut grains = Grains::new([[0.3e-3 * edge_mm; 3]], 0.5 * diameter, 2500.0);
+        let mut grains = MovedGrains::new([[0.3e-3 * edge_mm; 3]], 0.5 * diameter, 2500.0);
         grains.velocity[0].z = -0.9 * slow;
         let interval = 0.1 * response;
         for k in 0..70 {

@@ -1,51 +1,73 @@
-//! Runs in a gas whose flow OpenFOAM computes, as a user starts them.
+//! Runs in a gas whose flow OpenFOAM computes, started as a user starts them.
 
 use super::good;
 use amberfield_tests::foam_case::{brick, write_file, write_gas_case, write_potential};
-use amberfield_tests::{Answer, Bench, DEADLINE};
+use amberfield_tests::{Answer, DEADLINE, Workbench};
 use std::process::Stdio;
 use std::time::{Duration, Instant};
 
-const SCENE: &str = "[domain]\nmin_m = [0, 0, 0]\nmax_m = [0.01, 0.01, 0.03]\nboundary = { x = 'grounded', y = 'grounded', z = 'insulating' }\n\
-    [[materials]]\nname = 'glass'\ndensity_kg_m3 = 1000.0\nyoung_Pa = 5e5\npoisson = 0.22\nrestitution = 0.6\nfriction = 0.3\n\
+const SCENE: &str = "[domain]\nmin_m = [0, 0, 0]\nmax_m = [0.01, 0.01, 0.03]\n\
+    boundary = { x = 'grounded', y = 'grounded', z = 'insulating' }\n\
+    [[materials]]\nname = 'glass'\ndensity_kg_m3 = 1000.0\nyoung_Pa = 5e5\npoisson = 0.22\n\
+    restitution = 0.6\nfriction = 0.3\n\
     [[walls]]\nplane = { point_m = [0, 0, 0], normal = [0, 0, 1] }\nmaterial = 'glass'\n\
-    [particles]\non_exit = 'delete'\ngenerate = { material = 'glass', count = 700, radius_m = 5e-4, seed = 3, region = { box = { min_m = [0, 0, 0], max_m = [0.01, 0.01, 0.012] } }, charge_C = { bipolar = 2e-12 } }\n\
+    [particles]\non_exit = 'delete'\ngenerate = { material = 'glass', count = 700, radius_m = 5e-4, \
+    seed = 3, region = { box = { min_m = [0, 0, 0], max_m = [0.01, 0.01, 0.012] } }, \
+    charge_C = { bipolar = 2e-12 } }\n\
     [electric_field]\ntuning = 'model'\ntolerance = 2e-2\n\
-    [gas]\nflow = 'solver'\ndrag = 'di_felice'\ninterval_s = 2e-4\ndensity_kg_m3 = 1.2\nviscosity_Pa_s = 1.8e-5\n\
+    [gas]\nflow = 'solver'\ndrag = 'di_felice'\ninterval_s = 2e-4\ndensity_kg_m3 = 1.2\n\
+    viscosity_Pa_s = 1.8e-5\n\
     [time]\nstep_s = 'auto'\nend_s = 8e-3\ngravity_m_s2 = [0, 0, -9.81]\n\
     [solver]\nopenfoam_case = 'foam'\ntimeout_s = 20.0\n[output]\nformats = ['csv']\n";
 
-/// A box that air enters from below, with a case around it.
-fn bed(scene: &str) -> Bench {
-    let bench = Bench::new(scene);
-    let wall = ("wall", "type slip;", "type zeroGradient;", "type fixedValue; value uniform 0;");
-    let below = (
-        "patch",
-        "type interstitialInletVelocity; inletVelocity uniform (0 0 0.6); alpha alpha; value uniform (0 0 0.6);",
-        "type fixedFluxPressure; value uniform 0;",
-        "type zeroGradient;",
-    );
-    let above = (
-        "patch",
-        "type pressureInletOutletVelocity; value uniform (0 0 0);",
-        "type fixedValue; value uniform 0;",
-        "type zeroGradient;",
-    );
+/// Side of the box.
+#[derive(Clone, Copy)]
+struct Side {
+    kind: &'static str,
+    velocity: &'static str,
+    pressure: &'static str,
+    potential: &'static str,
+}
+
+/// Box that air enters from below, with its case.
+fn bed(scene: &str) -> Workbench {
+    let bench = Workbench::new(scene);
+    let wall = Side {
+        kind: "wall",
+        velocity: "type slip;",
+        pressure: "type zeroGradient;",
+        potential: "type fixedValue; value uniform 0;",
+    };
+    let below = Side {
+        kind: "patch",
+        velocity: "type interstitialInletVelocity; inletVelocity uniform (0 0 0.6); alpha alpha; \
+                   value uniform (0 0 0.6);",
+        pressure: "type fixedFluxPressure; value uniform 0;",
+        potential: "type zeroGradient;",
+    };
+    let above = Side {
+        kind: "patch",
+        velocity: "type pressureInletOutletVelocity; value uniform (0 0 0);",
+        pressure: "type fixedValue; value uniform 0;",
+        potential: "type zeroGradient;",
+    };
     let sides = [wall, wall, wall, wall, below, above];
     let (edges, cells) = ([10.0, 10.0, 30.0], [4, 4, 12]);
-    let (mesh, velocity) = brick(edges, cells, &sides.map(|side| (side.0, side.1)));
-    let (_, pressure) = brick(edges, cells, &sides.map(|side| (side.0, side.2)));
-    let (_, potential) = brick(edges, cells, &sides.map(|side| (side.0, side.3)));
-    write_gas_case(&bench, &mesh, &velocity, &pressure, 1.5e-5);
-    write_potential(&bench, &potential);
+    let velocity = brick(edges, cells, &sides.map(|side| (side.kind, side.velocity)));
+    let pressure = brick(edges, cells, &sides.map(|side| (side.kind, side.pressure)));
+    let potential = brick(edges, cells, &sides.map(|side| (side.kind, side.potential)));
+    write_gas_case(&bench, &velocity.mesh, &velocity.conditions, &pressure.conditions, 1.5e-5);
+    write_potential(&bench, &potential.conditions);
     bench
 }
 
-/// k and ε, of OpenFOAM's own model.
-fn add_turbulence(bench: &Bench) {
+/// Adds turbulence by OpenFOAM's model with k and ε.
+fn add_turbulence(bench: &Workbench) {
     let field = |name: &str, dimensions: &str, value: f64, above: &str| {
         let text = format!(
-            "dimensions {dimensions};\ninternalField uniform {value};\nboundaryField {{ z0 {{ type fixedValue; value uniform {value}; }} \".*\" {{ type {above}; value uniform {value}; }} }}\n"
+            "dimensions {dimensions};\ninternalField uniform {value};\n\
+             boundaryField {{ z0 {{ type fixedValue; value uniform {value}; }} \".*\" {{ type {above}; value \
+             uniform {value}; }} }}\n"
         );
         write_file(bench, &format!("0/{name}"), "volScalarField", &text);
     };
@@ -58,12 +80,12 @@ fn add_turbulence(bench: &Bench) {
     write_file(bench, "constant/turbulenceProperties", "dictionary", model);
 }
 
-fn run(bench: &Bench, out: &str, more: &[&str]) -> Answer {
+fn run(bench: &Workbench, out: &str, more: &[&str]) -> Answer {
     bench.run(&[&["run", "scene.toml", "--out", out, "--no-progress"], more].concat())
 }
 
-/// The grains at the end.
-fn grains(bench: &Bench, out: &str) -> String {
+/// Text of the last particle file.
+fn grains(bench: &Workbench, out: &str) -> String {
     let last = bench.names(&format!("{out}/particles")).pop().unwrap_or_default();
     bench.read(&format!("{out}/particles/{last}"))
 }
@@ -138,7 +160,7 @@ fn a_run_in_a_gas_needs_no_charge_and_is_the_same_with_two_ranks() {
 
 #[test]
 fn a_gas_that_cannot_be_is_refused_by_name() {
-    let refused = |bench: &Bench, set: &[&str], code: i32, expected: &str| {
+    let refused = |bench: &Workbench, set: &[&str], code: i32, expected: &str| {
         let options: Vec<&str> = set.iter().flat_map(|set| ["--set", *set]).collect();
         let answer = run(bench, "out", &options);
         assert_eq!(answer.code, Some(code), "{}", answer.stderr);
@@ -155,7 +177,7 @@ fn a_gas_that_cannot_be_is_refused_by_name() {
     refused(&bench, &["gas.viscosity_Pa_s=1e-3"], 3, "constant/transportProperties");
     refused(&bench, &["gas.smoothing_length_m=-1.0"], 2, "gas.smoothing_length_m");
     let alone = bed(&SCENE[..SCENE.find("[solver]").expect("it has one")]);
-    refused(&alone, &[], 2, "somebody must compute it; add [solver]");
+    refused(&alone, &[], 2, "a solver must compute the flow; add [solver]");
     std::fs::remove_file(bench.path("foam/0/phiE")).expect("it is there");
     refused(&bench, &[], 3, "no potential 0/phiE");
     std::fs::remove_file(bench.path("foam/0/U")).expect("it is there");

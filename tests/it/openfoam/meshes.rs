@@ -1,4 +1,4 @@
-//! Meshes of many shapes: walls that are curved, cells that are not cubes.
+//! Fields on meshes of many shapes, with curved walls and cells that are not cubes.
 
 #![expect(clippy::print_stdout, reason = "how good it is, for whoever asks with --nocapture")]
 
@@ -10,7 +10,7 @@ use amberfield_coupling::{Announced, RemoteSolver, SolverSettings};
 use amberfield_field::far::{FarField, FarRequest, FarValues};
 use amberfield_field::{ElectricField, FieldValues, Wanted};
 use amberfield_oracle::{GroundedCylinder, grounded_cavity, observed_order, reference};
-use amberfield_tests::Bench;
+use amberfield_tests::Workbench;
 use amberfield_tests::foam_case::{
     Random, ball, brick, cube, cylinder, foam_program, perturb, tetrahedra, write_case,
 };
@@ -21,14 +21,14 @@ const CHARGE: f64 = 1e-12;
 /// Edge of the cube [mm].
 const EDGE: f64 = 12.0;
 
-/// A case without a mesh yet.
-fn case(mesh: &str, gradient: &str) -> Bench {
-    let bench = Bench::new("");
+/// Case with a recipe of a mesh, which the solver makes.
+fn case(mesh: &str, gradient: &str) -> Workbench {
+    let bench = Workbench::new("");
     write_case(&bench, mesh, GROUNDED, gradient);
     bench
 }
 
-fn solver(bench: &Bench) -> RemoteSolver {
+fn solver(bench: &Workbench) -> RemoteSolver {
     let settings = SolverSettings {
         case: bench.path("foam"),
         application: None,
@@ -46,14 +46,22 @@ fn settings(tolerance: f64) -> FieldSettings {
     FieldSettings { tolerance, tuning: Tuning::Model, ..FieldSettings::default() }
 }
 
-/// Grains that do not touch, a fifth of them at the walls: `inside` gives a point where a grain's centre may be, `at_wall` one where it
-/// touches.
+/// Charged grains that do not touch, the first fifth of them at the walls.
+struct ChargedGrains {
+    /// Positions [m].
+    positions: Vec<Vector3<f64>>,
+    /// Charges [C].
+    charges: Vec<f64>,
+}
+
+/// Makes charged grains of a radius [m]; `place` draws a point inside or, where its flag is set, one at a
+/// wall.
 fn cloud(
     count: usize,
     radius: f64,
     bipolar: bool,
     place: impl Fn(&mut Random, bool) -> Vector3<f64>,
-) -> (Vec<Vector3<f64>>, Vec<f64>) {
+) -> ChargedGrains {
     let mut random = Random(7);
     let mut positions: Vec<Vector3<f64>> = Vec::new();
     while positions.len() < count {
@@ -63,7 +71,7 @@ fn cloud(
         }
     }
     let charge = |index: usize| if bipolar && index % 2 == 1 { -CHARGE } else { CHARGE };
-    (positions, (0..count).map(charge).collect())
+    ChargedGrains { positions, charges: (0..count).map(charge).collect() }
 }
 
 fn evaluate(field: &mut ElectricField, positions: &[Vector3<f64>], charges: &[f64]) -> Vec<Vector3<f64>> {
@@ -72,12 +80,20 @@ fn evaluate(field: &mut ElectricField, positions: &[Vector3<f64>], charges: &[f6
     values.e
 }
 
-/// RMS error over all grains, and the worst of the first fifth, which touch walls, over the RMS field.
-fn errors(found: &[Vector3<f64>], exact: &[Vector3<f64>]) -> (f64, f64) {
+/// Errors of a field, over the RMS field.
+struct Errors {
+    /// RMS error over all grains.
+    rms: f64,
+    /// Largest error of the first fifth, which touch walls.
+    worst: f64,
+}
+
+/// Errors of a field against the exact one.
+fn errors(found: &[Vector3<f64>], exact: &[Vector3<f64>]) -> Errors {
     let rms = |e: &[Vector3<f64>]| (e.iter().map(Vector3::norm_squared).sum::<f64>() / e.len() as f64).sqrt();
     let apart: Vec<_> = found.iter().zip(exact).map(|(a, b)| a - b).collect();
     let worst = apart[..apart.len() / 5].iter().map(Vector3::norm).fold(0.0, f64::max);
-    (rms(&apart) / rms(exact), worst / rms(exact))
+    Errors { rms: rms(&apart) / rms(exact), worst: worst / rms(exact) }
 }
 
 fn unit_vector(random: &mut Random) -> Vector3<f64> {
@@ -102,7 +118,7 @@ fn in_a_ball_the_field_is_that_of_kelvins_images() {
         grounded_cavity(Permittivity::VACUUM.coulomb(), RADIUS, positions, charges)
     };
     for bipolar in [true, false] {
-        let (positions, charges) = cloud(2000, GRAIN, bipolar, place);
+        let ChargedGrains { positions, charges } = cloud(2000, GRAIN, bipolar, place);
         let mut field = ElectricField::over_mesh(
             std::boxed::Box::new(solver(&bench)),
             &settings(5e-3),
@@ -110,10 +126,11 @@ fn in_a_ball_the_field_is_that_of_kelvins_images() {
             &charges,
         )
         .unwrap();
-        let (rms, worst) = errors(&evaluate(&mut field, &positions, &charges), &exact(&positions, &charges));
+        let Errors { rms, worst } =
+            errors(&evaluate(&mut field, &positions, &charges), &exact(&positions, &charges));
         println!("ball, of both signs: {bipolar}: RMS {rms:.2e}, worst at the wall {worst:.2e}");
         assert!(rms < 1.5e-2 && worst < 3e-2, "{rms:e} {worst:e}");
-        // A lone grain that touches, against its own image.
+        // A single grain that touches the wall feels its own image.
         for position in &positions[..5] {
             let (one, own) = ([*position], exact(&[*position], &[CHARGE])[0]);
             let error = (evaluate(&mut field, &one, &[CHARGE])[0] - own).norm() / own.norm();
@@ -135,7 +152,7 @@ fn in_a_cylinder_the_field_is_that_of_the_fourier_bessel_series() {
         Vector3::new(radius * angle.cos(), radius * angle.sin(), z)
     };
     for bipolar in [true, false] {
-        let (positions, charges) = cloud(60, GRAIN, bipolar, place);
+        let ChargedGrains { positions, charges } = cloud(60, GRAIN, bipolar, place);
         let mut field = ElectricField::over_mesh(
             std::boxed::Box::new(solver(&bench)),
             &settings(5e-3),
@@ -143,14 +160,14 @@ fn in_a_cylinder_the_field_is_that_of_the_fourier_bessel_series() {
             &charges,
         )
         .unwrap();
-        let (rms, worst) =
+        let Errors { rms, worst } =
             errors(&evaluate(&mut field, &positions, &charges), &exact.field(&positions, &charges));
         println!("cylinder, of both signs: {bipolar}: RMS {rms:.2e}, worst at the wall {worst:.2e}");
         assert!(rms < 1.5e-2 && worst < 3e-2, "{rms:e} {worst:e}");
     }
 }
 
-/// The exact boxes of the reference set, on 16³ cells.
+/// Case of the exact boxes of the reference set, on 16³ cells.
 #[test]
 fn reference_boxes_come_out_on_cubes() {
     let (wall, lid, cyclic) = (
@@ -168,21 +185,21 @@ fn reference_boxes_come_out_on_cubes() {
     ] {
         let set = reference::by_name(name).expect("the set is there");
         let edges: [f64; 3] = (set.domain.extent() * 1e3).into();
-        let (mesh, conditions) = brick(edges, [16; 3], &[x, x, y, y, z, z]);
-        let bench = Bench::new("");
-        write_case(&bench, &mesh, &conditions, "Gauss linear");
+        let brick = brick(edges, [16; 3], &[x, x, y, y, z, z]);
+        let bench = Workbench::new("");
+        write_case(&bench, &brick.mesh, &brick.conditions, "Gauss linear");
         let solver = std::boxed::Box::new(solver(&bench));
         let mut field =
             ElectricField::over_mesh(solver, &settings(1e-2), &set.position, &set.charge).unwrap();
         let found = evaluate(&mut field, &set.position, &set.charge);
-        let (rms, _) = errors(&found, &set.field_si(Permittivity::VACUUM.coulomb()));
+        let Errors { rms, .. } = errors(&found, &set.field_si(Permittivity::VACUUM.coulomb()));
         println!("{name}: RMS {rms:.2e}");
         assert!(rms < AGREEMENT, "{name}: {rms:e}");
     }
 }
 
-/// A kind of cells of the cube, some thousand of them.
-fn mesh_of(kind: &str, cells: usize) -> Bench {
+/// Mesh of the cube with one kind of cells.
+fn mesh_of(kind: &str, cells: usize) -> Workbench {
     let grading = if kind == "graded" { 2.0 } else { 1.0 };
     let gradient = if kind == "hexahedra" { "Gauss linear" } else { "leastSquares" };
     let bench = case(&cube(EDGE, cells, grading), gradient);
@@ -212,7 +229,7 @@ fn errs_little(kind: &str, cells: usize) {
     };
     let domain = Domain::new(Vector3::zeros(), Vector3::repeat(edge), [[Boundary::Grounded; 2]; 3]).unwrap();
     for bipolar in [true, false] {
-        let (positions, charges) = cloud(3000, GRAIN, bipolar, place);
+        let ChargedGrains { positions, charges } = cloud(3000, GRAIN, bipolar, place);
         let solver = solver(&bench);
         let size = (edge.powi(3) / solver.mesh().cell_count() as f64).cbrt();
         let mut field =
@@ -220,10 +237,10 @@ fn errs_little(kind: &str, cells: usize) {
                 .unwrap();
         let mut exact = ElectricField::new(&domain, &settings(1e-5), &positions, &charges).unwrap();
         let [found, truth] = [&mut field, &mut exact].map(|field| evaluate(field, &positions, &charges));
-        let (rms, worst) = errors(&found, &truth);
+        let Errors { rms, worst } = errors(&found, &truth);
         println!("{kind}, of both signs: {bipolar}: RMS {rms:.2e}, worst at the wall {worst:.2e}");
         assert!(rms < 2e-2, "{kind}: {rms:e}");
-        // A lone charge does not push itself.
+        // A single charge exerts no force on itself.
         let unit = Permittivity::VACUUM.coulomb() * CHARGE / (size * size);
         for position in positions.iter().skip(600).step_by(300) {
             let [found, truth] =
@@ -259,7 +276,8 @@ fn polyhedra_err_little() {
     errs_little("polyhedra", 8);
 }
 
-/// V = exp(ax) sin(by) cos(cz), a² = b² + c², prescribed at the walls: what comes back at the centres.
+/// Case of V = exp(ax) sin(by) cos(cz) with a² = b² + c², given at the walls and compared at the centres of
+/// cells.
 #[test]
 fn a_manufactured_potential_converges_with_the_cells() {
     let wave = Vector3::new(250.0, 150.0, 200.0);

@@ -1,4 +1,4 @@
-//! Runs whose far field OpenFOAM computes; `cargo xtask openfoam` builds the solver.
+//! Tests of runs whose far field OpenFOAM computes; `cargo xtask openfoam` builds the solver.
 
 mod charging;
 mod failures;
@@ -11,13 +11,14 @@ mod sharing;
 
 use amberfield_tests::Answer;
 
-/// What two fields may differ by whose tolerances are 1e-2: their squares add.
+/// Relative difference of two fields with tolerances of 1e-2, whose squares add.
 pub(crate) const AGREEMENT: f64 = 1.4e-2;
 
 fn good(answer: &Answer) {
     assert_eq!(answer.code, Some(0), "{}{}", answer.stdout, answer.stderr);
 }
 
+/// RMS difference over the RMS of `b`.
 pub(crate) fn difference(a: &[f64], b: &[f64]) -> f64 {
     let square = |values: &mut dyn Iterator<Item = f64>| values.map(|v| v * v).sum::<f64>();
     (square(&mut a.iter().zip(b).map(|(a, b)| a - b)) / square(&mut b.iter().copied())).sqrt()

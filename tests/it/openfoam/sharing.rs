@@ -1,15 +1,15 @@
-//! What a run shares with the field solver: with whom, and how much of it after many steps.
+//! Resources that a run shares with the field solver: who can use them, and how they grow over many steps.
 
-use amberfield_tests::{FoamBox, Table};
+use amberfield_tests::{CsvTable, FoamBox};
 use rustix::process::{Pid, Signal, kill_process};
 use std::process::Stdio;
 use std::time::Duration;
 
-/// Growth of a process's memory that is none [bytes].
+/// Growth of a process's memory that counts as none [bytes].
 const FLAT: u64 = 4 << 20;
-/// Change of a net charge that is round-off: 100 grains of 1 pC [C].
+/// Change of the net charge of 100 grains of 1 pC that is round-off [C].
 const ROUND_OFF: f64 = 1e-24;
-/// Kinetic energy of a bed at rest over the most that it had.
+/// Kinetic energy of a bed at rest, over the largest that it had.
 const RESTING: f64 = 1e-6;
 
 #[test]
@@ -26,7 +26,7 @@ fn what_a_run_shares_is_its_users_alone() {
     let me = rustix::process::getuid().as_raw();
     assert!(!shared.is_empty());
     for entry in &shared {
-        // Those of other tests come and go.
+        // Files of other tests may disappear meanwhile.
         let Ok(known) = entry.metadata() else { continue };
         assert!(known.uid() == me && known.mode() & 0o077 == 0, "{entry:?}: mode {:o}", known.mode());
     }
@@ -42,7 +42,7 @@ fn what_a_run_shares_is_its_users_alone() {
     run.wait().unwrap();
 }
 
-/// Numbers of a process's sockets.
+/// Inode numbers of a process's sockets.
 fn sockets_of(process: Pid) -> Vec<String> {
     let folder = format!("/proc/{}/fd", process.as_raw_nonzero());
     let files = std::fs::read_dir(folder).unwrap().flatten();
@@ -54,19 +54,21 @@ fn sockets_of(process: Pid) -> Vec<String> {
     numbers.collect()
 }
 
-/// What two processes hold.
+/// Resources that the processes of a run hold.
 #[derive(Clone, Copy, Debug, PartialEq)]
-struct Held {
+struct HeldResources {
     step: u64,
     /// Memory of the run and of the solver [bytes].
     memory: [u64; 2],
-    /// Open files of both.
+    /// Number of open files of the run and of the solver.
     files: [usize; 2],
-    /// Files in shared memory, and their bytes.
-    shared: (usize, u64),
+    /// Number of files in shared memory.
+    shared_files: usize,
+    /// Size of the files in shared memory [bytes].
+    shared_bytes: u64,
 }
 
-fn held(run: &str, step: u64, processes: [Pid; 2]) -> Option<Held> {
+fn held(run: &str, step: u64, processes: [Pid; 2]) -> Option<HeldResources> {
     let of = |process: Pid, name: &str| format!("/proc/{}/{name}", process.as_raw_nonzero());
     let memory = |process| {
         let text = std::fs::read_to_string(of(process, "statm")).ok()?;
@@ -77,15 +79,19 @@ fn held(run: &str, step: u64, processes: [Pid; 2]) -> Option<Held> {
     let ours = ours.filter(|entry| entry.file_name().to_string_lossy().starts_with(run));
     let sizes: Vec<u64> = ours.filter_map(|entry| Some(entry.metadata().ok()?.len())).collect();
     let [dem, solver] = processes;
-    Some(Held {
+    Some(HeldResources {
         step,
         memory: [memory(dem)?, memory(solver)?],
         files: [files(dem)?, files(solver)?],
-        shared: (sizes.len(), sizes.iter().sum()),
+        shared_files: sizes.len(),
+        shared_bytes: sizes.iter().sum(),
     })
 }
 
-/// A small bed at rest, with rolling friction lest grains spin on forever: a million steps with `AMBERFIELD_CASES=full`, an exchange every twenty; twenty thousand otherwise, an exchange every two.
+/// Case of a small bed at rest, with rolling friction so that grains do not spin forever.
+///
+/// It has a million steps with an exchange every twenty if `AMBERFIELD_CASES=full`, else twenty thousand
+/// steps with an exchange every two.
 #[test]
 fn a_long_run_holds_no_more_at_its_end_than_early_on() {
     let full = std::env::var("AMBERFIELD_CASES").is_ok_and(|size| size == "full");
@@ -112,7 +118,7 @@ fn a_long_run_holds_no_more_at_its_end_than_early_on() {
     let line = std::fs::read(format!("/proc/{}/cmdline", processes[1].as_raw_nonzero())).unwrap();
     let line = String::from_utf8_lossy(&line).into_owned();
     let name = line.split('\0').find(|word| word.starts_with("amberfield-")).unwrap().to_owned();
-    let mut seen: Vec<Held> = Vec::new();
+    let mut seen: Vec<HeldResources> = Vec::new();
     while run.try_wait().unwrap().is_none() {
         let history = std::fs::read_to_string(scene.bench.path("out/history.csv")).unwrap();
         let step = history.lines().rfind(|line| line.matches(',').count() > 2);
@@ -121,12 +127,12 @@ fn a_long_run_holds_no_more_at_its_end_than_early_on() {
         std::thread::sleep(Duration::from_millis(20));
     }
     assert!(run.wait().unwrap().success());
-    // While a process leaves, what it holds goes.
+    // The last readings are left out, since a process that ends gives back what it holds.
     let early = *seen.iter().find(|held| held.step >= steps / 10).unwrap();
     let last = *seen.iter().rfind(|held| held.step <= steps * 98 / 100).unwrap();
     println!("{early:?}\n{last:?}");
     assert!(last.step > steps / 2, "{last:?}");
-    assert_eq!(last.shared, early.shared);
+    assert_eq!((last.shared_files, last.shared_bytes), (early.shared_files, early.shared_bytes));
     // A process that looks whether its peer lives has two files more for a moment.
     let least = |from: u64, to: u64| {
         let files = seen.iter().filter(|held| (from..to).contains(&held.step)).map(|held| held.files);
@@ -136,10 +142,10 @@ fn a_long_run_holds_no_more_at_its_end_than_early_on() {
     for (early, last) in early.memory.iter().zip(last.memory) {
         assert!(last <= early + FLAT, "{early} bytes early on, {last} at the end");
     }
-    let history = Table::parse(&scene.bench.read("out/history.csv"));
+    let history = CsvTable::parse(&scene.bench.read("out/history.csv"));
     let charges = history.numbers("net_charge_C");
     assert!(charges.iter().all(|charge| (charge - charges[0]).abs() <= ROUND_OFF), "{charges:?}");
-    // At rest, and not heated by the field that is followed between exchanges.
+    // The bed is at rest, and the field that is extrapolated between exchanges does not heat it.
     let kinetic = history.numbers("kinetic_J");
     let (most, last) = (kinetic.iter().copied().fold(0.0, f64::max), kinetic[kinetic.len() - 1]);
     println!("kinetic energy: most {most:e} J, at the end {last:e} J");

@@ -1,4 +1,4 @@
-//! A folder with a scene, and the binary.
+//! Folder with a scene, and the binary to run in it.
 
 use std::path::{Path, PathBuf};
 use std::process::{Command, Stdio};
@@ -31,23 +31,23 @@ fn binary() -> &'static Path {
     })
 }
 
-/// What a command said.
+/// Answer of a command.
 #[derive(Clone, Debug)]
 pub struct Answer {
     /// Exit code; `None` when a signal ended it.
     pub code: Option<i32>,
-    /// Summary.
+    /// Text of stdout: the summary.
     pub stdout: String,
-    /// Progress, log, errors.
+    /// Text of stderr: progress, log, errors.
     pub stderr: String,
 }
 
-/// A folder that is removed at the end, and the binary to run in it.
+/// Folder that is removed at the end, and the binary to run in it.
 #[derive(Debug)]
-pub struct Bench(tempfile::TempDir);
+pub struct Workbench(tempfile::TempDir);
 
-impl Bench {
-    /// A folder with a file `scene.toml`.
+impl Workbench {
+    /// Folder with a file `scene.toml`.
     ///
     /// # Panics
     /// When the folder cannot be made.
@@ -81,7 +81,7 @@ impl Bench {
         self.0.path().join(name)
     }
 
-    /// Names in a subfolder, sorted.
+    /// Names of the files in a subfolder, sorted.
     #[must_use]
     pub fn names(&self, folder: &str) -> Vec<String> {
         let entries = std::fs::read_dir(self.path(folder)).into_iter().flatten().flatten();
@@ -91,7 +91,7 @@ impl Bench {
         names
     }
 
-    /// The command, ready to start in the folder.
+    /// Command that is ready to start in the folder.
     #[must_use]
     pub fn command(&self, arguments: &[&str]) -> Command {
         let mut command = Command::new(binary());
@@ -114,24 +114,24 @@ impl Bench {
     }
 }
 
-/// A CSV file as text.
+/// Table of texts from a CSV file.
 #[derive(Clone, Debug, PartialEq)]
-pub struct Table {
-    /// Header.
+pub struct CsvTable {
+    /// Names of the columns.
     pub columns: Vec<String>,
     /// Rows.
     pub rows: Vec<Vec<String>>,
 }
 
-impl Table {
-    /// Splits a text without quotes.
+impl CsvTable {
+    /// Splits a CSV text that has no quotes.
     #[must_use]
     pub fn parse(text: &str) -> Self {
         let mut rows = text.lines().map(|line| line.split(',').map(ToOwned::to_owned).collect::<Vec<_>>());
         Self { columns: rows.next().unwrap_or_default(), rows: rows.collect() }
     }
 
-    /// The table without the columns of clock readings, which differ from run to run.
+    /// Copy of the table without the columns of clock readings, which differ from run to run.
     #[must_use]
     pub fn without_clocks(&self) -> Self {
         let kept: Vec<usize> =
@@ -140,10 +140,10 @@ impl Table {
         Self { columns: pick(&self.columns), rows: self.rows.iter().map(pick).collect() }
     }
 
-    /// A column as numbers.
+    /// Numbers of a column.
     ///
     /// # Panics
-    /// When it is not there or holds other things.
+    /// When the column is absent or holds something other than numbers.
     #[must_use]
     pub fn numbers(&self, column: &str) -> Vec<f64> {
         let index = self.columns.iter().position(|name| name == column).expect("the column is there");
