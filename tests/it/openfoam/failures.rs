@@ -324,7 +324,7 @@ fn a_solver_beside_the_steps_leads_to_the_same_motion_and_loses_nothing_when_kil
         assert!(error > 0.0 && error < AGREEMENT, "{name}: {error:e}");
     }
 
-    // Stopped in the middle, the solver killed in the middle: both go on bit for bit.
+    // Stopped in the middle, the solver killed in the middle: both continue bit for bit.
     let steps = rows(&scene, "beside").rows.len() / 2;
     good(&run("stopped", &[&overlap[..], &["--steps", &steps.to_string()]].concat()));
     let last = |out: &str| {
@@ -374,17 +374,10 @@ fn a_solver_that_comes_back_with_another_mesh_is_refused() {
     let text = scene.bench.read("scene.toml") + "on_solver_loss = 'wait'\n[output]\nhistory_every_s = 1e-5\n";
     let text = text.replace("end_s = 1e-3", "end_s = 1e3").replace("1e-12", "1e-15").replace("-9.81", "0");
     scene.bench.write("scene.toml", text);
+    let interval = ["--set", "electric_field.coupling_interval=5"];
     let mut run = scene
         .bench
-        .command(&[
-            "run",
-            "scene.toml",
-            "--out",
-            "out",
-            "--no-progress",
-            "--set",
-            "electric_field.coupling_interval=5",
-        ])
+        .command(&[&["run", "scene.toml", "--out", "out", "--no-progress"], &interval[..]].concat())
         .stdout(Stdio::null())
         .stderr(Stdio::piped())
         .spawn()

@@ -31,6 +31,7 @@ pub(crate) fn run(options: &RunOptions, common: &Common, log: &Log) -> Result<()
         tracing::warn!("{warning}");
     }
     interrupt::watch()?;
+
     let saved = options.resume.as_ref().map(|checkpoint| read_saved(checkpoint, scene.hash())).transpose()?;
     let solver = match &saved {
         Some(saved) if scene.solver.is_some() && saved.state.has_lost_solver() => {
@@ -42,6 +43,7 @@ pub(crate) fn run(options: &RunOptions, common: &Common, log: &Log) -> Result<()
         _ => connect_solver(&mut scene)?,
     };
     let setup = setup_of(&scene, None, solver)?;
+
     let (simulation, earlier) = match saved {
         Some(Saved { state, history, wall_s, stage_s }) => {
             let earlier = EarlierPart { history, clock: Clock { wall_s, stages: stage_s } };
@@ -50,6 +52,8 @@ pub(crate) fn run(options: &RunOptions, common: &Common, log: &Log) -> Result<()
         None => (Simulation::new(setup), None),
     };
     let simulation = simulation.map_err(|error| Failure::at_start(&error))?;
+
+    // The folder is opened only now, so that a scene that cannot start leaves no files behind.
     let folder = RunFolder::open(&out, existing)?;
     log.open(&folder.file("log.jsonl"))
         .map_err(|error| Failure::bad_input(format!("{}: {error}", folder.file("log.jsonl").display())))?;
@@ -58,6 +62,7 @@ pub(crate) fn run(options: &RunOptions, common: &Common, log: &Log) -> Result<()
         write_json(&folder.file("tuning.json"), field.choice())?;
     }
     announce(&simulation);
+
     let mut session = match earlier {
         Some(earlier) => Session::resume(&folder, &scene, simulation, earlier)?,
         None => Session::start(&folder, &scene, simulation)?,
@@ -135,6 +140,7 @@ fn finish(session: &Session<'_>, scene_path: &Path, first: u64, ending: Ending) 
     }
     tell_charges(simulation);
     tell_gas(simulation);
+
     let seconds = session.begun.elapsed().as_secs_f64();
     #[expect(clippy::cast_precision_loss, reason = "a rate for the eye")]
     let rate = (simulation.step_index() - first) as f64 / seconds;

@@ -89,6 +89,7 @@ impl<'a> Session<'a> {
             self.record.frame(self.folder, self.scene, &self.simulation)?;
         }
         let before = self.energies()?;
+
         let ending = loop {
             let step = self.simulation.step_index();
             if step >= stop {
@@ -114,6 +115,7 @@ impl<'a> Session<'a> {
                 return Err(error);
             }
         };
+
         self.row()?;
         self.record.frame(self.folder, self.scene, &self.simulation)?;
         self.checkpoint()?;

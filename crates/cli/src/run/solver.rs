@@ -34,25 +34,13 @@ pub(crate) fn connect_solver(scene: &mut Scene) -> Result<SolverConnections, Fai
     if solver.on_solver_loss == SolverLoss::Fallback && scene.domain.is_none() {
         return Err(Failure::bad_input(
             "solver.on_solver_loss = \"fallback\" needs the box and the boundaries with which the internal \
-             grid \
-             continues; add [domain] and [domain.boundary]",
+             grid continues; add [domain] and [domain.boundary]",
         ));
     }
-    // OpenFOAM's users expect the output of a program in the folder of its case.
-    let program = solver.application.as_deref().unwrap_or(program_name(flows));
-    let asked = scene.electric_field.as_ref();
-    let far_tolerance =
-        |field: &ElectricFieldSettings| field.far_tolerance.unwrap_or(FAR_TOLERANCE * field.field.tolerance);
-    let settings = SolverSettings {
-        case: solver.openfoam_case.clone(),
-        application: solver.application.clone(),
-        flow: flows,
-        start: solver.start,
-        ranks: solver.ranks,
-        timeout: Duration::from_secs_f64(solver.timeout_s),
-        far_tolerance: asked.map_or(FAR_TOLERANCE, far_tolerance),
-        log: Some(solver.openfoam_case.join(format!("log.{program}"))),
-    };
+
+    let settings = settings_of(solver, scene.electric_field.as_ref(), flows);
+    let has_field = scene.electric_field.is_some();
+    let waits = solver.on_solver_loss == SolverLoss::Wait;
     let connected = connect(&settings).map_err(|error| Failure::of_field(&error.into()))?;
     let mesh = connected.mesh();
     tracing::info!("field solver: {} cells, {} boundary faces", mesh.cell_count(), mesh.boundary().len());
@@ -60,11 +48,11 @@ pub(crate) fn connect_solver(scene: &mut Scene) -> Result<SolverConnections, Fai
         None => scene.domain = Some(mesh.domain().clone()),
         Some(domain) => agree(domain, mesh.domain())?,
     }
-    let waits = solver.on_solver_loss == SolverLoss::Wait;
+
     let flow = flows.then(|| ConnectFlow::once(connected.flow()));
     // The first call takes the connection that exists; later calls, after a loss, make new ones.
     let first = Mutex::new(Some(connected));
-    let field = asked.is_some().then(|| {
+    let field = has_field.then(|| {
         Connect::new(move || {
             let solver = match first.lock().unwrap_or_else(PoisonError::into_inner).take() {
                 Some(solver) => solver,
@@ -78,6 +66,28 @@ pub(crate) fn connect_solver(scene: &mut Scene) -> Result<SolverConnections, Fai
         })
     });
     Ok(SolverConnections { field, flow })
+}
+
+/// Settings of the connection to a solver; `flows` says that it computes the flow of a gas.
+fn settings_of(
+    solver: &OpenFoamSettings,
+    field: Option<&ElectricFieldSettings>,
+    flows: bool,
+) -> SolverSettings {
+    let far_tolerance =
+        |field: &ElectricFieldSettings| field.far_tolerance.unwrap_or(FAR_TOLERANCE * field.field.tolerance);
+    // OpenFOAM's users expect the output of a program in the folder of its case.
+    let program = solver.application.as_deref().unwrap_or(program_name(flows));
+    SolverSettings {
+        case: solver.openfoam_case.clone(),
+        application: solver.application.clone(),
+        flow: flows,
+        start: solver.start,
+        ranks: solver.ranks,
+        timeout: Duration::from_secs_f64(solver.timeout_s),
+        far_tolerance: field.map_or(FAR_TOLERANCE, far_tolerance),
+        log: Some(solver.openfoam_case.join(format!("log.{program}"))),
+    }
 }
 
 /// Announces the run and waits for the solver.

@@ -54,7 +54,9 @@ pub(crate) fn write_summary(
     let clock = session.clock();
     let simulation = &session.simulation;
     let steps = simulation.step_index() - first;
+    // The rate is that of this part of the run, without earlier ones.
     let seconds = clock.wall_s - session.earlier.wall_s;
+
     let stages: Map<String, Value> = simulation
         .stage_seconds()
         .iter()

@@ -22,17 +22,9 @@ pub(super) fn volume_fraction(region: &Region, radii: &[f64]) -> f64 {
     radii.iter().map(|radius| 4.0 / 3.0 * PI * radius.powi(3)).sum::<f64>() / region.volume()
 }
 
-/// Finds centres [m] for grains of the given radii [m].
-///
-/// # Errors
-/// A text with numbers: grains larger than the region, or volume fractions that cannot be reached.
-pub(super) fn fill(
-    region: &Region,
-    radii: &[f64],
-    random: &mut ChaCha8Rng,
-) -> Result<Vec<Vector3<f64>>, String> {
+/// Checks that the grains are neither too large nor too many for the region.
+fn check_that_grains_fit(region: &Region, radii: &[f64]) -> Result<(), String> {
     let largest = radii.iter().copied().fold(0.0, f64::max);
-    let smallest = radii.iter().copied().fold(f64::INFINITY, f64::min);
     if largest > region.largest_radius() {
         return Err(format!(
             "a grain of radius {largest:e} m does not fit into the region, whose largest sphere has {:e} m; \
@@ -49,11 +41,28 @@ pub(super) fn fill(
             region.volume()
         ));
     }
+    Ok(())
+}
+
+/// Finds centres [m] for grains of the given radii [m].
+///
+/// # Errors
+/// A text with numbers: grains larger than the region, or volume fractions that cannot be reached.
+pub(super) fn fill(
+    region: &Region,
+    radii: &[f64],
+    random: &mut ChaCha8Rng,
+) -> Result<Vec<Vector3<f64>>, String> {
+    check_that_grains_fit(region, radii)?;
+    let largest = radii.iter().copied().fold(0.0, f64::max);
+    let smallest = radii.iter().copied().fold(f64::INFINITY, f64::min);
     let mut order: Vec<usize> = (0..radii.len()).collect();
     order.sort_by(|a, b| radii[*b].total_cmp(&radii[*a]));
     let mut grid = SizeGrid::new(region, smallest, largest, radii.len());
     let mut centres = vec![Vector3::zeros(); radii.len()];
     let mut jammed = false;
+
+    // Large grains first: small ones still find room between them.
     for &index in &order {
         let radius = radii[index];
         let free = |point: &Vector3<f64>| {
@@ -83,7 +92,9 @@ pub(super) fn fill(
         centres[index] = point;
         grid.insert(index, &point, radius);
     }
+
     if jammed {
+        let fraction = volume_fraction(region, radii);
         relax(region, radii, &mut centres, &mut grid).map_err(|overlap| {
             format!(
                 "{} grains at the volume fraction {fraction:.3} still overlap by {overlap:.1e} \

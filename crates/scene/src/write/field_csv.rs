@@ -53,8 +53,8 @@ impl<'a> FieldComponents<'a> {
 
 /// Writes the columns `id,ex_V_per_m,ey_V_per_m,ez_V_per_m,potential_V`, and the components if there are any.
 ///
-/// Numbers have 17 significant digits, so that they are read back bit for bit. Each component adds three columns,
-/// `near_ex_V_per_m` and so on, in the order of the sum.
+/// Numbers have 17 significant digits, so that they are read back bit for bit. Each component adds three
+/// columns, `near_ex_V_per_m` and so on, in the order of the sum.
 ///
 /// # Errors
 /// Errors of the operating system.
