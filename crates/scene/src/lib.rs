@@ -6,8 +6,11 @@
 
 mod error;
 mod generate;
+mod limits;
+mod materials;
 mod particles;
 mod scene;
+mod source;
 mod stl;
 mod tree;
 mod write;

@@ -152,7 +152,7 @@ fn read_binary(file: &str, bytes: &[u8]) -> Result<Vec<Vector3<f64>>, SceneError
 /// out, since there may be several in a file and the library ends at the first. Normals are left out too,
 /// since they are not used and some exporters write NaN.
 fn read_text(file: &str, bytes: &[u8]) -> Result<Vec<Vector3<f64>>, SceneError> {
-    let text = crate::scene::source::decode(file, bytes)?;
+    let text = crate::source::decode(file, bytes)?;
     let number = Cell::new(0_usize);
     let facets = text.split_inclusive('\n').enumerate().filter_map(|(index, line)| {
         number.set(index + 1);

@@ -2,8 +2,8 @@
 
 use super::spec::GenerateContext;
 use crate::SceneError;
+use crate::limits::{CHARGE, RADIUS, RADIUS_OR_POINT};
 use crate::particles::read_charges;
-use crate::scene::limits::{CHARGE, RADIUS, RADIUS_OR_POINT};
 use crate::tree::{Node, Range, SceneTable, Value};
 use rand::RngExt;
 use rand::seq::SliceRandom;

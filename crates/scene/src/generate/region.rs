@@ -2,7 +2,7 @@
 
 use super::spec::GenerateContext;
 use crate::SceneError;
-use crate::scene::limits::{COORDINATE, LENGTH};
+use crate::limits::{COORDINATE, LENGTH};
 use crate::tree::{Range, SceneTable, Value};
 use amberfield_core::{Axis, Domain, Wall, WallShape};
 use nalgebra::Vector3;

@@ -2,9 +2,9 @@
 
 use super::columns::{CsvColumns, csv_error, line};
 use crate::SceneError;
-use crate::scene::limits::{CHARGE, COORDINATE, DENSITY, RADIUS, RADIUS_OR_POINT, SPEED};
-use crate::scene::materials::Materials;
-use crate::scene::source::decode;
+use crate::limits::{CHARGE, COORDINATE, DENSITY, RADIUS, RADIUS_OR_POINT, SPEED};
+use crate::materials::Materials;
+use crate::source::decode;
 use amberfield_core::{Domain, Grain, GroupId, MaterialId, Particles};
 use csv::StringRecord;
 use nalgebra::Vector3;

@@ -1,7 +1,7 @@
 //! Section `[domain]`.
 
-use super::limits::{COORDINATE, ELECTRIC};
 use crate::SceneError;
+use crate::limits::{COORDINATE, ELECTRIC};
 use crate::tree::{SceneTable, Value};
 use amberfield_core::{Axis, Boundary, Domain, DomainError, Side};
 

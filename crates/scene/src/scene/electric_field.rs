@@ -2,8 +2,8 @@
 
 use super::command::{COMMAND_KEYS, command_entries};
 use super::description::ElectricFieldSettings;
-use super::limits::{ELECTRIC, FRACTION, LENGTH, TOLERANCE};
 use crate::SceneError;
+use crate::limits::{ELECTRIC, FRACTION, LENGTH, TOLERANCE};
 use crate::tree::{Entries, Node, Range, SceneTable, Value};
 use amberfield_core::{CouplingInterval, ForceLimit, Method, Permittivity, Tuning};
 

@@ -1,7 +1,7 @@
 //! Section `[gas]`.
 
-use super::limits::TIME;
 use crate::SceneError;
+use crate::limits::TIME;
 use crate::tree::{Range, SceneTable};
 use amberfield_core::{DragLaw, Gas, GasFlow, GasModel};
 

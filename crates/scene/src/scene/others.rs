@@ -1,9 +1,9 @@
 //! Sections `[charge_transfer]`, `[solver]` and `[output]`.
 
 use super::description::{ChargeTransferSettings, OpenFoamSettings, OutputSettings, SolverLoss};
-use super::limits::TIME;
-use super::source::SceneSource;
 use crate::SceneError;
+use crate::limits::TIME;
+use crate::source::SceneSource;
 use crate::tree::{Range, SceneTable, Value};
 
 /// Reads `[charge_transfer]`.

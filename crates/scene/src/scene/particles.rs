@@ -1,10 +1,10 @@
 //! Section `[particles]`.
 
-use super::materials::Materials;
-use super::source::SceneSource;
 use crate::SceneError;
 use crate::generate::{GenerateContext, generate};
+use crate::materials::Materials;
 use crate::particles::{CsvContext, ReadParticles, read_particles};
+use crate::source::SceneSource;
 use crate::tree::SceneTable;
 use amberfield_core::{Domain, OnExit, Wall};
 

@@ -1,7 +1,7 @@
 //! Section `[time]`.
 
-use super::limits::{LENGTH, TIME};
 use crate::SceneError;
+use crate::limits::{LENGTH, TIME};
 use crate::tree::{Range, SceneTable};
 use amberfield_core::{OnExit, Skin, Step, TimeSettings};
 use nalgebra::Vector3;

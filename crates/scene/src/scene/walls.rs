@@ -1,10 +1,10 @@
 //! Sections `[[walls]]`.
 
-use super::limits::COORDINATE;
-use super::materials::Materials;
-use super::source::SceneSource;
 use crate::SceneError;
 use crate::error::Problems;
+use crate::limits::COORDINATE;
+use crate::materials::Materials;
+use crate::source::SceneSource;
 use crate::stl::{Surface, read_stl};
 use crate::tree::{Range, SceneTable};
 use amberfield_core::{Wall, WallCharging, WallShape};

@@ -1,8 +1,8 @@
 //! Sections `[[materials]]`.
 
-use super::limits::{DENSITY, FRICTION, YOUNG};
 use crate::SceneError;
 use crate::error::Problems;
+use crate::limits::{DENSITY, FRICTION, YOUNG};
 use crate::tree::{Range, SceneTable, nearest};
 use amberfield_core::{Material, MaterialId};
 
