@@ -1,4 +1,4 @@
-//! What the machine offers.
+//! Abilities of the machine that matter for speed.
 
 /// Vector extensions that this program can use or that help to compare run times.
 pub(crate) fn cpu_features() -> Vec<&'static str> {

@@ -51,7 +51,8 @@ pub(crate) fn field(options: &FieldOptions) -> Result<(), Failure> {
     match measured {
         Some(error) if settings.field.method == Method::P3m && error > settings.field.tolerance => {
             Err(Failure::outside_tolerance(format!(
-                "measured error {error:.2e} is above the tolerance {:e}; the results are written, but ask for a smaller tolerance or set electric_field.tuning = \"timed\"",
+                "measured error {error:.2e} is above the tolerance {:e}; the results are written, but ask \
+                 for a smaller tolerance or set electric_field.tuning = \"timed\"",
                 settings.field.tolerance
             )))
         }

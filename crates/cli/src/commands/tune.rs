@@ -25,7 +25,8 @@ pub(crate) fn tune(options: &TuneOptions) -> Result<(), Failure> {
     }
     if scene.solver.is_some() {
         return Err(Failure::bad_input(
-            "tune chooses parameters of the internal grid, and the scene has a [solver]; its parameters are chosen when a run starts and stand in the run's summary.json",
+            "tune chooses parameters of the internal grid, and the scene has a [solver]; its parameters are \
+             chosen when a run starts and stand in the run's summary.json",
         ));
     }
     let mut settings = scene.electric_field.as_ref().expect("the purpose needs it").field.clone();
@@ -34,7 +35,8 @@ pub(crate) fn tune(options: &TuneOptions) -> Result<(), Failure> {
     let Charges { position: positions, charge: charges, .. } = charges_of(&scene);
     if charges.is_empty() {
         return Err(Failure::bad_input(
-            "no grain takes part in the field: there is nothing to tune; add grains to [particles] or change electric_field.particle_group",
+            "no grain takes part in the field: there is nothing to tune; add grains to [particles] or \
+             change electric_field.particle_group",
         ));
     }
     let candidates = ElectricField::candidates(domain, &settings, &positions, &charges).map_err(failed)?;
@@ -73,7 +75,8 @@ pub(crate) fn tune(options: &TuneOptions) -> Result<(), Failure> {
     line(format_args!("check: relative error {error:.2e} against {by}"));
     if error > settings.tolerance {
         return Err(Failure::outside_tolerance(format!(
-            "the choice has a relative error of {error:.2e} against {by}, above the tolerance {:e}; please report it with the scene",
+            "the choice has a relative error of {error:.2e} against {by}, above the tolerance {:e}; please \
+             report it with the scene",
             settings.tolerance
         )));
     }

@@ -21,6 +21,6 @@ pub(crate) fn draw(path: &Path, scene: &Scene, simulation: &Simulation) {
     }
 }
 
-/// Without the feature there is no picture.
+/// Draws nothing: a program without the feature has no pictures.
 #[cfg(not(feature = "plots"))]
 pub(crate) fn draw(_: &Path, _: &Scene, _: &Simulation) {}
