@@ -49,6 +49,14 @@ fn spread(values: &[f64]) -> [f64; 3] {
     [low, values.iter().sum::<f64>() / values.len() as f64, high]
 }
 
+/// Horizontal axis of a plot of the charge.
+struct Abscissa {
+    /// Name of the plot.
+    plot: &'static str,
+    label: &'static str,
+    of: fn(&Moment) -> f64,
+}
+
 #[test]
 fn corrected_charging_curves_coincide() {
     let seeds = if full_size() { 1..=3 } else { 1..=2 };
@@ -63,18 +71,17 @@ fn corrected_charging_curves_coincide() {
     assert!((soft[1] - stiff[1]).abs() < SPREADS * spread, "charge per collision: {soft:?} {stiff:?}");
     let [soft, stiff] = spreads(|end| end.charge_c);
     assert!((soft[1] / stiff[1] - 1.0).abs() < SLOWER, "charge: {soft:?} {stiff:?}");
-    let abscissas: [(&str, &str, fn(&Moment) -> f64); 2] = [
-        ("charge", "time [s]", |moment| moment.time_s),
-        ("charge-over-collisions", "collisions", |moment| moment.collisions),
-    ];
-    for (name, x, of) in abscissas {
+    let over_time = Abscissa { plot: "charge", label: "time [s]", of: |moment| moment.time_s };
+    let over_collisions =
+        Abscissa { plot: "charge-over-collisions", label: "collisions", of: |moment| moment.collisions };
+    for x in [over_time, over_collisions] {
         let curve = |young: f64, seed: usize, run: &[Moment]| Curve {
             name: format!("Y = {young:e} Pa, replica {}", seed + 1),
-            points: run.iter().map(|moment| (of(moment), moment.charge_c)).collect(),
+            points: run.iter().map(|moment| ((x.of)(moment), moment.charge_c)).collect(),
         };
         let all = YOUNG_PA.iter().zip(&runs).flat_map(|(young, runs)| {
             runs.iter().enumerate().map(move |(seed, run)| curve(*young, seed, run))
         });
-        plot("charging-gas", name, [x, "charge of all grains [C]"], false, all.collect());
+        plot("charging-gas", x.plot, [x.label, "charge of all grains [C]"], false, all.collect());
     }
 }
