@@ -1,7 +1,8 @@
 //! The accuracy table of the README: the measured error of every method on every reference set.
 //!
-//! `cargo run --release -p amberfield-field --example accuracy` prints it as Markdown. Errors are exact: the
-//! sets' fields are known to 1e-9. Parameters come from the cost model, so that the table is the same everywhere.
+//! `cargo run --release -p amberfield-field --example accuracy` prints it as Markdown. Errors are exact:
+//! the sets' fields are known to 1e-9. Parameters come from the cost model, so that the table is the same
+//! everywhere.
 #![expect(clippy::print_stdout, reason = "prints its table")]
 
 use amberfield_core::{FieldSettings, Method, Permittivity, Tuning};
@@ -10,7 +11,8 @@ use amberfield_oracle::ErrorNorms;
 use amberfield_oracle::reference::{self, ReferenceSet};
 
 const TOLERANCES: [f64; 6] = [1e-1, 1e-2, 1e-3, 1e-4, 1e-5, 1e-6];
-/// Cut-off radius of the comparison methods: five grain diameters, a usual choice; the sets' grains have 0.04.
+/// Cut-off radius of the comparison methods: five grain diameters, a usual choice; the sets' grains have
+/// 0.04.
 const CUTOFF: f64 = 5.0 * 0.04;
 
 /// Relative RMS error of E over all particles of a set.

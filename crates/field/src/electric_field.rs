@@ -49,13 +49,14 @@ impl ElectricField {
     ///
     /// E = near + middle + far + correction + faces + external
     ///
-    /// Near, middle, far and correction come from the charges and their images, faces from potentials and normal
-    /// fields that are given on faces.
+    /// Near, middle, far and correction come from the charges and their images, faces from potentials and
+    /// normal fields that are given on faces.
     ///
     /// Allocates nothing once `out` has its size and the number of particles stays.
     ///
     /// # Errors
-    /// Values that are not finite; a net charge that no longer vanishes where it must; grains outside the box.
+    /// Values that are not finite; a net charge that no longer vanishes where it must; grains outside the
+    /// box.
     pub fn evaluate(
         &mut self,
         positions: &[Vector3<f64>],
@@ -66,8 +67,8 @@ impl ElectricField {
         self.evaluate_at(0.0, positions, charges, wanted, out)
     }
 
-    /// Computes E as [`Self::evaluate`] does, at a time [s]. The time is for a field solver of another process,
-    /// which works beside the motion and has to know of when the charges are.
+    /// Computes E as [`Self::evaluate`] does, at a time [s]. The time is for a field solver of another
+    /// process, which works beside the motion and has to know of when the charges are.
     ///
     /// # Errors
     /// The errors of [`Self::evaluate`].
@@ -153,7 +154,7 @@ impl ElectricField {
         self.method.memory_bytes()
     }
 
-    /// Which field stages are built and which are not, with reasons.
+    /// Lists the field stages that are built and those that are left out, with reasons.
     #[must_use]
     pub fn plan(&self) -> Plan {
         plan::plan(&self.domain, &self.settings, &self.choice, self.mesh_cells)

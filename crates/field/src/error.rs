@@ -1,6 +1,6 @@
 //! Errors of the field crate.
 
-/// Why a field cannot be computed.
+/// Reason why a field cannot be computed.
 #[derive(Debug, Clone, PartialEq, thiserror::Error)]
 #[non_exhaustive]
 pub enum FieldError {
@@ -9,7 +9,8 @@ pub enum FieldError {
     Settings(String),
     /// Net charge in a box whose faces are all insulating or periodic.
     #[error(
-        "net charge {net_charge_c:e} C in a box whose faces are all insulating or periodic has no field; make the charge zero, ground a face, or set electric_field.neutralising_background = true"
+        "net charge {net_charge_c:e} C in a box whose faces are all insulating or periodic has no field; \
+         make the charge zero, ground a face, or set electric_field.neutralising_background = true"
     )]
     NetCharge {
         /// Net charge [C], less what the faces' normal fields take.
@@ -31,7 +32,7 @@ pub enum FieldError {
         asked: f64,
         /// Best error measured.
         reached: f64,
-        /// What to do.
+        /// Advice to the user.
         advice: String,
     },
 }

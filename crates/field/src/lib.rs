@@ -2,9 +2,9 @@
 //!
 //! E = near + middle + far + correction + faces + external
 //!
-//! [`ElectricField::evaluate`] computes the parts; `sum.rs` adds them, and nothing else does. Folders are what is added
-//! up (`levels`), how methods combine it (`methods`), how parameters are chosen (`choosing`), where charges and
-//! images are (`geometry`), and tools (`numerics`).
+//! [`ElectricField::evaluate`] computes the parts; `sum.rs` adds them, and nothing else does. Folders are
+//! what is added up (`levels`), how methods combine it (`methods`), how parameters are chosen (`choosing`),
+//! where charges and images are (`geometry`), and tools (`numerics`).
 
 mod choosing;
 mod electric_field;

@@ -1,4 +1,4 @@
-//! Which field stages a scene has, and why.
+//! The field stages that a scene has, with the reason for each.
 
 use crate::choosing::choice::Choice;
 use amberfield_core::{Domain, FieldSettings, Plan};

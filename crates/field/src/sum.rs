@@ -2,9 +2,9 @@
 //!
 //! E = near + middle + far + correction + faces + external
 //!
-//! A method gives the first four, which come from charges; faces and external need no charge. A part that a scene
-//! or a method does not have is zero everywhere. The potential is the same sum, less the self term and the
-//! background.
+//! A method gives the first four, which come from charges; faces and external need no charge. A part that a
+//! scene or a method does not have is zero everywhere. The potential is the same sum, less the self term
+//! and the background.
 
 use crate::levels::external::ExternalField;
 use crate::values::{FieldAt, FieldValues, Wanted};
@@ -74,7 +74,7 @@ pub struct Levels<'a> {
 /// Every part of the field at the particles.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Sum<'a> {
-    /// What a method made of the charges.
+    /// Levels that a method made of the charges.
     pub(crate) levels: Levels<'a>,
     /// Potentials and normal fields of the faces.
     pub(crate) faces: Part<'a>,
@@ -104,11 +104,11 @@ impl<'a> Sum<'a> {
         let faces = self.faces.at(particle);
         let external = self.external.at(&self.positions[particle]);
 
-        // Self term: grid and modes hold the cloud of the particle itself, which is no part of the field that acts
-        // on it. A cloud has no field at its own centre, but a potential.
+        // Self term: grid and modes hold the cloud of the particle itself, which is no part of the field
+        // that acts on it. A cloud has no field at its own centre, but a potential.
         let own_cloud = levels.own_clouds.at(particle);
-        // Neutralising background: where no face fixes the potential its mean is zero, but that of a net charge's
-        // pairs is not. It is the same everywhere, so that E does not see it.
+        // Neutralising background: where no face fixes the potential its mean is zero, but that of a net
+        // charge's pairs is not. It is the same everywhere, so that E does not see it.
         let background = FieldAt::of_potential(levels.background);
 
         // Sums over charges come without Coulomb's constant; it multiplies them once, when they are added.

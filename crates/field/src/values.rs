@@ -1,10 +1,10 @@
-//! What an evaluation returns, and the arithmetic of a field and its potential at one place.
+//! Results of an evaluation, and the arithmetic of a field and its potential at one place.
 
 use nalgebra::Vector3;
 use std::ops::{Add, AddAssign, Mul, Sub, SubAssign};
 
-/// Field and potential at one place; zero by default. Levels that sum over charges leave Coulomb's constant out
-/// (4πε = 1): their E is in C/m² and their potential in C/m until it multiplies them.
+/// Field and potential at one place; zero by default. Levels that sum over charges leave Coulomb's constant
+/// out (4πε = 1): their E is in C/m² and their potential in C/m until it multiplies them.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct FieldAt {
     /// E [V/m].
@@ -71,7 +71,7 @@ impl Mul<FieldAt> for f64 {
     }
 }
 
-/// What an evaluation is asked for beyond E; what is not asked for is not computed.
+/// Results that an evaluation is asked for beyond E; what is not asked for is not computed.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct Wanted {
     /// The potential.
@@ -89,7 +89,7 @@ pub struct Components {
     pub middle: Vec<Vector3<f64>>,
     /// Everything smooth: the internal grid, modes of the box, or a mesh with its boundary conditions.
     pub far: Vec<Vector3<f64>>,
-    /// What near and far would count twice.
+    /// Correction of what near and far would count twice.
     pub correction: Vec<Vector3<f64>>,
     /// Potentials and normal fields of the faces; zero where a mesh has them in its boundary conditions.
     pub faces: Vec<Vector3<f64>>,

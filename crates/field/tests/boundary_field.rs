@@ -1,4 +1,5 @@
-//! The field of electrodes and of normal fields on faces, against closed forms, series and Laplace's equation.
+//! The field of electrodes and of normal fields on faces, against closed forms, series and Laplace's
+//! equation.
 
 use amberfield_core::{Boundary, Domain, Vector3};
 use amberfield_field::{BoundaryField, FieldAt};
@@ -6,7 +7,7 @@ use std::f64::consts::PI;
 
 /// Round-off of closed forms.
 const ROUND_OFF: f64 = 1e-13;
-/// What the quadrature promises.
+/// Relative error that the quadrature promises.
 const QUADRATURE: f64 = 1e-10;
 
 const GROUNDED: [Boundary; 2] = [Boundary::Grounded; 2];

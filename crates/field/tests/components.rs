@@ -1,4 +1,5 @@
-//! The parts of E add up to E, whatever the method and the box: near + middle + far + correction + faces + external.
+//! The parts of E add up to E, whatever the method and the box: near + middle + far + correction + faces +
+//! external.
 
 use amberfield_core::{Boundary, Domain, FieldSettings, Method, Tuning, Vector3};
 use amberfield_field::{BoundaryField, Components, ElectricField, FieldValues, Wanted};
@@ -43,8 +44,8 @@ fn evaluate(domain: &Domain, settings: &FieldSettings, count: i32) -> FieldValue
     values
 }
 
-/// Boxes with electrodes, normal fields, open space and periodic axes, and how many grains are in them: enough for a
-/// grid in open space, where few are summed pair by pair.
+/// Boxes with electrodes, normal fields, open space and periodic axes, and how many grains are in them:
+/// enough for a grid in open space, where few are summed pair by pair.
 fn boxes() -> Vec<(Domain, i32)> {
     let plates = [Boundary::Potential(-3.0), Boundary::Potential(5.0)];
     let electrode = [Boundary::Potential(10.0), Boundary::Grounded];

@@ -5,9 +5,9 @@ use amberfield_field::{Direct, FieldError, FieldMethod, FieldValues, Wanted};
 use amberfield_oracle::{ErrorNorms, field_scale, reference};
 use std::f64::consts::PI;
 
-/// What the direct sum owes the reference sets, relative to the scale of E.
+/// Error that the direct sum may have on the reference sets, relative to the scale of E.
 const REFERENCE: f64 = 1e-9;
-/// What it reaches: terms left out are below 1e-14.
+/// Error that the direct sum reaches: terms left out are below 1e-14.
 const REACHED: f64 = 1e-12;
 
 const GROUNDED: [Boundary; 2] = [Boundary::Grounded; 2];
@@ -197,7 +197,8 @@ fn slab_over_a_wall_is_a_slab_with_mirror_charges() {
     }
 }
 
-/// A charged layer, far away: E = 2πσ on either side, and the potential falls as −2πσ|z|. Any axis may be open.
+/// A charged layer, far away: E = 2πσ on either side, and the potential falls as −2πσ|z|. Any axis may be
+/// open.
 #[test]
 fn a_charged_layer_has_the_field_of_a_sheet() {
     const PROBE: f64 = 1e-9;

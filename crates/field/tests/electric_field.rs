@@ -1,4 +1,4 @@
-//! What every method shares: faces with values, the external field, refusals, steady evaluations.
+//! Properties that every method shares: faces with values, the external field, refusals, steady evaluations.
 
 use amberfield_core::constants::VACUUM_PERMITTIVITY;
 use amberfield_core::{Boundary, Domain, FieldSettings, Method, Tuning, Vector3};

@@ -1,9 +1,9 @@
-//! What a cloud of charges means for the error of a field.
+//! Statistics of a cloud of charges that decide the error of a field.
 
 use amberfield_core::{Domain, Permittivity};
 use nalgebra::Vector3;
 
-/// What a cloud of charges means for the error.
+/// Statistics of a cloud of charges that decide the error.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Cloud {
     pub(crate) count: f64,

@@ -3,8 +3,8 @@
 use crate::methods::p3m::P3mParameters;
 use serde::{Deserialize, Serialize};
 
-/// Parameters chosen for a scene. They are written to the run folder and reused on resume, so that results never
-/// depend on a stopwatch.
+/// Parameters chosen for a scene. They are written to the run folder and reused on resume, so that results
+/// never depend on a stopwatch.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(rename_all = "snake_case")]
 #[non_exhaustive]

@@ -1,16 +1,17 @@
 //! The a-priori error of p3m for charges without correlation.
 //!
-//! δE = q_rms/(4πε) · √(n Q(p, r_c/h)/h), n the number density where the charges are, with (Hockney & Eastwood, *Computer
-//! Simulation Using Particles*, 1988, ch. 8, for a given influence function G)
+//! δE = q_rms/(4πε) · √(n Q(p, r_c/h)/h), n the number density where the charges are, with (Hockney &
+//! Eastwood, *Computer Simulation Using Particles*, 1988, ch. 8, for a given influence function G)
 //!
 //! Q = ∫_zone d³k/(2π)³ [Σ_m |k_m|²R_m² − 2G Σ_m W_m²|k_m|²R_m + G² Σ_m W_m² Σ_m W_m²|k_m|²] at h = 1,
 //!
-//! R = 4π χ(k)/k² the cloud's potential, W the window, G = R/W² what makes every wave of the zone exact. The near level
-//! ends where the cloud does and leaves nothing out.
+//! R = 4π χ(k)/k² the cloud's potential, W the window, G = R/W² what makes every wave of the zone exact.
+//! The near level ends where the cloud does and leaves nothing out.
 //!
-//! Charges of one sign have a mean field besides, which is smooth and not random. A potential that falls evenly is gathered with the window's
-//! slope: the wave m of the grid, which the window lets through where it meets a slope, adds 2w_m cos(2πmx/h) of the field along each axis,
-//! w_m = dW/dk at 2πm, times 2πm. So δE² grows by 2 Σ_m w_m² times the square of the grid's part of E.
+//! Charges of one sign have a mean field besides, which is smooth and not random. A potential that falls
+//! evenly is gathered with the window's slope: the wave m of the grid, which the window lets through where
+//! it meets a slope, adds 2w_m cos(2πmx/h) of the field along each axis, w_m = dW/dk at 2πm, times 2πm. So
+//! δE² grows by 2 Σ_m w_m² times the square of the grid's part of E.
 
 use crate::levels::grid::shapes::Shapes;
 use crate::levels::grid::window::Window;
@@ -78,8 +79,8 @@ impl AxisAliases {
     }
 }
 
-/// The bracket of Q, arranged so that nothing cancels: the principal alias is split off every sum, its own terms add up to
-/// zero.
+/// The bracket of Q, arranged so that nothing cancels: the principal alias is split off every sum, its own
+/// terms add up to zero.
 fn zone_integrand(cloud: Cloud, axis: [&AxisAliases; 3]) -> f64 {
     let (mut windows, mut squares, mut crossed, mut aliased) = (0.0, 0.0, 0.0, 0.0);
     let (mut window0, mut k0, mut r0) = (0.0, 0.0, 0.0);

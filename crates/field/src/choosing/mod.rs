@@ -1,4 +1,5 @@
-//! How the parameters of p3m are chosen: from a tolerance and the charges, by an error model, timing and a measurement.
+//! The choice of p3m's parameters from a tolerance and the charges, by an error model, timing and a
+//! measurement.
 
 pub(crate) mod candidates;
 pub(crate) mod charge_statistics;

@@ -1,4 +1,5 @@
-//! From a tolerance and a cloud of charges to the parameters of p3m: error model, candidates, timing, check.
+//! The way from a tolerance and a cloud of charges to the parameters of p3m: error model, candidates,
+//! timing, check.
 
 use crate::choosing::candidates::Candidate;
 use crate::choosing::charge_statistics::Cloud;
@@ -16,8 +17,8 @@ use std::time::Instant;
 
 /// Share of the tolerance that the model aims at: a sample knows the true error to some ten per cent only.
 const AIM: f64 = 0.75;
-/// The same over a field solver's mesh: what the far level adds is not in the model; up to 1.4 times the estimate were measured
-/// (docs/reports/error-vs-runtime.md).
+/// Share of the tolerance that is aimed at over a field solver's mesh: what the far level adds is not in
+/// the model; up to 1.4 times the estimate were measured (docs/reports/error-vs-runtime.md).
 const AIM_OVER_MESH: f64 = 0.69;
 /// Share of the tolerance that a measured error may reach.
 const ACCEPT: f64 = 0.9;
@@ -38,8 +39,8 @@ const TIMED: usize = 4;
 const FIRST_LOOK: f64 = 0.05;
 /// Cost of the pieces, in nanoseconds on a reference machine; only ratios matter.
 mod cost {
-    /// A pair within the cut-off in single and in double precision, the neighbours beyond it that are looked at
-    /// included.
+    /// A pair within the cut-off in single and in double precision, the neighbours beyond it that are
+    /// looked at included.
     pub(super) const PAIR: [f64; 2] = [1.5, 2.8];
     /// A pair of the direct sum.
     pub(super) const ALL_PAIRS: f64 = 0.9;
@@ -57,7 +58,7 @@ fn with_best_shapes(order: usize, cutoff_m: f64, spacing_m: f64, kernel_accuracy
     P3mParameters { cutoff_m, cloud_shape: cloud, spacing_m, order, window_shape: window, kernel_accuracy }
 }
 
-/// What the tuner settled on.
+/// Choice of the tuner.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Chosen {
     pub(crate) parameters: P3mParameters,
@@ -70,7 +71,7 @@ pub(crate) struct Chosen {
 /// Fields that errors are compared with [V/m].
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Scale {
-    /// What errors are relative to: the larger of E_rms and q_rms n^{2/3}/(4πε).
+    /// Scale that errors are relative to: the larger of E_rms and q_rms n^{2/3}/(4πε).
     pub(crate) all: f64,
     /// RMS of the grid's part of E.
     smooth: f64,
@@ -225,16 +226,17 @@ impl<'a> Tuner<'a> {
         candidates.first().map(|(_, parameters)| *parameters).ok_or_else(|| self.no_parameters(error))
     }
 
-    /// That nothing has an error of at most `error` [V/m].
+    /// Says that no parameters have an error of at most `error` [V/m].
     fn no_parameters(&self, error: f64) -> FieldError {
         FieldError::Settings(format!(
-            "no p3m parameters within {MOST_NODES:e} grid nodes meet tolerance {:e} (an error of {error:.1e} V/m); raise electric_field.tolerance{}, or use method = \"direct\"",
+            "no p3m parameters within {MOST_NODES:e} grid nodes meet tolerance {:e} (an error of \
+             {error:.1e} V/m); raise electric_field.tolerance{}, or use method = \"direct\"",
             self.settings.tolerance,
             self.fixed_keys()
         ))
     }
 
-    /// With cut-off radii up to one [m].
+    /// Limits the cut-off radii to at most `longest` [m].
     pub(crate) fn up_to(self, longest: f64) -> Self {
         Self { longest, ..self }
     }
@@ -265,8 +267,8 @@ impl<'a> Tuner<'a> {
         best
     }
 
-    /// The least cut-off, or the fixed one where it is enough, for an error of `error` [V/m] on nodes at most `spacing` apart, where the
-    /// grid's part of E is `smooth` [V/m].
+    /// The least cut-off, or the fixed one where it is enough, for an error of `error` [V/m] on nodes at
+    /// most `spacing` apart, where the grid's part of E is `smooth` [V/m].
     fn candidate(
         &self,
         cloud: &Cloud,
@@ -293,7 +295,7 @@ impl<'a> Tuner<'a> {
         None
     }
 
-    /// The same for the random part of the error alone.
+    /// Finds a candidate for the random part of the error alone.
     fn candidate_for(&self, cloud: &Cloud, order: usize, spacing: f64, error: f64) -> Option<P3mParameters> {
         /// A spacing that divides the box stays one when it is rounded.
         const ROUNDING: f64 = 1e-12;
@@ -342,8 +344,9 @@ impl<'a> Tuner<'a> {
         cloud.count * per_particle + cost::TRANSFORM * nodes * nodes.max(2.0).log2()
     }
 
-    /// The candidate with the shortest evaluation, or the cheapest by the model when timing is off. Where near and grid level
-    /// balance depends on the processor: around the winner, spacings are tried until none is faster.
+    /// The candidate with the shortest evaluation, or the cheapest by the model when timing is off. Where
+    /// near and grid level balance depends on the processor: around the winner, spacings are tried until
+    /// none is faster.
     fn fastest(
         &self,
         candidates: &[(f64, P3mParameters)],

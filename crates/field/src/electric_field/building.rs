@@ -1,4 +1,4 @@
-//! From settings and particles to a field: parameters are chosen, and what they need is built.
+//! The way from settings and particles to a field: parameters are chosen, and what they need is built.
 
 use super::ElectricField;
 use crate::choosing::candidates::Candidate;
@@ -60,7 +60,8 @@ impl ElectricField {
         Ok(Self { error_estimated, error_measured, ..field })
     }
 
-    /// The field over somebody else's mesh, whose boundary conditions take the place of a domain's: p3m with three levels.
+    /// The field over somebody else's mesh, whose boundary conditions take the place of a domain's: p3m
+    /// with three levels.
     ///
     /// # Errors
     /// As [`Self::new`]; a method that has no far level.
@@ -76,7 +77,8 @@ impl ElectricField {
             return Self::over_mesh_with_choice(solver, settings, &choice);
         }
         let far = far_level(solver, settings);
-        // Near level and middle grid are those of a periodic box as large as the middle grid's; no face of it takes charge.
+        // Near level and middle grid are those of a periodic box as large as the middle grid's; no face of
+        // it takes charge.
         let domain = far.domain_of_grid();
         let alone = FieldSettings { neutralising_background: true, ..settings.clone() };
         let wrapped: Vec<_> = positions.iter().map(|position| far.mesh().domain().wrap(*position)).collect();
@@ -84,7 +86,8 @@ impl ElectricField {
         let longest = far.cloud_as_returned().radius;
         if let Some(cutoff) = settings.cutoff_radius_m.filter(|cutoff| *cutoff > longest) {
             return Err(FieldError::Settings(format!(
-                "field_cutoff_radius {cutoff:e} m is larger than the {longest:e} m from which on the field solver's mesh takes over; make it smaller or leave it out"
+                "field_cutoff_radius {cutoff:e} m is larger than the {longest:e} m from which on the field \
+                 solver's mesh takes over; make it smaller or leave it out"
             )));
         }
         let chosen = Tuner::new(&domain, &alone, &wrapped, charges).up_to(longest).choose()?;
@@ -92,7 +95,7 @@ impl ElectricField {
         Ok(Self { error_estimated: chosen.estimated, error_measured: chosen.measured, ..field })
     }
 
-    /// As [`Self::over_mesh`], with parameters chosen earlier.
+    /// Builds a field as [`Self::over_mesh`] does, with parameters chosen earlier.
     ///
     /// # Errors
     /// A choice that is none of p3m's.
@@ -120,7 +123,8 @@ impl ElectricField {
                 })
             }
             choice => Err(FieldError::Settings(format!(
-                "a field solver's mesh cannot have the parameters {choice:?}; choose method p3m or kolehmainen"
+                "a field solver's mesh cannot have the parameters {choice:?}; choose method p3m or \
+                 kolehmainen"
             ))),
         }
     }
@@ -190,8 +194,9 @@ impl ElectricField {
         })
     }
 
-    /// What p3m can choose from for the given particles (positions in m, charges in C): the best of each window's order by the cost model, cheapest
-    /// first, and the sum over all pairs where few charges in open space make that worth a look; each with its errors and its time.
+    /// Lists what p3m can choose from for the given particles (positions in m, charges in C): the best of
+    /// each window's order by the cost model, cheapest first, and the sum over all pairs where few charges
+    /// in open space make that worth a look; each with its errors and its time.
     ///
     /// # Errors
     /// As [`Self::new`]; a method without parameters to choose.

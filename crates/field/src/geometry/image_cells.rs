@@ -36,7 +36,7 @@ pub(crate) struct ImageCells<T> {
     pub(crate) charge: Vec<f64>,
     /// Index of the particle when the entry is the particle itself, else [`IMAGE`].
     pub(crate) real: Vec<u32>,
-    /// What the method attached.
+    /// Values that the method attached to each image.
     pub(crate) extra: Vec<T>,
     staging: Vec<Entry<T>>,
     start: Vec<u32>,
@@ -48,7 +48,8 @@ pub(crate) struct ImageCells<T> {
 }
 
 impl<T: Copy + Default> ImageCells<T> {
-    /// Collects and sorts the charges, zeros left out, and the images within `radius` [m] of the positions' bounding box.
+    /// Collects and sorts the charges, zeros left out, and the images within `radius` [m] of the positions'
+    /// bounding box.
     pub(crate) fn build(
         &mut self,
         lattice: &ImageLattice,
@@ -160,8 +161,8 @@ impl<T: Copy + Default> ImageCells<T> {
         (low - at).max(at - low - self.width[axis]).max(0.0)
     }
 
-    /// Calls `visit` with ranges of entries that together hold every entry within the radius of `at`, and some
-    /// beyond it.
+    /// Calls `visit` with ranges of entries that together hold every entry within the radius of `at`, and
+    /// some beyond it.
     #[inline]
     pub(crate) fn for_each_range(&self, at: &Vector3<f64>, mut visit: impl FnMut(Range<usize>)) {
         if self.real.is_empty() {

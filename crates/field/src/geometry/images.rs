@@ -1,5 +1,5 @@
-//! Images of a point in the faces of a box: the one place that knows how a conductor, an insulator, a periodic
-//! and an open face mirror a charge.
+//! Images of a point in the faces of a box: the one place that knows how a conductor, an insulator, a
+//! periodic and an open face mirror a charge.
 //!
 //! Along one axis the images of a coordinate x are ±x + offset + m·period with a sign for the charge: a
 //! conductor reverses it, an insulator keeps it. The images of a point are all products over the three axes.
@@ -8,7 +8,7 @@ use crate::error::FieldError;
 use amberfield_core::{Axis, Boundary, Domain, Side};
 use nalgebra::Vector3;
 
-/// What a face that is not periodic does to a charge's mirror image.
+/// Effect of a face that is not periodic on a charge's mirror image.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) enum FaceKind {
     /// Potential prescribed: the image has the opposite charge.
@@ -49,7 +49,10 @@ impl AxisKind {
 
     /// Whether at least one face is a conductor.
     pub(crate) fn has_conductor(self) -> bool {
-        matches!(self, Self::Faces(lower, upper) if lower == FaceKind::Conductor || upper == FaceKind::Conductor)
+        matches!(
+            self,
+            Self::Faces(lower, upper) if [lower, upper].contains(&FaceKind::Conductor)
+        )
     }
 }
 
@@ -58,7 +61,7 @@ pub(crate) fn axis_kinds(domain: &Domain) -> [AxisKind; 3] {
     Axis::ALL.map(|axis| AxisKind::of(domain, axis))
 }
 
-/// How the box is open; what is not listed is refused.
+/// Open faces of the box; a mix that is not listed is refused.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) enum Geometry {
     /// No open face: infinitely many images along every axis.
@@ -81,7 +84,9 @@ impl Geometry {
             [] => Ok(Self::Closed),
             [axis] => Ok(Self::Slab(*axis)),
             [first, second] => Err(FieldError::Settings(format!(
-                "axes {first} and {second} have open faces and the third has none; one closed axis between two open ones has no method here: open one face of the third axis, or close {first} or {second}"
+                "axes {first} and {second} have open faces and the third has none; one closed axis between \
+                 two open ones has no method here: open one face of the third axis, or close {first} or \
+                 {second}"
             ))),
             _ => Ok(Self::Open),
         }
@@ -199,7 +204,7 @@ struct AxisCopy {
 /// One image of a point.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(crate) struct Image {
-    /// Where it is [m].
+    /// Position [m].
     pub(crate) position: Vector3<f64>,
     /// Factor on the charge, ±1.
     pub(crate) sign: f64,

@@ -24,8 +24,8 @@ pub(crate) fn check_finite(positions: &[Vector3<f64>], charges: &[f64]) -> Resul
     bad.map_or(Ok(()), |index| Err(FieldError::NotFinite { index }))
 }
 
-/// Refuses grains on or beyond a conducting or insulating face, where a mirror image would lie on the grain or
-/// inside the box. `index` is counted from 0.
+/// Refuses grains on or beyond a conducting or insulating face, where a mirror image would lie on the grain
+/// or inside the box. `index` is counted from 0.
 pub(crate) fn check_inside(domain: &Domain, positions: &[Vector3<f64>]) -> Result<(), FieldError> {
     let is_wall = |axis, side| !matches!(domain.face(axis, side), Boundary::Periodic | Boundary::Open);
     for axis in Axis::ALL {
@@ -35,7 +35,9 @@ pub(crate) fn check_inside(domain: &Domain, positions: &[Vector3<f64>]) -> Resul
         if let Some(index) = positions.iter().position(|position| beyond(position[axis.index()])) {
             let at = positions[index][axis.index()];
             return Err(FieldError::Settings(format!(
-                "grain at index {index} has its centre at {axis} = {at:e} m, on or beyond a face of the domain ({low:e} to {high:e} m); its image charge would lie on or inside the grain: enlarge the domain"
+                "grain at index {index} has its centre at {axis} = {at:e} m, on or beyond a face of the \
+                 domain ({low:e} to {high:e} m); its image charge would lie on or inside the grain: enlarge \
+                 the domain"
             )));
         }
     }
@@ -61,8 +63,8 @@ fn check_in_box(domain: &Domain, positions: &[Vector3<f64>]) -> Result<(), Field
     }
 }
 
-/// Charge [C] that the prescribed normal fields of the faces stand for by Gauss's law: ε Σ (E·n) A, counted on
-/// the faces of axes without an open face.
+/// Charge [C] that the prescribed normal fields of the faces stand for by Gauss's law: ε Σ (E·n) A, counted
+/// on the faces of axes without an open face.
 pub(crate) fn charge_of_normal_fields(domain: &Domain, permittivity: Permittivity) -> f64 {
     let flux: f64 = normal_fluxes(domain).sum();
     permittivity.absolute() * flux
@@ -97,8 +99,8 @@ pub(crate) fn check_net_charge(
     Ok(())
 }
 
-/// Refuses what a grid in the box cannot carry: values that are not finite, grains outside the box, a net charge
-/// that no face takes. `permittivity` is ε0·εr [F/m].
+/// Refuses what a grid in the box cannot carry: values that are not finite, grains outside the box, a net
+/// charge that no face takes. `permittivity` is ε0·εr [F/m].
 pub(crate) fn check_charges_in_box(
     domain: &Domain,
     permittivity: Permittivity,
@@ -128,7 +130,8 @@ pub(crate) fn check_result(e: &[Vector3<f64>]) -> Result<(), FieldError> {
     match e.iter().position(|e| !e.iter().all(|c| c.is_finite())) {
         None => Ok(()),
         Some(index) => Err(FieldError::Settings(format!(
-            "the field at the grain at index {index} is not finite: another charge or an image has the same position; move the grains apart"
+            "the field at the grain at index {index} is not finite: another charge or an image has the same \
+             position; move the grains apart"
         ))),
     }
 }

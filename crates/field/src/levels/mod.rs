@@ -1,4 +1,4 @@
-//! What is added up: every level gives one part of E at the particles.
+//! Levels that are added up: every level gives one part of E at the particles.
 
 pub(crate) mod external;
 pub(crate) mod faces;

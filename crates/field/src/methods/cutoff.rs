@@ -12,8 +12,8 @@ use amberfield_core::{Domain, Permittivity};
 use nalgebra::Vector3;
 use rayon::prelude::*;
 
-/// Coulomb's sum over the charges and their periodic copies within a cut-off radius; walls have no images. All
-/// of it is near.
+/// Coulomb's sum over the charges and their periodic copies within a cut-off radius; walls have no images.
+/// All of it is near.
 ///
 /// Memory is kept: repeated evaluations of as many particles allocate nothing. Results do not depend on the
 /// number of threads.
@@ -105,8 +105,8 @@ pub(crate) fn coulomb(charge: f64, d: &Vector3<f64>) -> FieldAt {
     FieldAt { e: d * (potential * inverse * inverse), potential }
 }
 
-/// Σ q/r and its field within the cells' radius at every particle, itself left out. Returns how many partners all
-/// particles have together.
+/// Σ q/r and its field within the cells' radius at every particle, itself left out. Returns how many
+/// partners all particles have together.
 fn sum_pairs(cells: &ImageCells<()>, positions: &[Vector3<f64>], near: &mut [FieldAt]) -> usize {
     let all = near.par_iter_mut().zip(positions).enumerate();
     all.map(|(index, (near, at))| {

@@ -1,4 +1,4 @@
-//! What every way to compute the field of charges offers.
+//! The interface that every way to compute the field of charges offers.
 
 use crate::error::FieldError;
 use crate::geometry::inputs::check_result;
@@ -11,8 +11,8 @@ use std::fmt;
 /// A way to compute the field of charges and their images. Potentials and normal fields of the faces and an
 /// external field are not its business, except where a method has them in its own boundary conditions.
 pub trait FieldMethod: fmt::Debug + Send + Sync {
-    /// Computes the levels of the field at every particle at a time [s], positions in m, charges in C. The time
-    /// is for a field solver that works beside the motion, and for what it forecasts.
+    /// Computes the levels of the field at every particle at a time [s], positions in m, charges in C. The
+    /// time is for a field solver that works beside the motion, and for what it forecasts.
     ///
     /// # Errors
     /// Values that are not finite, grains where the method has no field, a net charge that no face takes.
@@ -24,8 +24,8 @@ pub trait FieldMethod: fmt::Debug + Send + Sync {
         wanted: Wanted,
     ) -> Result<Levels<'a>, FieldError>;
 
-    /// Computes E [V/m] (and what else is wanted) at every particle of charges that stand still, positions in m,
-    /// charges in C.
+    /// Computes E [V/m] (and what else is wanted) at every particle of charges that stand still, positions
+    /// in m, charges in C.
     ///
     /// # Errors
     /// The errors of [`Self::levels`]; two charges in one place.

@@ -1,4 +1,4 @@
-//! How levels are combined: each method computes the field of the charges in its own way, behind one trait.
+//! Combinations of levels: each method computes the field of the charges in its own way, behind one trait.
 
 pub(crate) mod cutoff;
 pub(crate) mod direct;

@@ -1,13 +1,13 @@
 //! Particle–particle particle–mesh with smooth splitting:
 //!
-//! 1/r = [1 − Φ(r/r_c)]/r + Φ(r/r_c)/r — pairs within r_c, and the internal grid with the box's faces; or, over a mesh of
-//! somebody else's,
+//! 1/r = [1 − Φ(r/r_c)]/r + Φ(r/r_c)/r — pairs within r_c, and the internal grid with the box's faces; or,
+//! over a mesh of somebody else's,
 //!
-//! 1/r = [1 − Φ(r/r_c)]/r + [Φ(r/r_c) − Φ(r/R)]/r + Φ(r/R)/r — pairs, a middle grid without faces, and the far level's
-//! cells, to which R is matched.
+//! 1/r = [1 − Φ(r/r_c)]/r + [Φ(r/r_c) − Φ(r/R)]/r + Φ(r/R)/r — pairs, a middle grid without faces, and the
+//! far level's cells, to which R is matched.
 //!
-//! Φ is the Kaiser–Bessel cloud's of `amberfield_laws::kaiser_bessel_cloud`: nothing is left of the pairs beyond r_c and of
-//! the middle grid beyond R.
+//! Φ is the Kaiser–Bessel cloud's of `amberfield_laws::kaiser_bessel_cloud`: nothing is left of the pairs
+//! beyond r_c and of the middle grid beyond R.
 
 use crate::error::FieldError;
 use crate::geometry::inputs::{check_charges_in_box, check_finite};

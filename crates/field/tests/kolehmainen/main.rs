@@ -1,4 +1,5 @@
-//! The published hybrid against an independent assembly, hand-computed sets, lattice values and its known floor.
+//! The published hybrid against an independent assembly, hand-computed sets, lattice values and its known
+//! floor.
 
 mod open;
 
@@ -31,8 +32,8 @@ fn evaluate(hybrid: &mut Kolehmainen, positions: &[Vector3<f64>], charges: &[f64
     out
 }
 
-/// Seven-point finite volumes assembled face by face and solved densely, with the mean potential zero where it is
-/// free: potential of every cell, and E by Gauss' theorem with linear interpolation.
+/// Seven-point finite volumes assembled face by face and solved densely, with the mean potential zero where
+/// it is free: potential of every cell, and E by Gauss' theorem with linear interpolation.
 struct DenseMesh {
     domain: Domain,
     cells: [usize; 3],

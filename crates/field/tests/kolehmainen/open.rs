@@ -12,7 +12,8 @@ fn points(domain: &Domain, count: u32) -> Vec<Vector3<f64>> {
         .collect()
 }
 
-/// Half-open axes: the mesh of twice the size with mirror charges; in open boxes and in slabs, whichever way round.
+/// Half-open axes: the mesh of twice the size with mirror charges; in open boxes and in slabs, whichever
+/// way round.
 #[test]
 fn half_open_meshes_are_those_with_mirror_charges() {
     for sides in [[PERIODIC, GROUNDED], [GROUNDED, [Boundary::Grounded, insulating(0.0)]], [OPEN, OPEN]] {

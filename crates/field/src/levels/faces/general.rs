@@ -7,8 +7,8 @@
 //! φ(x) = V_0 + Σ_faces w ∫₀^∞ dt B(x_a, t) U(x_b, t) U(x_c, t)
 //! ```
 //!
-//! with w = V − V_0 and B the rate of first passage for a conductor on axis a, w = −E·n and B the kernel at the
-//! face for an insulator, and U what survives along the other axes. V_0 is the potential of the nearest
+//! with w = V − V_0 and B the rate of first passage for a conductor on axis a, w = −E·n and B the kernel at
+//! the face for an insulator, and U what survives along the other axes. V_0 is the potential of the nearest
 //! conductor, so that nothing cancels close to it.
 
 use super::heat::AxisHeat;
@@ -77,7 +77,8 @@ impl General {
             && let Some(face) = faces.iter().find(|face| !face.is_conductor)
         {
             return Err(FieldError::Settings(format!(
-                "the normal field of {} V/m on face {}_{} has no bounded solution beside conductors whose axes are open; give normal_field_V_m = 0 there or close the axis of the conductor",
+                "the normal field of {} V/m on face {}_{} has no bounded solution beside conductors whose \
+                 axes are open; give normal_field_V_m = 0 there or close the axis of the conductor",
                 -face.value,
                 Axis::ALL[face.axis],
                 ["min", "max"][face.side]

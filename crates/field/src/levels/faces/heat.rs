@@ -1,5 +1,5 @@
-//! One-dimensional heat kernels (∂K/∂t = ∂²K/∂x²) of an axis with its faces: what survives, what leaves through
-//! a conductor, what an insulator's flux brings in.
+//! One-dimensional heat kernels (∂K/∂t = ∂²K/∂x²) of an axis with its faces: what survives, what leaves
+//! through a conductor, what an insulator's flux brings in.
 
 use crate::geometry::images::{AxisKind, FaceKind};
 use libm::{erf, erfc};
@@ -16,7 +16,7 @@ pub(super) type WithSlope = [f64; 2];
 /// Heat kernel integrals of one axis at one place and time.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct AxisHeat {
-    /// What is left of a unit amount that started here: ∫ K dx'. Slope [1/m].
+    /// Rest of a unit amount that started here: ∫ K dx'. Slope [1/m].
     pub(super) survival: WithSlope,
     /// Lower and upper face: rate of first passage through a conductor [1/m² as t is in m²], kernel at an
     /// insulator [1/m], zero for others.
@@ -83,7 +83,7 @@ impl AxisHeat {
     }
 }
 
-/// The same as seen from the other end.
+/// Turns a value with its slope around, as seen from the other end.
 fn flipped([value, slope]: WithSlope) -> WithSlope {
     [value, -slope]
 }
@@ -183,7 +183,7 @@ mod tests {
         }
     }
 
-    /// What is lost leaves through the conductors: −dU/dt = ΣF. And slopes are derivatives.
+    /// Losses leave through the conductors: −dU/dt = ΣF. And slopes are derivatives.
     #[test]
     fn losses_are_passages_and_slopes_derivatives() {
         const STEP: f64 = 1e-5;

@@ -18,15 +18,15 @@ const TOLERANCE: f64 = 1e-12;
 /// Divergences whose sum is this small beside their absolute sum cancel.
 const ROUND_OFF: f64 = 1e-12;
 
-/// Field and potential that solve Laplace's equation with the faces' values, to be added to the field of charges
-/// between grounded faces and faces without normal field.
+/// Field and potential that solve Laplace's equation with the faces' values, to be added to the field of
+/// charges between grounded faces and faces without normal field.
 ///
 /// Where the values vary along one axis alone the field is linear in the coordinates and costs nothing; else
 /// every evaluation integrates heat kernels, some tens of microseconds a point.
 ///
-/// Normal fields without any conductor whose fluxes do not cancel go with a uniform background charge that takes
-/// them; the charges' own background, see [`crate::Direct`], cancels it when the net charge matches. Where the
-/// faces leave the potential free its mean over the domain is 0.
+/// Normal fields without any conductor whose fluxes do not cancel go with a uniform background charge that
+/// takes them; the charges' own background, see [`crate::Direct`], cancels it when the net charge matches.
+/// Where the faces leave the potential free its mean over the domain is 0.
 #[derive(Clone, Debug, PartialEq)]
 pub struct BoundaryField {
     solution: Solution,
@@ -57,7 +57,7 @@ impl BoundaryField {
         Self::with_tolerance(domain, TOLERANCE)
     }
 
-    /// The same with a given relative error of the quadrature, where there is one.
+    /// Builds the field of the faces with a given relative error of the quadrature, where there is one.
     ///
     /// # Errors
     /// As [`Self::new`].
@@ -108,7 +108,7 @@ impl BoundaryField {
     }
 }
 
-/// Which axes carry values.
+/// Axes whose faces carry values.
 enum Carrier {
     /// No conductor: normal fields alone, each axis by itself.
     Nowhere,
@@ -126,7 +126,10 @@ fn carrier(domain: &Domain) -> Carrier {
         Axis::ALL.into_iter().filter(|axis| kinds[axis.index()].has_conductor()).collect();
     let has_flux = |axis: Axis| {
         [Side::Min, Side::Max].into_iter().any(|side| {
-            matches!(domain.face(axis, side), Boundary::Insulating { normal_field_v_m } if normal_field_v_m != 0.0)
+            matches!(
+                domain.face(axis, side),
+                Boundary::Insulating { normal_field_v_m } if normal_field_v_m != 0.0
+            )
         })
     };
     let mut potentials = domain.faces().iter().flatten().filter_map(|face| face.potential());
@@ -195,7 +198,9 @@ fn without_conductor(domain: &Domain) -> Result<Linear, FieldError> {
     match Geometry::of(domain)? {
         Geometry::Closed => Ok(linear),
         _ => Err(FieldError::Settings(
-            "normal fields on opposite faces of a domain with open faces and no conductor do not cancel, and the flux has nowhere to go; make them equal and opposite, or ground a face".into(),
+            "normal fields on opposite faces of a domain with open faces and no conductor do not cancel, \
+             and the flux has nowhere to go; make them equal and opposite, or ground a face"
+                .into(),
         )),
     }
 }

@@ -1,5 +1,5 @@
-//! The smooth density of charges' clouds at any places of a box, by the grid's own code: spread with the window, multiply by the
-//! clouds' spectrum, gather.
+//! The smooth density of charges' clouds at any places of a box, by the grid's own code: spread with the
+//! window, multiply by the clouds' spectrum, gather.
 
 use crate::levels::grid::level::{GridLevel, GridParameters};
 use crate::levels::grid::shapes;
@@ -16,7 +16,7 @@ const SAME: f64 = 1e-9;
 /// Density of clouds in a box.
 #[derive(Debug)]
 pub struct SmoothDensity {
-    /// What is periodic.
+    /// Whole domain, which says what is periodic.
     whole: Domain,
     /// Box of the grid, the reach of the clouds included.
     padded: Domain,
@@ -28,7 +28,8 @@ pub struct SmoothDensity {
 }
 
 impl SmoothDensity {
-    /// For the part from `low` to `high` [m] of a domain (its periodic axes count), and clouds of a radius [m] and shape.
+    /// Builds the density for the part from `low` to `high` [m] of a domain (its periodic axes count), and
+    /// clouds of a radius [m] and shape.
     #[must_use]
     pub fn new(whole: &Domain, low: Vector3<f64>, high: Vector3<f64>, radius_m: f64, shape: f64) -> Self {
         let spans = |axis: Axis| {

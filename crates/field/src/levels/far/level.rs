@@ -1,7 +1,7 @@
 //! The far level of p3m on somebody else's mesh.
 //!
-//! The grains' clouds are as wide as the mesh can carry; pairs and the middle grid carry the rest, images included, and reach
-//! the walls: what they make there is taken off the far level's boundary conditions,
+//! The grains' clouds are as wide as the mesh can carry; pairs and the middle grid carry the rest, images
+//! included, and reach the walls: what they make there is taken off the far level's boundary conditions,
 //!
 //! potential prescribed: φ_far = V − φ_short,  slope prescribed: ∂φ_far/∂n = ∂V/∂n + n·E_short,
 //!
@@ -18,7 +18,8 @@ use amberfield_laws::kaiser_bessel_cloud::Cloud;
 use nalgebra::Vector3;
 use rayon::prelude::*;
 
-/// Radius of the clouds over the mesh's largest cell size, and their shape: a root mean square width of 2.7 cells.
+/// Radius of the clouds over the mesh's largest cell size, and their shape: a root mean square width of 2.7
+/// cells.
 const RADIUS_OF_CELL: f64 = 9.0;
 const SHAPE: f64 = 10.0;
 /// Depth up to which walls mirror charges, over the cell size.
@@ -70,12 +71,13 @@ impl FarLevel {
         Cloud { radius: self.cloud.radius * widened, ..self.cloud }
     }
 
-    /// Where grains and images lie, open where the mesh ends.
+    /// Domain in which grains and images lie, open where the mesh ends.
     pub(crate) fn domain_of_pairs(&self) -> Domain {
         self.around(self.depth, Boundary::Open)
     }
 
-    /// The middle grid's periodic box: so large that no copy of a charge is felt along axes that are not periodic.
+    /// The middle grid's periodic box: so large that no copy of a charge is felt along axes that are not
+    /// periodic.
     pub(crate) fn domain_of_grid(&self) -> Domain {
         self.around(self.depth + 0.5 * self.cloud_as_returned().radius, Boundary::Periodic)
     }
@@ -93,8 +95,8 @@ impl FarLevel {
         Domain::new(domain.min() - margin, domain.max() + margin, faces).expect("larger than a good domain")
     }
 
-    /// Appends to the grains the places at the walls where the short-ranged field is asked for, without charge, and
-    /// the images. How many places the field is asked for at, grains included.
+    /// Appends to the grains the places at the walls where the short-ranged field is asked for, without
+    /// charge, and the images. How many places the field is asked for at, grains included.
     pub(crate) fn extend(&mut self, positions: &mut Vec<Vector3<f64>>, charges: &mut Vec<f64>) -> usize {
         self.image_positions.clear();
         self.image_charges.clear();
@@ -112,7 +114,8 @@ impl FarLevel {
         targets
     }
 
-    /// Solves for the far potential of the grains at a time [s], with the short-ranged E [V/m] and potential [V] at the boundary's faces.
+    /// Solves for the far potential of the grains at a time [s], with the short-ranged E [V/m] and
+    /// potential [V] at the boundary's faces.
     pub(crate) fn solve(
         &mut self,
         time_s: f64,

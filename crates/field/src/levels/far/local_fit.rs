@@ -1,8 +1,8 @@
 //! The potential within a cell: a quadratic through the cell's own value, fitted to those around it.
 //!
-//! φ(x) = φ_c + g·d + ½ d·H·d, d = (x − x_c)/h, h the cube root of the cell's volume, by least squares with the weights
-//! exp(−d²/(2 s²)) over the neighbours, their neighbours, the potentials of boundary faces and the slopes of others. Exact for
-//! quadratic potentials on any mesh.
+//! φ(x) = φ_c + g·d + ½ d·H·d, d = (x − x_c)/h, h the cube root of the cell's volume, by least squares with
+//! the weights exp(−d²/(2 s²)) over the neighbours, their neighbours, the potentials of boundary faces and
+//! the slopes of others. Exact for quadratic potentials on any mesh.
 
 use super::mesh::{Condition, FarMesh, Neighbour};
 use crate::values::FieldAt;
@@ -11,17 +11,18 @@ use rayon::prelude::*;
 
 /// s: as narrow as leaves the mixed terms determined.
 const WEIGHT_WIDTH: f64 = 0.75;
-/// Rings of cells around one that a fit looks at, at least and at most, and values that are enough for it: tetrahedra have few
-/// neighbours.
+/// Rings of cells around one that a fit looks at, at least and at most, and values that are enough for it:
+/// tetrahedra have few neighbours.
 const LEAST_RINGS: usize = 2;
 const MOST_RINGS: usize = 4;
 const ENOUGH: usize = 20;
-/// What keeps terms out of which no neighbour tells anything (a mesh one cell thick) at zero, over the largest of its kind.
+/// Weight that keeps terms of which no neighbour tells anything (a mesh one cell thick) at zero, over the
+/// largest of its kind.
 const RIDGE: f64 = 1e-9;
 /// Numbers of a fit: g and H.
 const TERMS: usize = 9;
 
-/// What a row of a fit is about.
+/// Source of a row of a fit.
 #[derive(Clone, Copy, Debug, PartialEq)]
 enum Source {
     Cell(u32),
@@ -32,7 +33,7 @@ enum Source {
 #[derive(Clone, Copy, Debug)]
 struct Row {
     source: Source,
-    /// By term, per volt.
+    /// Contribution to each term, per volt.
     part: [f32; TERMS],
 }
 
@@ -69,8 +70,8 @@ impl LocalFits {
         }
     }
 
-    /// Variance [m²] by which finite volumes and this fit together widen a cloud's field, to leading order in (kh)²: what is
-    /// isotropic of their error.
+    /// Variance [m²] by which finite volumes and this fit together widen a cloud's field, to leading order
+    /// in (kh)²: what is isotropic of their error.
     pub(crate) fn smoothing(&self) -> f64 {
         self.smoothing
     }
@@ -147,8 +148,8 @@ fn rows_of(mesh: &FarMesh, cell: usize) -> (Vec<Row>, f64) {
     (rows, finite_volumes_and_place(size) + widening / 15.0)
 }
 
-/// What lies around a cell, from its centre [m]: its neighbours, theirs, and so on until there are enough; boundary faces of
-/// all of them.
+/// Sources around a cell, with their places from its centre [m]: its neighbours, theirs, and so on until
+/// there are enough; boundary faces of all of them.
 fn sources_around(mesh: &FarMesh, cell: usize, size: f64) -> Vec<(Source, Vector3<f64>)> {
     let here = mesh.centres()[cell];
     let mut around: Vec<(Source, Vector3<f64>)> = Vec::new();
@@ -189,7 +190,7 @@ fn sources_around(mesh: &FarMesh, cell: usize, size: f64) -> Vec<(Source, Vector
     around
 }
 
-/// What finite volumes on cubes (−h²/10) and the quadratic's ends (−h²/12) take off again [m²].
+/// Part that finite volumes on cubes (−h²/10) and the quadratic's ends (−h²/12) take off again [m²].
 fn finite_volumes_and_place(size: f64) -> f64 {
     -size * size * (1.0 / 10.0 + 1.0 / 12.0)
 }

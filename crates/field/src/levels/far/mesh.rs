@@ -6,11 +6,11 @@ use nalgebra::{Matrix3, Vector3};
 use rayon::prelude::*;
 use std::fmt::Display;
 
-/// How far beyond a face a point may lie, over the cell's size, and still count as inside.
+/// Distance beyond a face at which a point still counts as inside, over the cell's size.
 const ON_FACE: f64 = 1e-9;
 /// Farthest that a grain's centre may be outside the mesh, over the size of the cell there.
 const MOST_BEYOND: f64 = 0.5;
-/// What the place of a condition is moved from the foot towards its face's centre, over their distance.
+/// Shift of the place of a condition from the foot towards its face's centre, over their distance.
 const APART: f64 = 1e-3;
 /// Cells of a walk at most, before the search begins anew.
 const LONGEST_WALK: usize = 10_000;
@@ -19,14 +19,14 @@ const CELLS_PER_BIN: f64 = 2.0;
 /// Bins along an axis at most.
 const MOST_BINS: f64 = 256.0;
 
-/// What lies beyond a cell's face.
+/// Neighbour of a cell beyond one of its faces.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Neighbour {
     /// Another cell, seen moved by `shift` [m] where the face is cyclic (else zero).
     Cell {
-        /// Its index.
+        /// Index of the cell.
         cell: u32,
-        /// What is added to its coordinates.
+        /// Shift that is added to the cell's coordinates [m].
         shift: Vector3<f64>,
     },
     /// The end of the mesh: a boundary face's index.
@@ -40,16 +40,16 @@ pub struct CellFace {
     pub normal: Vector3<f64>,
     /// Normal times the face's centre [m].
     pub offset: f64,
-    /// What lies beyond.
+    /// Neighbour beyond the face.
     pub neighbour: Neighbour,
 }
 
-/// What is prescribed on a boundary face.
+/// Condition that is prescribed on a boundary face.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Condition {
     /// The potential [V].
     Potential(f64),
-    /// Its outward slope ∂V/∂n [V/m].
+    /// Outward slope ∂V/∂n of the potential [V/m].
     Slope(f64),
 }
 
@@ -73,13 +73,13 @@ pub struct BoundaryFace {
     pub area: f64,
     /// Mean over its corners x of (x − centre)(x − centre)ᵀ [m²].
     pub spread: Matrix3<f64>,
-    /// Its cell.
+    /// Cell that the face belongs to.
     pub cell: u32,
-    /// What is prescribed for the whole potential.
+    /// Condition on the whole potential.
     pub condition: Condition,
 }
 
-/// What a mesh is made of.
+/// Parts that a mesh is made of.
 #[derive(Clone, Debug)]
 pub struct FarMeshParts {
     /// Bounding box, periodic along axes that cyclic faces join, open along the others.
@@ -88,7 +88,7 @@ pub struct FarMeshParts {
     pub centres: Vec<Vector3<f64>>,
     /// Cell volumes [m³].
     pub volumes: Vec<f64>,
-    /// Where the faces of each cell begin in `faces`; one more than there are cells.
+    /// Begin of each cell's faces in `faces`; one more than there are cells.
     pub first_face: Vec<u32>,
     /// Faces, cell by cell.
     pub faces: Vec<CellFace>,
@@ -154,9 +154,9 @@ impl FarMesh {
         &self.parts.boundary
     }
 
-    /// Where a boundary face's condition counts [m]: a slope at the face's centre; a potential at the foot of its cell's centre,
-    /// since finite volumes take the slope along the normal from it (a hair towards the face's centre, so that two faces of a
-    /// cell in one plane have two places).
+    /// Place at which a boundary face's condition counts [m]: a slope at the face's centre; a potential at
+    /// the foot of its cell's centre, since finite volumes take the slope along the normal from it (a hair
+    /// towards the face's centre, so that two faces of a cell in one plane have two places).
     #[must_use]
     pub fn place_of_condition(&self, face: &BoundaryFace) -> Vector3<f64> {
         match face.condition {
@@ -181,8 +181,8 @@ impl FarMesh {
         self.sizes.iter().fold(0.0, |largest: f64, size| largest.max(*size))
     }
 
-    /// The cell that holds a point of the domain [m], and whether the point is in it (a point beyond the last face is
-    /// given to the cell in which the walk towards it ends). `last` is where it was before.
+    /// The cell that holds a point of the domain [m], and whether the point is in it (a point beyond the
+    /// last face is given to the cell in which the walk towards it ends). `last` is where it was before.
     #[must_use]
     pub fn locate(&self, point: &Vector3<f64>, last: Option<u32>) -> (u32, bool) {
         if let Some((cell, true)) = last.map(|last| self.walk(point, last)) {
@@ -191,8 +191,8 @@ impl FarMesh {
         self.walk(point, self.bins.start(point))
     }
 
-    /// Refuses grains whose centre lies farther outside the mesh than half of the nearest wall's cell; what lies a hair
-    /// beyond a faceted wall belongs to that wall's cell.
+    /// Refuses grains whose centre lies farther outside the mesh than half of the nearest wall's cell; what
+    /// lies a hair beyond a faceted wall belongs to that wall's cell.
     pub(crate) fn check_inside(&self, positions: &[Vector3<f64>], cells: &[u32]) -> Result<(), FieldError> {
         let is_outside = |position: &Vector3<f64>, cell: u32| {
             let most = MOST_BEYOND * self.sizes[cell as usize];
@@ -204,7 +204,8 @@ impl FarMesh {
         match pairs.position_first(|(position, &cell)| is_outside(position, cell)) {
             None => Ok(()),
             Some(index) => Err(FieldError::Settings(format!(
-                "grain at index {index} lies outside the field solver's mesh at {:?} m; enlarge the mesh, add a wall or move the grain",
+                "grain at index {index} lies outside the field solver's mesh at {:?} m; enlarge the mesh, \
+                 add a wall or move the grain",
                 positions[index].as_slice()
             ))),
         }
@@ -215,7 +216,8 @@ impl FarMesh {
         let mut cell = from;
         for _ in 0..LONGEST_WALK {
             let size = self.sizes[cell as usize];
-            // Through the farthest face that leads on; a walk ends at the mesh's end only where no other face is crossed.
+            // Through the farthest face that leads on; a walk ends at the mesh's end only where no other
+            // face is crossed.
             let (mut next, mut farthest, mut outside) = (None, ON_FACE * size, false);
             for face in self.faces_of(cell as usize) {
                 let beyond = face.normal.dot(point) - face.offset;
@@ -240,7 +242,7 @@ impl FarMesh {
     }
 }
 
-/// What a unit vector's length may differ from 1 by.
+/// Largest difference of a unit vector's length from 1.
 const UNIT: f64 = 1e-6;
 
 fn check(parts: &FarMeshParts) -> Result<(), FieldError> {

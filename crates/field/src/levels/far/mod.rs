@@ -1,4 +1,5 @@
-//! The far level: a smooth field that somebody else solves for, on cells of any shape with boundary conditions of its own.
+//! The far level: a smooth field that somebody else solves for, on cells of any shape with boundary
+//! conditions of its own.
 //!
 //! Another process with OpenFOAM does, or a solver in this one: whoever implements [`FarField`].
 
@@ -35,11 +36,11 @@ pub struct FarRequest<'a> {
     pub image_positions: &'a [Vector3<f64>],
     /// Image charges [C]; their clouds may reach inside.
     pub image_charges: &'a [f64],
-    /// Values by boundary face: φ [V] where the potential is prescribed, ∂φ/∂n outwards [V/m] where the normal
-    /// field is.
+    /// Values by boundary face: φ [V] where the potential is prescribed, ∂φ/∂n outwards [V/m] where the
+    /// normal field is.
     pub boundary: &'a [f64],
-    /// φ at the cells' centres to start from [V], so that a run that is resumed goes on bit for bit; empty: the
-    /// solver starts where it is.
+    /// φ at the cells' centres to start from [V], so that a run that is resumed goes on bit for bit; empty:
+    /// the solver starts where it is.
     pub guess: &'a [f64],
 }
 
@@ -82,12 +83,12 @@ pub(crate) fn check_net_charge(
     Ok(())
 }
 
-/// How a far level is reached when a field is built, and again after it was lost.
+/// Way in which a far level is reached when a field is built, and again after it was lost.
 #[derive(Clone)]
 pub struct Connect(Arc<dyn Fn() -> Result<Box<dyn FarField>, FieldError> + Send + Sync>);
 
 impl Connect {
-    /// By calling `connect`.
+    /// Makes a way that calls `connect`.
     #[must_use]
     pub fn new(connect: impl Fn() -> Result<Box<dyn FarField>, FieldError> + Send + Sync + 'static) -> Self {
         Self(Arc::new(connect))
@@ -125,7 +126,9 @@ pub trait FarField: fmt::Debug + Send + Sync {
     /// As [`Self::solve`]; whoever works in this process cannot work beside it.
     fn ask(&mut self, _request: &FarRequest<'_>) -> Result<(), FieldError> {
         Err(FieldError::Settings(
-            "electric_field.overlap needs a field solver that is not waited for when it is lost; set it to false, or solver.on_solver_loss to \"stop\"".into(),
+            "electric_field.overlap needs a field solver that is not waited for when it is lost; set it to \
+             false, or solver.on_solver_loss to \"stop\""
+                .into(),
         ))
     }
 

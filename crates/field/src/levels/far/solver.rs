@@ -1,8 +1,9 @@
 //! Somebody who solves for the far field, what was found last, and where the next solve starts.
 //!
-//! With overlap the solver works while the grains move on: an evaluation takes the answer to what the one before asked, asks for
-//! its own, and goes on with a forecast, the potential on the line through the last two answers. The far field is smooth in
-//! space and slow in time; what the forecast misses is measured when the answer comes.
+//! With overlap the solver works while the grains move on: an evaluation takes the answer to what the one
+//! before asked, asks for its own, and goes on with a forecast, the potential on the line through the last
+//! two answers. The far field is smooth in space and slow in time; what the forecast misses is measured
+//! when the answer comes.
 
 use super::{FarField, FarMesh, FarRequest, FarValues};
 use crate::error::FieldError;
@@ -14,9 +15,9 @@ use serde::{Deserialize, Serialize};
 #[derive(Debug)]
 pub struct FarSolver {
     solver: Box<dyn FarField>,
-    /// What was found last.
+    /// Answer that was found last.
     pub(crate) values: FarValues,
-    /// Where the next solve is to start from; empty: where the solver is.
+    /// Potential from which the next solve is to start [V]; empty: from where the solver is.
     guess: Vec<f64>,
     /// `None`: every evaluation waits for its own answer.
     overlap: Option<Box<Overlap>>,
@@ -40,18 +41,18 @@ impl FarState {
     }
 }
 
-/// What is known while the solver works.
+/// State that is known while the solver works.
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
 struct Overlap {
     /// Time of the last answer [s].
     latest_s: f64,
     /// The answer before, and its time [s].
     earlier: Option<(f64, Answer)>,
-    /// What is forecast now.
+    /// Forecast that counts now.
     forecast: Answer,
     /// RMS over the cells of what the last forecast missed of E [V/m].
     missed: f64,
-    /// What is being solved.
+    /// Question that is being solved.
     pending: Option<OpenQuestion>,
     /// Whether anything was solved yet.
     begun: bool,

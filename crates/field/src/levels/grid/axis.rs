@@ -8,7 +8,7 @@ use amberfield_core::{Axis, Domain};
 /// Truncated kernels are smoothed by a Gaussian; its tail beyond this many widths is below 2e-9.
 pub(crate) const TAIL_WIDTHS: f64 = 6.0;
 
-/// How many nodes an axis has and where they lie: all that its cost depends on.
+/// Number of an axis's nodes and their places: all that its cost depends on.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(crate) struct AxisSize {
     /// Nodes that carry charge.
@@ -124,7 +124,7 @@ impl GridAxis {
     }
 }
 
-/// How the line of an axis is continued by the images in its faces.
+/// Returns how the line of an axis is continued by the images in its faces.
 pub(crate) fn symmetry(kind: AxisKind) -> Symmetry {
     use FaceKind::{Conductor, Insulator, Open};
     match kind {

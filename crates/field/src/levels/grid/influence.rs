@@ -3,10 +3,10 @@
 //!
 //! G(k) = 4π χ(k)/(k² W²(k)),  W = Π_a W(k_a)
 //!
-//! with χ the cloud's spectrum and W the window's: spread and gathered by the window, every wave that the grid carries
-//! comes out exactly as the cloud's potential 4π χ/k². For a window as tight as this one nothing is gained by trading
-//! exactness for fewer aliases (at most 3 % of the error, against Hockney & Eastwood's optimum), and fields that vary slowly
-//! are as good as the transforms.
+//! with χ the cloud's spectrum and W the window's: spread and gathered by the window, every wave that the
+//! grid carries comes out exactly as the cloud's potential 4π χ/k². For a window as tight as this one
+//! nothing is gained by trading exactness for fewer aliases (at most 3 % of the error, against Hockney &
+//! Eastwood's optimum), and fields that vary slowly are as good as the transforms.
 //!
 //! Open axes need a kernel of finite reach R. A wide Gaussian of width Σ carries the singularity at k = 0:
 //! χ becomes χ + (T − 1) e^{−k²Σ²/2}, with T the transform of the truncated Green's function over that
@@ -56,7 +56,8 @@ impl AxisWaves {
     }
 }
 
-/// The influence function of a grid, with the transforms' scale and the cell volume divided out, by wave index.
+/// The influence function of a grid, with the transforms' scale and the cell volume divided out, by wave
+/// index.
 #[derive(Debug)]
 pub(crate) struct Influence {
     dimensions: [usize; 3],
@@ -92,7 +93,7 @@ impl Influence {
         })
     }
 
-    /// What makes of charges the density of their clouds [C/m³] in place of a potential.
+    /// Influence function that makes of charges the density of their clouds [C/m³] in place of a potential.
     pub(crate) fn density(axes: &[GridAxis; 3], window: &Window, cloud: Cloud) -> Self {
         Self::closed(axes, window, 0.25 / PI, |_, wave_squared| {
             0.25 / PI * wave_squared * cloud.spectrum(wave_squared)
@@ -131,7 +132,8 @@ impl Influence {
     }
 }
 
-/// `spectrum`/(k² W²) at every wave vector (which is handed over with its square), `at_origin` where k = 0; `[y][z][x]`.
+/// `spectrum`/(k² W²) at every wave vector (which is handed over with its square), `at_origin` where k = 0;
+/// `[y][z][x]`.
 fn table(
     waves: &[AxisWaves; 3],
     at_origin: f64,

@@ -1,4 +1,5 @@
-//! The smooth level on the internal grid: spread charge with the window, convolve, gather potential and field.
+//! The smooth level on the internal grid: spread charge with the window, convolve, gather potential and
+//! field.
 
 use super::axis::{AxisSize, GridAxis, TAIL_WIDTHS};
 use super::halo::HaloArray;
@@ -18,7 +19,7 @@ const SLAB: usize = MAX_ORDER;
 /// Grains gathered by one task.
 const GATHER: usize = 256;
 
-/// What the grid is made of.
+/// Parameters of the grid.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(crate) struct GridParameters {
     /// Largest node spacing [m].
@@ -213,8 +214,8 @@ fn spread_charge<const P: usize, V: Vector<Number = f64>>(
 /// Vectors of at most [`MAX_ORDER`] numbers.
 type Row<V> = [V; MAX_ORDER / 2];
 
-/// Numbers in vectors. Rows of nodes are read and written in whole vectors too: the halo has room for what lies beyond an
-/// order's last node.
+/// Numbers in vectors. Rows of nodes are read and written in whole vectors too: the halo has room for what
+/// lies beyond an order's last node.
 #[inline(always)]
 fn vectors<V: Vector<Number = f64>>(numbers: &[f64; MAX_ORDER]) -> Row<V> {
     let mut row = [V::splat(0.0); MAX_ORDER / 2];

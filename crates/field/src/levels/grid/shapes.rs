@@ -1,15 +1,16 @@
 //! The best shapes of cloud and window for an order and a cut-off, and the error that they leave.
 //!
-//! They minimise the error of `crate::choosing::error_model` over both shapes (an independent program's simplex search, rounded;
-//! near a minimum a few per cent change nothing). A test looks for better ones around them.
+//! They minimise the error of `crate::choosing::error_model` over both shapes (an independent program's
+//! simplex search, rounded; near a minimum a few per cent change nothing). A test looks for better ones
+//! around them.
 
 use std::ops::RangeInclusive;
 
 /// Orders of the windows.
 pub(crate) const ORDERS: RangeInclusive<usize> = 4..=8;
 
-/// Cut-off radii over node spacings for which shapes are tabulated: below, the model is no longer a model; above, more cut-off buys
-/// too little.
+/// Cut-off radii over node spacings for which shapes are tabulated: below, the model is no longer a model;
+/// above, more cut-off buys too little.
 const RATIOS: [f64; NODES] = [
     1.0, 1.25, 1.5, 1.75, 2.0, 2.25, 2.5, 2.75, 3.0, 3.5, 4.0, 4.5, 5.0, 6.0, 7.0, 8.0, 10.0, 14.0, 20.0,
     28.0,
@@ -81,7 +82,7 @@ mod tests {
     use super::*;
     use crate::choosing::error_model::error_squared;
 
-    /// What another shape may gain in error: the table is rounded and interpolated.
+    /// Gain in error that another shape may have: the table is rounded and interpolated.
     const GAIN: f64 = 0.06;
     /// Fewer digits, and another quadrature.
     const AGREEMENT: f64 = 0.12;

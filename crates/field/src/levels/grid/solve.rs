@@ -126,8 +126,8 @@ impl Solver {
     }
 }
 
-/// Applies `transform` to every column of a plane of rows of length `row`, a tile of columns at a time; `tile`
-/// holds [`TILE`] columns.
+/// Applies `transform` to every column of a plane of rows of length `row`, a tile of columns at a time;
+/// `tile` holds [`TILE`] columns.
 pub(crate) fn across_rows(
     plane: &mut [f64],
     row: usize,

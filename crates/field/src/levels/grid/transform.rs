@@ -11,7 +11,7 @@ use std::f64::consts::PI;
 use std::fmt;
 use std::sync::Arc;
 
-/// What the line is continued by beyond its two ends.
+/// Continuation of the line beyond its two ends.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) enum Symmetry {
     /// Repeats itself.

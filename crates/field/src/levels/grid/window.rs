@@ -4,12 +4,14 @@
 //!
 //! w(x) = ½ [Φ((x + ½)/a) − Φ((x − ½)/a)],  W(k) = (sin ½k)/(½k) · χ(k),  a = (P − 1)/2,
 //!
-//! with Φ and χ of `amberfield_laws::kaiser_bessel_cloud` for radius a, lengths in node spacings. It has support
-//! (−P/2, P/2), is continuous, and the box makes its values at the nodes add up to one wherever it stands: charge is kept,
-//! as by a B-spline (the box of a box of a box …), but it leaves two to eight times
-//! less error at the same P and r_c/h, the more the higher P (the observation of Nestler, Front. Phys. 4, 28, 2016, for windows of this kind).
+//! with Φ and χ of `amberfield_laws::kaiser_bessel_cloud` for radius a, lengths in node spacings. It has
+//! support (−P/2, P/2), is continuous, and the box makes its values at the nodes add up to one wherever it
+//! stands: charge is kept, as by a B-spline (the box of a box of a box …), but it leaves two to eight times
+//! less error at the same P and r_c/h, the more the higher P (the observation of Nestler, Front. Phys. 4,
+//! 28, 2016, for windows of this kind).
 //!
-//! Between two nodes the window is analytic: polynomials in the place, one a node touched, computed side by side.
+//! Between two nodes the window is analytic: polynomials in the place, one a node touched, computed side by
+//! side.
 
 use crate::numerics::chebyshev::{chebyshev, monomials};
 use crate::numerics::processor::Vector;
@@ -20,8 +22,8 @@ pub(crate) const MAX_ORDER: usize = 8;
 /// Nodes beyond the outermost cell centres that a window of any order up to [`MAX_ORDER`] reaches, plus one
 /// for positions that round onto a face.
 pub(crate) const HALO: usize = MAX_ORDER / 2 + 1;
-/// Degree of the polynomials: their error is below a tenth of what a window leaves in its aliases, down to errors near 1e-8,
-/// where it is as large.
+/// Degree of the polynomials: their error is below a tenth of what a window leaves in its aliases, down to
+/// errors near 1e-8, where it is as large.
 const DEGREE: usize = 8;
 
 /// A window of given order P (number of nodes touched along an axis) and shape.
@@ -32,7 +34,7 @@ pub(crate) struct Window {
     coefficients: [[f64; MAX_ORDER]; DEGREE + 1],
 }
 
-/// What a window does at one place, by axis.
+/// Weights of a window at one place, by axis.
 pub(crate) struct Weights {
     /// Lowest node touched.
     pub(crate) first: [isize; 3],
@@ -100,7 +102,8 @@ pub(crate) fn first_node<const P: usize>(u: f64) -> isize {
 /// The knot below `u`: where a window begins to touch another node.
 #[inline(always)]
 fn knot<const P: usize>(u: f64) -> isize {
-    /// No place lies as far below node 0: what is cut off is positive, and cutting needs no library where rounding would.
+    /// No place lies as far below node 0: what is cut off is positive, and cutting needs no library where
+    /// rounding would.
     const BELOW: isize = 64;
     (u + shift::<P>() + BELOW as f64) as isize - BELOW
 }

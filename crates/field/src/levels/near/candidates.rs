@@ -3,12 +3,12 @@
 use crate::numerics::processor::{BLOCK, PADDING, Real, Vector};
 use std::ops::Range;
 
-/// Where a candidate that must not count is put: beyond the cut-off of every target of a group, and near enough for
-/// no power of its distance to overflow.
+/// Place to which a candidate that must not count is put: beyond the cut-off of every target of a group,
+/// and near enough for no power of its distance to overflow.
 const FAR: f64 = 8.0;
 
-/// Sources in separate arrays, with [`PADDING`] more values behind the last: coordinates over the cut-off radius,
-/// charges over the largest.
+/// Sources in separate arrays, with [`PADDING`] more values behind the last: coordinates over the cut-off
+/// radius, charges over the largest.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Sources<'a> {
     pub(crate) x: &'a [f64],
@@ -26,7 +26,7 @@ pub(crate) struct Candidates<T> {
     pub(crate) charge: Vec<T>,
     /// Zeros on either side of one square of a distance beyond the cut-off.
     apart: Vec<T>,
-    /// By vector, before [`Self::cull`]: the lanes that stayed, and how many did before.
+    /// Lanes of each vector that stayed, and the number of those that did before; made before [`Self::cull`].
     stayed: Vec<[u32; 2]>,
     len: usize,
 }
@@ -90,7 +90,7 @@ impl<T: Real> Candidates<T> {
     /// Drops candidates beyond the cut-off of a box and those without charge, no others.
     #[inline(always)]
     pub(crate) fn cull<V: Vector<Number = T>>(&mut self, [low, high]: [[T; 3]; 2]) {
-        /// Above 1 by more than single precision rounds at such distances.
+        /// A bound above 1 by more than single precision rounds at such distances.
         const BOUND: f64 = 1.00001;
         let (zero, bound) = (V::splat(T::zero()), V::splat(T::narrow(BOUND)));
         let [low_x, low_y, low_z] = low;
@@ -126,7 +126,8 @@ impl<T: Real> Candidates<T> {
         (kept + (lanes & ((1 << (before % V::LANES)) - 1)).count_ones()) as usize
     }
 
-    /// What to add to the squares of the candidates' distances, so that `own` does not count; [`Self::len`] for nobody.
+    /// Summands to the squares of the candidates' distances, so that `own` does not count; [`Self::len`]
+    /// for nobody.
     #[inline(always)]
     pub(crate) fn apart(&self, own: usize) -> &[T] {
         &self.apart[self.apart.len() / 2 - own..][..self.len]

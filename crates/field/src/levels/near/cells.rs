@@ -12,8 +12,9 @@ const ALONG: f64 = 0.5;
 /// Longest and shortest edge along x over the cut-off radius.
 const LONGEST: f64 = 0.7;
 const SHORTEST: f64 = 0.1;
-/// Edges across are the cut-off radius over a whole number, so that no row is reached in vain; the number is this share of the
-/// root of the number of sources in a cube of that radius: some ten sources in a run pay for finding it.
+/// Edges across are the cut-off radius over a whole number, so that no row is reached in vain; the number
+/// is this share of the root of the number of sources in a cube of that radius: some ten sources in a run
+/// pay for finding it.
 const ROWS_PER_ROOT: f64 = 0.6;
 /// Most rows within a cut-off radius: looking at more of them would take longer than summing.
 const MOST_ROWS: f64 = 5.0;
@@ -56,8 +57,8 @@ pub(super) struct NearCells {
 }
 
 impl NearCells {
-    /// Sorts the charges and their images within the cut-off radius of the positions' bounding box; positions and
-    /// radius in m and inside the domain.
+    /// Sorts the charges and their images within the cut-off radius of the positions' bounding box;
+    /// positions and radius in m and inside the domain.
     pub(super) fn build(
         &mut self,
         domain: &Domain,
@@ -219,9 +220,9 @@ impl NearCells {
         &self.rows
     }
 
-    /// A range of sources of a row around row (y, z) that holds every source within the cut-off of any place there with
-    /// x in `from..=to`, and some beyond it. Empty beyond the cells. The ranges of all [`Self::rows`] hold them all; one
-    /// of them holds what lies between in the row itself.
+    /// A range of sources of a row around row (y, z) that holds every source within the cut-off of any
+    /// place there with x in `from..=to`, and some beyond it. Empty beyond the cells. The ranges of all
+    /// [`Self::rows`] hold them all; one of them holds what lies between in the row itself.
     #[inline(always)]
     pub(super) fn run(&self, row: &Row, [y, z]: [usize; 2], [from, to]: [f64; 2]) -> Range<usize> {
         let (y, z) = (y.wrapping_add_signed(row.across[0]), z.wrapping_add_signed(row.across[1]));

@@ -4,8 +4,9 @@
 //! `amberfield_laws::kaiser_bessel_cloud`). Both are entire functions of r², so one polynomial each covers
 //! [0, r_c²] to any accuracy, with no table and no trouble at r ≪ r_c.
 //!
-//! The candidates of a group of targets are laid side by side, and those beyond the cut-off of the group's box are dropped. Every
-//! one left is computed, masked beyond the cut-off: that costs less than packing the ones that count for a single target.
+//! The candidates of a group of targets are laid side by side, and those beyond the cut-off of the group's
+//! box are dropped. Every one left is computed, masked beyond the cut-off: that costs less than packing the
+//! ones that count for a single target.
 
 use super::candidates::Candidates;
 use super::cells::NearCells;
@@ -26,8 +27,8 @@ pub(crate) struct NearKernel<T> {
 }
 
 impl<T: Real> NearKernel<T> {
-    /// Kernel for clouds of the given shape that end at the cut-off radius, the polynomials good to `accuracy` of the
-    /// cloud's value at its centre.
+    /// Kernel for clouds of the given shape that end at the cut-off radius, the polynomials good to
+    /// `accuracy` of the cloud's value at its centre.
     pub(crate) fn new(cloud_shape: f64, accuracy: f64) -> Self {
         let highest = DEGREES[DEGREES.len() - 1];
         let cloud = Cloud { radius: 1.0, shape: cloud_shape };
@@ -176,8 +177,9 @@ fn relative<T: Real>(cells: &NearCells, source: u32, reference: [f64; 3]) -> [T;
     [T::narrow(x - reference[0]), T::narrow(y - reference[1]), T::narrow(z - reference[2])]
 }
 
-/// Lays the sources around a group side by side and drops those beyond the cut-off of all; before that, a target's number among
-/// them was its number plus what is returned. Their places are relative to the other result.
+/// Lays the sources around a group side by side and drops those beyond the cut-off of all; before that, a
+/// target's number among them was its number plus what is returned. Their places are relative to the other
+/// result.
 #[inline(always)]
 fn gather<V: Vector>(group: Group<'_>, candidates: &mut Candidates<V::Number>) -> (usize, [f64; 3]) {
     let cells = group.cells;

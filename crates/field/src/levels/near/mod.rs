@@ -23,14 +23,14 @@ const TASK: usize = 64;
 const GROUP: usize = 8;
 /// Largest extent of a group along x, over the cut-off radius.
 const GROUP_LENGTH: f64 = 1.0;
-/// Kernel accuracy above which single precision will do: its round-off at ordinary distances stays below a tenth
-/// of the error.
+/// Kernel accuracy above which single precision will do: its round-off at ordinary distances stays below a
+/// tenth of the error.
 const SINGLE_FROM: f64 = 3e-6;
-/// Distance between two charges over r_c, times the kernel accuracy, below which the round-off of their coordinates in single
-/// precision counts: such a target is summed again in double precision.
+/// Distance between two charges over r_c, times the kernel accuracy, below which the round-off of their
+/// coordinates in single precision counts: such a target is summed again in double precision.
 const SINGLE_ROUND_OFF: f64 = 2e-7;
 
-/// What the near level is made of.
+/// Parameters of the near level.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 pub(crate) struct NearParameters {
     /// Cut-off radius r_c, where the clouds that the smooth level carries end [m].
@@ -89,8 +89,8 @@ impl NearLevel {
         }
     }
 
-    /// Sorts charges and their images into cells; the field will be asked for at the first `targets` of them. Positions lie
-    /// inside the domain.
+    /// Sorts charges and their images into cells; the field will be asked for at the first `targets` of
+    /// them. Positions lie inside the domain.
     pub(crate) fn sort(&mut self, positions: &[Vector3<f64>], charges: &[f64], targets: usize) {
         self.largest = charges.iter().fold(0.0, |largest, charge| charge.abs().max(largest));
         let per_charge = if self.largest > 0.0 { 1.0 / self.largest } else { 0.0 };
@@ -168,7 +168,7 @@ impl NearLevel {
         });
     }
 
-    /// How many of the first targets share a row of cells and lie close together, and the row.
+    /// Counts the first targets that share a row of cells and lie close together, and the row.
     fn group(&self, first: u32, targets: &[u32]) -> (usize, [usize; 2]) {
         let (row, start) = (self.cells.row_of(first as usize), self.cells.place(first as usize)[0]);
         let together = |&&target: &&u32| {

@@ -4,8 +4,8 @@ use super::candidates::Candidates;
 use crate::numerics::processor::{Real, Vector};
 use crate::values::FieldAt;
 
-/// Field (x, y, z) and potential of a target in the kernel's units (4πε = 1), and the square of the distance to the
-/// nearest candidate.
+/// Field (x, y, z) and potential of a target in the kernel's units (4πε = 1), and the square of the
+/// distance to the nearest candidate.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub(crate) struct Sum {
     pub(crate) field: [f64; 3],
@@ -23,7 +23,8 @@ impl Sum {
 /// Polynomials for field and potential.
 pub(super) type Polynomials<'a, T, const N: usize> = (&'a [T; N], &'a [T; N]);
 
-/// A target and its sums, candidate by candidate in lanes. Spelled out axis by axis: vectors in arrays end in memory.
+/// A target and its sums, candidate by candidate in lanes. Spelled out axis by axis: vectors in arrays end
+/// in memory.
 struct Target<V> {
     x: V,
     y: V,
@@ -80,7 +81,8 @@ impl<V: Vector> Target<V> {
     }
 }
 
-/// Where a sum is taken, and the candidate there that does not count: [`Candidates::len`] if there is none.
+/// Place at which a sum is taken, and the candidate there that does not count: [`Candidates::len`] if there
+/// is none.
 pub(super) type Place<T> = ([T; 3], usize);
 
 /// Sums at a place.
@@ -98,7 +100,8 @@ pub(super) fn sum_one<V: Vector, const N: usize, const POTENTIAL: bool>(
     target.sum()
 }
 
-/// Two targets side by side: their chains of operations fill each other's waiting times, and loads are shared.
+/// Two targets side by side: their chains of operations fill each other's waiting times, and loads are
+/// shared.
 #[inline(always)]
 pub(super) fn sum_two<V: Vector, const N: usize, const POTENTIAL: bool>(
     polynomials: Polynomials<'_, V::Number, N>,

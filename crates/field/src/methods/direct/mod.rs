@@ -21,14 +21,14 @@ use std::f64::consts::{FRAC_2_SQRT_PI, PI};
 
 /// The direct sum of a box: E and potential at every particle with all images, exact to about 1e-12.
 ///
-/// All axes open: the plain sum over charges and mirror images. Closed axes: Ewald's sum, the smooth part in the
-/// real functions that obey each face, tinfoil for periodic boxes. Two closed axes and an open one: the same with
-/// the open axis' Green function cut beyond what the particles see. Where the faces leave the potential free its
-/// mean is 0, and a net charge, when allowed, is balanced by a uniform background. Fields of electrodes and of
-/// normal fields on faces are not in it, see [`crate::BoundaryField`].
+/// All axes open: the plain sum over charges and mirror images. Closed axes: Ewald's sum, the smooth part
+/// in the real functions that obey each face, tinfoil for periodic boxes. Two closed axes and an open one:
+/// the same with the open axis' Green function cut beyond what the particles see. Where the faces leave the
+/// potential free its mean is 0, and a net charge, when allowed, is balanced by a uniform background.
+/// Fields of electrodes and of normal fields on faces are not in it, see [`crate::BoundaryField`].
 ///
-/// In a slab whose closed axes have no conductor the potential of a charged layer far from everything grows with
-/// distance; it is taken as −2π σ|z| (σ charge per area), symmetric about the layer.
+/// In a slab whose closed axes have no conductor the potential of a charged layer far from everything grows
+/// with distance; it is taken as −2π σ|z| (σ charge per area), symmetric about the layer.
 #[derive(Debug)]
 pub struct Direct {
     domain: Domain,
@@ -43,7 +43,7 @@ pub struct Direct {
     stopwatch: Stopwatch,
 }
 
-/// What the sum is made of, over Coulomb's constant.
+/// Parts of the sum, over Coulomb's constant.
 #[derive(Debug, Default)]
 struct Parts {
     near: Vec<FieldAt>,
@@ -186,14 +186,22 @@ mod tests {
     }
 
     proptest! {
-        #![proptest_config(ProptestConfig { cases: 64, failure_persistence: None, ..ProptestConfig::default() })]
+        #![proptest_config(ProptestConfig {
+            cases: 64,
+            failure_persistence: None,
+            ..ProptestConfig::default()
+        })]
 
-        /// The sum is the same wherever it is split: images, modes and cut-offs fit together, in boxes of any shape.
+        /// The sum is the same wherever it is split: images, modes and cut-offs fit together, in boxes of
+        /// any shape.
         #[test]
         fn the_splitting_does_not_matter(
             faces in [axis_faces(), axis_faces(), axis_faces()],
             extent in [0.2..2.0_f64, 0.2..2.0_f64, 0.2..2.0_f64],
-            places in prop::collection::vec(([0.02..0.98_f64, 0.02..0.98_f64, 0.02..0.98_f64], -1.0..1.0_f64), 1..8),
+            places in prop::collection::vec(
+                ([0.02..0.98_f64, 0.02..0.98_f64, 0.02..0.98_f64], -1.0..1.0_f64),
+                1..8,
+            ),
             factor in 0.6..1.6_f64,
         ) {
             let extent = Vector3::from(extent);
@@ -202,7 +210,10 @@ mod tests {
             prop_assume!(matches!(geometry, Ok(Geometry::Closed | Geometry::Slab(_))));
             let mut direct = Direct::new(&domain, Permittivity::VACUUM, true).unwrap();
             let (positions, charges): (Vec<_>, Vec<_>) =
-                places.into_iter().map(|(place, charge)| (Vector3::from(place).component_mul(&extent), charge)).unzip();
+                places
+                    .into_iter()
+                    .map(|(place, charge)| (Vector3::from(place).component_mul(&extent), charge))
+                    .unzip();
             direct.wrapped = positions;
             let particles = BoundingBox::around(&direct.wrapped).unwrap();
             let best = Splitting::cheapest(&domain, direct.geometry, &particles, charges.len());

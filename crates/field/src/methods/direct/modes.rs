@@ -1,6 +1,7 @@
 //! The smooth part of Ewald's sum, in functions of the box that obey its faces.
 //!
-//! φ(x) = Σ_abc w_abc ψ_a(x) ψ_b(y) ψ_c(z) Σ_j q_j ψ_a(x_j) ψ_b(y_j) ψ_c(z_j): images come with the functions.
+//! φ(x) = Σ_abc w_abc ψ_a(x) ψ_b(y) ψ_c(z) Σ_j q_j ψ_a(x_j) ψ_b(y_j) ψ_c(z_j): images come with the
+//! functions.
 
 use super::splitting::{AxisBasis, Splitting};
 use crate::values::FieldAt;

@@ -15,11 +15,12 @@ use std::ops::Range;
 pub(crate) struct PairSum {
     /// Field and potential, over Coulomb's constant.
     pub(crate) field: FieldAt,
-    /// How many partners there are, images included.
+    /// Number of partners, images included.
     pub(crate) partners: usize,
 }
 
-/// Σ q erfc(αr)/r and its field at every particle, over all images within the cells' radius but the particle itself.
+/// Σ q erfc(αr)/r and its field at every particle, over all images within the cells' radius but the
+/// particle itself.
 pub(crate) fn short_ranged(cells: &ImageCells<()>, positions: &[Vector3<f64>], alpha: f64) -> Vec<PairSum> {
     let gaussian = alpha * FRAC_2_SQRT_PI;
     positions
@@ -47,8 +48,8 @@ struct Sources {
     charge: Vec<f64>,
 }
 
-/// Σ q/r and its field at every particle of an open box, over every charge and image but the particle itself. Particles
-/// without charge only see.
+/// Σ q/r and its field at every particle of an open box, over every charge and image but the particle
+/// itself. Particles without charge only see.
 pub(crate) fn open(lattice: &ImageLattice, positions: &[Vector3<f64>], charges: &[f64]) -> Vec<PairSum> {
     let images: usize = lattice.axes.iter().map(|axis| axis.images.len()).product();
     let count = charges.iter().filter(|charge| **charge != 0.0).count();

@@ -1,4 +1,4 @@
-//! Where to split Ewald's sum, and the functions of each axis that carry its smooth part.
+//! The place at which Ewald's sum is split, and the functions of each axis that carry its smooth part.
 
 use crate::geometry::images::{AxisKind, BoundingBox, FaceKind, Geometry, axis_kinds};
 use amberfield_core::{Axis, Domain};
@@ -24,7 +24,7 @@ enum Shape {
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(crate) struct AxisBasis {
     shape: Shape,
-    /// Where the functions' argument is zero [m].
+    /// Place at which the functions' argument is zero [m].
     origin: f64,
     /// Distance of wave numbers [1/m].
     step: f64,

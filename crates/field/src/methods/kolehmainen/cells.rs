@@ -33,7 +33,7 @@ pub(super) trait Cells: Debug + Send + Sync {
         None
     }
 
-    /// The same, to start from another state.
+    /// Gives the field solver away, to start from another state.
     fn solver_mut(&mut self) -> Option<&mut FarSolver> {
         None
     }
@@ -86,7 +86,7 @@ impl Cells for Mesh {
 pub(super) struct SolverCells {
     solver: FarSolver,
     neutralising_background: bool,
-    /// Where the charges are for the solver.
+    /// Places of the charges for the solver [m].
     places: Vec<Vector3<f64>>,
     boundary: Vec<f64>,
 }
@@ -111,7 +111,8 @@ impl Cells for SolverCells {
         check_net_charge(mesh, permittivity, self.neutralising_background, charges)?;
         cells.clear();
         cells.resize(positions.len(), u32::MAX);
-        // A stray belongs to the nearest wall's cell, whichever process has that: it is sent as if it were at its centre.
+        // A stray belongs to the nearest wall's cell, whichever process has that: it is sent as if it were
+        // at its centre.
         self.places.clear();
         self.places.extend(positions.iter().zip(cells.iter_mut()).map(|(position, cell)| {
             let (found, inside) = mesh.locate(position, None);

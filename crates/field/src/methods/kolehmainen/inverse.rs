@@ -12,12 +12,12 @@ use rayon::prelude::*;
 pub(super) enum Inverse {
     /// Inverse sum of each axis' eigenvalues [1/m²], 0 for the constant mode.
     Closed([Vec<f64>; 3]),
-    /// The same, times what cuts the Green function of the open axis at half its period.
+    /// Inverse of the eigenvalues, times what cuts the Green function of the open axis at half its period.
     ///
-    /// Along the open axis the coefficient with eigenvalue λ on the others has the Green function
-    /// g_n = h² ϱ^|n|/(1/ϱ − ϱ), ϱ + 1/ϱ = 2 + λh², or −|n|h²/2 for λ = 0. Cut at n = R and repeated with period
-    /// 2R its transform is (1 − (−1)^w ϱ^R)/Λ, w the wave's order and Λ the sum of all eigenvalues; −(hR)²/2 where
-    /// Λ = 0.
+    /// Along the open axis the coefficient with eigenvalue λ on the others has the Green function g_n = h²
+    /// ϱ^|n|/(1/ϱ − ϱ), ϱ + 1/ϱ = 2 + λh², or −|n|h²/2 for λ = 0. Cut at n = R and repeated with period 2R
+    /// its transform is (1 − (−1)^w ϱ^R)/Λ, w the wave's order and Λ the sum of all eigenvalues; −(hR)²/2
+    /// where Λ = 0.
     Slab { eigenvalues: [Vec<f64>; 3], open: usize, cut: Vec<f64>, constant: f64 },
     /// Transform of the unbounded grid's Green function [m²] by the waves' orders, index [y][z][x].
     Open { values: Vec<f64>, orders: [usize; 3] },
@@ -84,7 +84,8 @@ impl Inverse {
         Self::Open { values, orders }
     }
 
-    /// Right-hand side to potential, coefficients in lines along x, index [y][z][x]; the transforms' scale included.
+    /// Right-hand side to potential, coefficients in lines along x, index [y][z][x]; the transforms' scale
+    /// included.
     pub(super) fn apply(&self, axes: &[MeshAxis; 3], lines: &mut [f64]) {
         let [nx, _, nz] = axes.each_ref().map(|axis| axis.transform.len());
         let scale = 1.0 / axes.iter().map(|axis| axis.transform.scale()).product::<f64>();
@@ -129,7 +130,7 @@ impl Inverse {
     }
 }
 
-/// The other two axes.
+/// Returns the two axes beside one.
 fn beside(axis: usize) -> [usize; 2] {
     [(axis + 1) % 3, (axis + 2) % 3]
 }

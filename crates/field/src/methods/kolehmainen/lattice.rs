@@ -10,7 +10,7 @@ use std::f64::consts::PI;
 const STEP: f64 = 0.3;
 /// The integral starts where t is this small beside the smallest h².
 const START: f64 = 1e-17;
-/// It ends, as its integrand falls as t^{−1/2} per step, where t is this large beside the largest distance².
+/// Largest t of the integral beside the largest distance²: its integrand falls as t^{−1/2} per step.
 const END: f64 = 1e28;
 
 /// g [m²] for distances of 0 to `most` cells along each axis, the last axis running fastest.

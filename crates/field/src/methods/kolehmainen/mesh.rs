@@ -17,7 +17,7 @@ use rayon::prelude::*;
 /// Shares into which planes are cut; each has its own working memory.
 const SHARES: usize = 16;
 
-/// What lies beyond the last cell.
+/// Neighbour beyond the last cell.
 #[derive(Clone, Copy, Debug, PartialEq)]
 enum Beyond {
     /// The array goes on: the opposite side, or free space that was solved for.
@@ -45,7 +45,7 @@ pub(super) struct MeshAxis {
     pub(super) cells: usize,
     /// Cell size [m].
     pub(super) spacing: f64,
-    /// Where the box's cells begin in the transform.
+    /// Place in the transform at which the box's cells begin.
     offset: usize,
     /// Transform over the cells, and over free space beside them where a face is open.
     pub(super) transform: LineTransform,
@@ -60,7 +60,8 @@ impl MeshAxis {
         let symmetry = symmetry(kind);
         let (mut length, mut period) = (cells, None);
         if kind.is_open() {
-            // Room for all distances between a cell of the box, or the next one, and a cell or its mirror image.
+            // Room for all distances between a cell of the box, or the next one, and a cell or its mirror
+            // image.
             length = smooth_even(2 * cells + 2);
             period = Some(if symmetry == Symmetry::Periodic { length } else { 2 * length });
         }
@@ -109,7 +110,8 @@ pub(super) struct Mesh {
     shares: Vec<Share>,
     /// Face values' part of the right-hand side [V/m²], absent when they are zero.
     walls: Option<Vec<f64>>,
-    /// Field of the faces' values where a face is open: they reach beyond the box, so that cells cannot hold them.
+    /// Field of the faces' values where a face is open: they reach beyond the box, so that cells cannot
+    /// hold them.
     faces: Option<BoundaryField>,
 }
 
@@ -127,7 +129,10 @@ impl Mesh {
             faces = BoundaryField::new(domain)?;
             if faces.as_ref().is_some_and(|field| !field.is_closed_form()) {
                 return Err(FieldError::Settings(
-                    "method kolehmainen cannot have potentials or normal fields on faces of several axes beside open faces on the internal grid; close the open faces, ground the others, or choose method p3m".into(),
+                    "method kolehmainen cannot have potentials or normal fields on faces of several axes \
+                     beside open faces on the internal grid; close the open faces, ground the others, or \
+                     choose method p3m"
+                        .into(),
                 ));
             }
             for beyond in axes.iter_mut().flat_map(|axis| &mut axis.beyond) {
@@ -248,7 +253,7 @@ impl Mesh {
         (x * self.lengths[1] + y) * self.lengths[2] + z
     }
 
-    /// What the faces' values add to the right-hand side of the cells beside them.
+    /// Part that the faces' values add to the right-hand side of the cells beside them.
     fn wall_source(&self) -> Option<Vec<f64>> {
         let mut walls = vec![0.0; self.potential.len()];
         for axis in 0..3 {

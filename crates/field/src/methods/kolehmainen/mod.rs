@@ -26,17 +26,20 @@ const CELLS_PER_RADIUS: f64 = 1.75;
 /// Cells at most; beyond it the cut-off radius is a mistake.
 const MOST_CELLS: f64 = 2e8;
 
-/// The hybrid of Kolehmainen, Ozel, Boyce and Sundaresan (2016): every charge goes to its cell, Poisson's equation
-/// on the mesh gives a field constant in each cell, the plain sum over pairs within a cut-off radius is added, and
-/// for those pairs that lie in different cells Coulomb's field between the cells' centres is taken off again.
+/// The hybrid of Kolehmainen, Ozel, Boyce and Sundaresan (2016): every charge goes to its cell, Poisson's
+/// equation on the mesh gives a field constant in each cell, the plain sum over pairs within a cut-off
+/// radius is added, and for those pairs that lie in different cells Coulomb's field between the cells'
+/// centres is taken off again.
 ///
-/// It does not converge: the mesh made its own field of each charge, not Coulomb's between centres. Its error
-/// stays at 20 to 40 % for charges of both signs however large the radius. Walls have no images in the near sum.
+/// It does not converge: the mesh made its own field of each charge, not Coulomb's between centres. Its
+/// error stays at 20 to 40 % for charges of both signs however large the radius. Walls have no images in
+/// the near sum.
 ///
-/// The mesh is that of the box: seven-point finite volumes, walls at cell faces, gradient by Gauss' theorem with
-/// linear interpolation, and the faces' potentials and normal fields in its boundary conditions. Beyond open faces the
-/// mesh goes on for ever. Components: pairs are near, the mesh far, the sum over cells' centres correction. The
-/// potential holds the mesh's potential of the particle's own charge, one cell wide.
+/// The mesh is that of the box: seven-point finite volumes, walls at cell faces, gradient by Gauss' theorem
+/// with linear interpolation, and the faces' potentials and normal fields in its boundary conditions.
+/// Beyond open faces the mesh goes on for ever. Components: pairs are near, the mesh far, the sum over
+/// cells' centres correction. The potential holds the mesh's potential of the particle's own charge, one
+/// cell wide.
 #[derive(Debug)]
 pub struct Kolehmainen {
     domain: Domain,
@@ -63,8 +66,8 @@ impl Kolehmainen {
     /// The hybrid with cut-off radius `radius_m` [m]; `cells` per axis, or cubes of nearly `radius_m`/1.75.
     ///
     /// # Errors
-    /// A radius below the cells' diagonal, no cells or too many, one closed axis between open ones, values on faces
-    /// of several axes beside open faces.
+    /// A radius below the cells' diagonal, no cells or too many, one closed axis between open ones, values
+    /// on faces of several axes beside open faces.
     pub fn new(
         domain: &Domain,
         permittivity: Permittivity,
@@ -78,7 +81,8 @@ impl Kolehmainen {
         Ok(Self::on(domain, permittivity, neutralising_background, radius_m, mesh))
     }
 
-    /// The hybrid over a field solver's mesh, whose faces, gradient and mapping of charges are the solver's own.
+    /// The hybrid over a field solver's mesh, whose faces, gradient and mapping of charges are the solver's
+    /// own.
     ///
     /// # Errors
     /// A radius below the diagonal of the largest cell, taken as a cube.
@@ -92,7 +96,8 @@ impl Kolehmainen {
         let diagonal = 3.0_f64.sqrt() * solver.mesh().largest_cell();
         if radius_m < diagonal * (1.0 - 1e-9) {
             return Err(FieldError::Settings(format!(
-                "cut-off radius {radius_m:e} m is below the largest cell's diagonal {diagonal:e} m; raise electric_field.field_cutoff_radius or refine the mesh"
+                "cut-off radius {radius_m:e} m is below the largest cell's diagonal {diagonal:e} m; raise \
+                 electric_field.field_cutoff_radius or refine the mesh"
             )));
         }
         let domain = solver.mesh().domain().clone();
@@ -237,7 +242,8 @@ fn choose_cells(domain: &Domain, radius: f64, cells: Option<[usize; 3]>) -> Resu
     let total: f64 = wanted.iter().product();
     if !(1.0..=MOST_CELLS).contains(&total) {
         return Err(FieldError::Settings(format!(
-            "{} x {} x {} cells for a cut-off radius of {radius:e} m; give electric_field.grid.cells or a radius that make between 1 and {MOST_CELLS:e} cells",
+            "{} x {} x {} cells for a cut-off radius of {radius:e} m; give electric_field.grid.cells or a \
+             radius that make between 1 and {MOST_CELLS:e} cells",
             wanted[0], wanted[1], wanted[2]
         )));
     }
@@ -247,7 +253,8 @@ fn choose_cells(domain: &Domain, radius: f64, cells: Option<[usize; 3]>) -> Resu
     // A radius equal to the diagonal is allowed, to the last digit written.
     if radius < diagonal * (1.0 - 1e-9) {
         return Err(FieldError::Settings(format!(
-            "cut-off radius {radius:e} m is below the largest cell diagonal {diagonal:e} m of {} x {} x {} cells; raise electric_field.field_cutoff_radius or give more cells",
+            "cut-off radius {radius:e} m is below the largest cell diagonal {diagonal:e} m of {} x {} x {} \
+             cells; raise electric_field.field_cutoff_radius or give more cells",
             cells[0], cells[1], cells[2]
         )));
     }

@@ -35,7 +35,8 @@ impl Instructions {
         Self::Portable
     }
 
-    /// The same, or narrower ones where so few numbers in a row leave half of the lanes idle.
+    /// Returns these instructions, or narrower ones where so few numbers in a row leave half of the lanes
+    /// idle.
     pub(crate) fn for_numbers(self, numbers: usize) -> Self {
         match self {
             #[cfg(target_arch = "x86_64")]
@@ -45,10 +46,12 @@ impl Instructions {
     }
 }
 
-/// Compiles a function for every set of instructions, and calls the one of this processor. The function that it is made
-/// from has one parameter more, the vector of f64 to compute with; a const parameter `P` is handed on.
+/// Compiles a function for every set of instructions, and calls the one of this processor. The function
+/// that it is made from has one parameter more, the vector of f64 to compute with; a const parameter `P` is
+/// handed on.
 macro_rules! dispatched {
-    ($(#[$doc:meta])* $visibility:vis fn $name:ident $(<const $p:ident: usize>)? ($($argument:ident: $type:ty),* $(,)?)
+    ($(#[$doc:meta])* $visibility:vis fn $name:ident $(<const $p:ident: usize>)?
+        ($($argument:ident: $type:ty),* $(,)?)
      $(-> $result:ty)? = $body:ident) => {
         $(#[$doc])*
         #[inline(always)]
@@ -68,11 +71,17 @@ macro_rules! dispatched {
             match instructions {
                 #[cfg(target_arch = "x86_64")]
                 // SAFETY: `Instructions::detect` found the instructions on this processor, here and below.
-                $crate::numerics::processor::Instructions::Avx512 => unsafe { avx512 $(::<$p>)? ($($argument),*) },
+                $crate::numerics::processor::Instructions::Avx512 => unsafe {
+                    avx512 $(::<$p>)? ($($argument),*)
+                },
                 #[cfg(target_arch = "x86_64")]
                 // SAFETY: as above.
-                $crate::numerics::processor::Instructions::Avx2 => unsafe { avx2 $(::<$p>)? ($($argument),*) },
-                $crate::numerics::processor::Instructions::Portable => $body::<$($p,)? [f64; 2]>($($argument),*),
+                $crate::numerics::processor::Instructions::Avx2 => unsafe {
+                    avx2 $(::<$p>)? ($($argument),*)
+                },
+                $crate::numerics::processor::Instructions::Portable => {
+                    $body::<$($p,)? [f64; 2]>($($argument),*)
+                }
             }
         }
     };
@@ -93,7 +102,7 @@ pub(crate) trait Real: nalgebra::RealField + Copy + Default {
     const DOUBLE: bool;
     /// The nearest number.
     fn narrow(value: f64) -> Self;
-    /// The same number.
+    /// Returns the number in double precision.
     fn wide(self) -> f64;
 }
 
@@ -136,13 +145,14 @@ impl Real for f64 {
     }
 }
 
-/// A vector of numbers. Except for the portable ones, its functions may only run where its instructions exist.
+/// A vector of numbers. Except for the portable ones, its functions may only run where its instructions
+/// exist.
 pub(crate) trait Vector: Copy {
-    /// Its numbers.
+    /// Number in a lane.
     type Number: Real;
-    /// How many.
+    /// Number of lanes.
     const LANES: usize;
-    /// The same number in every lane.
+    /// Puts one number into every lane.
     fn splat(value: Self::Number) -> Self;
     /// The first numbers of a slice that has as many.
     fn load(from: &[Self::Number]) -> Self;
@@ -152,7 +162,8 @@ pub(crate) trait Vector: Copy {
     fn sub(self, other: Self) -> Self;
     /// self · other.
     fn mul(self, other: Self) -> Self;
-    /// self · factor + term, fused where the instructions have it (elsewhere `mul_add` would call a function).
+    /// self · factor + term, fused where the instructions have it (elsewhere `mul_add` would call a
+    /// function).
     fn mul_add(self, factor: Self, term: Self) -> Self;
     /// The smaller in every lane.
     fn min(self, other: Self) -> Self;
@@ -160,10 +171,10 @@ pub(crate) trait Vector: Copy {
     fn max(self, other: Self) -> Self;
     /// `value` where self is below `bound`, else 0.
     fn select_below(self, bound: Self, value: Self) -> Self;
-    /// Which lanes are below `bound`, the first in the lowest bit.
+    /// Mask of the lanes below `bound`, the first in the lowest bit.
     fn below(self, bound: Self) -> u32;
-    /// Writes the lanes of a mask one after another to the beginning of a slice with room for all lanes; what lies behind the
-    /// last of them is lost.
+    /// Writes the lanes of a mask one after another to the beginning of a slice with room for all lanes;
+    /// what lies behind the last of them is lost.
     fn pack(self, lanes: u32, to: &mut [Self::Number]);
     /// An estimate of 1/√self, good to 2⁻¹¹ or better; of 0 it may be anything.
     fn estimate_inverse_root(self) -> Self;

@@ -6,7 +6,8 @@ use std::arch::x86_64::*;
 /// A vector of the processor's from the names of its instructions.
 macro_rules! native {
     ($vector:ty, $number:ty, $lanes:literal, $splat:ident, $load:ident, $store:ident, $add:ident, $sub:ident,
-     $mul:ident, $fused:ident, $min:ident, $max:ident, $select:expr, $below:expr, $pack:ident, $root:expr, $narrow:ident) => {
+     $mul:ident, $fused:ident, $min:ident, $max:ident, $select:expr, $below:expr, $pack:ident,
+     $root:expr, $narrow:ident) => {
         impl Vector for $vector {
             type Number = $number;
             const LANES: usize = $lanes;
@@ -130,7 +131,7 @@ unsafe fn double_512(from: *const f64, reference: f64, to: *mut f64) {
     unsafe { _mm512_storeu_pd(to, _mm512_sub_pd(_mm512_loadu_pd(from), reference)) }
 }
 
-/// By mask: the places of its bits, lowest first.
+/// Places of the bits of each mask, lowest first.
 static BITS: [[u32; 8]; 256] = bits();
 
 const fn bits() -> [[u32; 8]; 256] {
@@ -150,7 +151,7 @@ const fn bits() -> [[u32; 8]; 256] {
     table
 }
 
-/// By mask of four: the places of the halves of its doubles.
+/// Places of the halves of the doubles of each mask of four.
 static HALVES: [[u32; 8]; 16] = halves();
 
 const fn halves() -> [[u32; 8]; 16] {

@@ -1,9 +1,9 @@
 //! A curved wall: what its facets say of the surface through their corners.
 //!
-//! Around each face the surface is z = s + b·u + ½ uᵀKu over the face's plane: slope b and curvature K fit the centres and normals
-//! of the faces around it, and s = −½ tr(K M), with M the mean square of the corners' distances from the centre, brings
-//! the corners onto it. Facets lie inside a concave wall by s: images in one surface and boundary data on the other would
-//! be wrong by more than all the rest.
+//! Around each face the surface is z = s + b·u + ½ uᵀKu over the face's plane: slope b and curvature K fit
+//! the centres and normals of the faces around it, and s = −½ tr(K M), with M the mean square of the
+//! corners' distances from the centre, brings the corners onto it. Facets lie inside a concave wall by s:
+//! images in one surface and boundary data on the other would be wrong by more than all the rest.
 
 use super::patch::{Patch, half_diagonal};
 use super::{Mirror, OF_GAP};
@@ -14,7 +14,7 @@ use nalgebra::{Matrix2, SMatrix, SVector, Vector2, Vector3};
 const STEPS: usize = 4;
 /// Faces on the way to the one that holds a foot.
 const HOPS: usize = 6;
-/// How far beside its face a foot may be, over the half diagonal, and still be on the wall.
+/// Distance beside its face at which a foot is still on the wall, over the half diagonal.
 const BESIDE: f64 = 1.5;
 
 /// The surface around a face.
@@ -65,7 +65,7 @@ impl CurvedWall {
         self.facets[face].foot(point).at
     }
 
-    /// What it makes of a charge at a point.
+    /// Mirrors a charge at a point.
     pub(super) fn mirror(&self, point: &Vector3<f64>) -> Option<Mirror> {
         let mut index = self.patch.nearest(point)?;
         let mut foot = self.facets[index].foot(point);

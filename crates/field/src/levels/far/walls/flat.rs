@@ -16,7 +16,7 @@ pub(super) struct FlatWall {
     /// Corners of its extent [m].
     low: Vector3<f64>,
     high: Vector3<f64>,
-    /// Its faces, where they do not fill their extent.
+    /// Faces of the wall, where they do not fill their extent.
     patch: Option<Patch>,
     /// Deepest charge that it mirrors [m].
     depth: f64,
@@ -61,7 +61,7 @@ impl FlatWall {
         })
     }
 
-    /// What it makes of a charge at a point.
+    /// Mirrors a charge at a point.
     pub(super) fn mirror(&self, point: &Vector3<f64>) -> Option<Mirror> {
         let distance = self.offset - self.normal.dot(point);
         if !(0.0..self.depth).contains(&distance) {

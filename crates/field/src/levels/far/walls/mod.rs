@@ -1,10 +1,10 @@
 //! Image charges outside the mesh, which make the far level's boundary data smooth.
 //!
-//! The field is exact whatever they are, as long as they lie outside. A charge at distance δ from a wall is mirrored in
-//! it with the charge −q f(δ) (potential prescribed) or +q f(δ) (slope prescribed): f is 1 up to half the depth D and falls to 0
-//! at D as 1 − u³(10 − 15u + 6u²), u = 2δ/D − 1. In a conductor of mean curvature κ it is the image of the sphere of that
-//! curvature, −q/(1 − κδ) at δ/(1 − κδ) (Jackson, Classical Electrodynamics, 3rd ed., §2.2). Two walls at an angle mirror each
-//! other's images.
+//! The field is exact whatever they are, as long as they lie outside. A charge at distance δ from a wall is
+//! mirrored in it with the charge −q f(δ) (potential prescribed) or +q f(δ) (slope prescribed): f is 1 up
+//! to half the depth D and falls to 0 at D as 1 − u³(10 − 15u + 6u²), u = 2δ/D − 1. In a conductor of mean
+//! curvature κ it is the image of the sphere of that curvature, −q/(1 − κδ) at δ/(1 − κδ) (Jackson,
+//! Classical Electrodynamics, 3rd ed., §2.2). Two walls at an angle mirror each other's images.
 
 mod curved;
 mod flat;
@@ -31,7 +31,8 @@ const PARALLEL: f64 = 0.7;
 /// Walls that mirror one charge at most.
 const MOST: usize = 6;
 
-/// What a wall makes of a charge: the tangent plane, the charge's distance and the wall's curvature there.
+/// Mirror that a wall is for a charge: the tangent plane, the charge's distance and the wall's curvature
+/// there.
 #[derive(Clone, Copy, Debug)]
 struct Mirror {
     normal: Vector3<f64>,
@@ -80,7 +81,7 @@ struct Wall {
 pub(crate) struct Walls {
     /// Curved ones first.
     walls: Vec<Wall>,
-    /// By boundary face: the point of the wall where its condition holds [m].
+    /// Point of the wall at which each boundary face's condition holds [m].
     places: Vec<Vector3<f64>>,
 }
 
@@ -117,7 +118,7 @@ impl Walls {
         Self { walls, places }
     }
 
-    /// By boundary face: the point of the wall where its condition holds [m].
+    /// Point of the wall at which each boundary face's condition holds [m].
     pub(crate) fn places(&self) -> &[Vector3<f64>] {
         &self.places
     }

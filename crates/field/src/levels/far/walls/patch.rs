@@ -4,7 +4,8 @@ use crate::levels::far::mesh::BoundaryFace;
 use nalgebra::Vector3;
 use std::collections::HashMap;
 
-/// Distance from a face's centre over half its diagonal up to which a point is on it: faces need not be rectangles.
+/// Distance from a face's centre over half its diagonal up to which a point is on it: faces need not be
+/// rectangles.
 const ON_FACE: f64 = 1.2;
 
 /// Faces of one wall in buckets.
@@ -12,12 +13,12 @@ const ON_FACE: f64 = 1.2;
 pub(super) struct Patch {
     edge: f64,
     buckets: HashMap<[i64; 3], Vec<u32>>,
-    /// By face of the patch: centre and half its diagonal [m].
+    /// Centre and half the diagonal of each face of the patch [m].
     faces: Vec<(Vector3<f64>, f64)>,
 }
 
 impl Patch {
-    /// Of some faces; a search finds those up to `reach` [m] away.
+    /// Makes a patch of some faces; a search finds those up to `reach` [m] away.
     pub(super) fn new(all: &[BoundaryFace], members: &[u32], reach: f64) -> Self {
         let faces: Vec<_> = members
             .iter()
@@ -34,7 +35,8 @@ impl Patch {
         Self { edge, buckets, faces }
     }
 
-    /// Faces of the patch, by their number in it, whose centres may be as near to a point as a search reaches.
+    /// Faces of the patch, by their number in it, whose centres may be as near to a point as a search
+    /// reaches.
     pub(super) fn near(&self, point: &Vector3<f64>) -> impl Iterator<Item = usize> + '_ {
         let [x, y, z] = bucket(point, self.edge);
         let around = (-1..=1)
