@@ -2,6 +2,7 @@
 
 use super::description::Goal;
 use super::row::Row;
+use serde::Serialize;
 
 /// A point beside the best with a promise on the same problem.
 pub(super) struct Comparison<'a> {
@@ -33,10 +34,12 @@ pub(super) fn comparisons(rows: &[Row]) -> Vec<Comparison<'_>> {
 }
 
 /// Verdict on a goal.
-#[derive(Clone, Debug, PartialEq)]
+#[derive(Clone, Debug, PartialEq, Serialize)]
 pub(super) struct Verdict {
-    /// The worst ratio, and the point that has it.
-    pub(super) worst: (f64, String),
+    /// Worst ratio.
+    pub(super) ratio: f64,
+    /// Point that has the worst ratio.
+    pub(super) at: String,
     /// Number of points that miss the goal.
     pub(super) missed: usize,
     /// Number of points that were looked at.
@@ -58,8 +61,8 @@ pub(super) fn verdict(goal: &Goal, rows: &[Row]) -> Option<Verdict> {
     // How far a ratio is on the good side of the wanted one.
     let merit = |ratio: f64| good * (ratio - wanted);
     let (missed, of) = (ratios.iter().filter(|(ratio, _)| merit(*ratio) < 0.0).count(), ratios.len());
-    let worst = ratios.into_iter().min_by(|a, b| merit(a.0).total_cmp(&merit(b.0)))?;
-    Some(Verdict { worst, missed, of })
+    let (ratio, at) = ratios.into_iter().min_by(|a, b| merit(a.0).total_cmp(&merit(b.0)))?;
+    Some(Verdict { ratio, at, missed, of })
 }
 
 /// A ratio of every point that the goal is about; 0 where nothing with a promise is as good.
@@ -124,7 +127,7 @@ mod tests {
         let judged = |text: &str| verdict(&goal(text), &rows);
         let near = |found: Option<Verdict>, ratio: f64, missed: usize, of: usize| {
             let found = found.unwrap();
-            let right = (found.worst.0 / ratio - 1.0).abs() < 1e-12;
+            let right = (found.ratio / ratio - 1.0).abs() < 1e-12;
             assert!(right && found.missed == missed && found.of == of, "{found:?}");
         };
         near(judged("method = 'cut-off'\ntimes_less = 25"), 20.0, 1, 2);

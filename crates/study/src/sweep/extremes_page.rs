@@ -1,11 +1,13 @@
 //! Extremes in the report.
 
-use super::description::{Extreme, Study};
+use super::description::Study;
 use super::extremes::{EnergyRow, ExtremeRow};
 use super::page::write_both;
 use crate::StudyError;
+use crate::templates::fill;
 use amberfield_draw::{Plot, Scale, Series};
-use std::fmt::Write as _;
+use minijinja::context;
+use std::collections::BTreeMap;
 use std::path::Path;
 
 /// The part about extremes; empty without any.
@@ -14,58 +16,11 @@ pub(super) fn section(study: &Study, rows: &[ExtremeRow], energies: &[EnergyRow]
         return String::new();
     }
     let kept = rows.iter().filter(|row| row.broken.is_empty()).count();
-    let mut text = format!(
-        "## What is asked, and what it says\n\nEvery scene goes through the command, as a user would send \
-         it, and must end as it was said before: well (exit code 0), refused before anything runs (2), or \
-         stopped by the run itself as no longer sound (4), \
-         in no more than the time allowed, with the words asked for, and with no more gain and loss of \
-         energy, kinetic energy per grain or error of E than stated in the study. Gain and loss are those \
-         of kinetic energy, gravity, contacts and field together, over the largest energy that was turned \
-         over; \
-         the charge of grains and walls changes by round-off only, at most 1e-12 of the sizes of all \
-         charges, unless grains may leave. Whatever is not so breaks the verdict.\n\n**{kept} of {} scenes \
-         end as expected.**\n\n",
-        rows.len()
-    );
-    for row in rows.iter().filter(|row| !row.broken.is_empty()) {
-        let _infallible = writeln!(text, "* {} {}: {}", row.extreme, row.value, row.broken);
-    }
-    text += "\n| pushed | | expected | ended | gain | loss | charge | kinetic [J/grain] | limited | error | \
-        s | as expected |\n|---|---|---|---|---|---|---|---|---|---|---|---|\n";
-    for row in rows {
-        let small = |value: Option<f64>| value.map_or_else(|| "–".to_owned(), |value| format!("{value:.1e}"));
-        let expect = of(study, row).map_or("", |extreme| &extreme.expect);
-        let _infallible = writeln!(
-            text,
-            "| {} | {} | {expect} | {} | {} | {} | {} | {} | {} | {} | {:.1} | {} |",
-            row.extreme,
-            row.value,
-            row.ended,
-            small(row.gain),
-            small(row.loss),
-            small(row.charge_drift),
-            small(row.kinetic_j),
-            row.limited.map_or_else(|| "–".to_owned(), |limited| limited.to_string()),
-            small(row.error),
-            row.seconds,
-            if row.broken.is_empty() { "yes" } else { "**no**" }
-        );
-    }
-    text += "\n## Energy over time\n\nChange of the energy since the start, over the largest that was \
-        turned over.\n\n";
-    for (number, of_one) in drawn(rows, energies).iter().enumerate() {
-        let _infallible =
-            writeln!(text, "![{}](pictures/{}-energy-{number}.svg)\n", of_one[0].extreme, study.name);
-    }
-    text += "## What was said\n\n";
-    for row in rows.iter().filter(|row| !row.said.is_empty()) {
-        let _infallible = writeln!(text, "* {} {}: `{}`", row.extreme, row.value, row.said);
-    }
-    text + "\n"
-}
-
-fn of<'s>(study: &'s Study, row: &ExtremeRow) -> Option<&'s Extreme> {
-    study.extremes.iter().find(|extreme| extreme.name == row.extreme)
+    let expected: BTreeMap<_, _> =
+        study.extremes.iter().map(|extreme| (&extreme.name, &extreme.expect)).collect();
+    let drawn: Vec<_> = drawn(rows, energies).iter().map(|of_one| &of_one[0].extreme).collect();
+    let values = context! { kept, rows, expected, drawn, name => study.name };
+    fill(include_str!("../../templates/sweep/extremes.md"), values)
 }
 
 /// Energies that there are to draw: those of extremes that ended well with an energy that changes.

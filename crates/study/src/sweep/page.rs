@@ -1,7 +1,7 @@
 //! The report: tables, plots and conclusions, from rows only.
 
 use super::comparison::{Comparison, Verdict, comparisons, verdict};
-use super::description::Study;
+use super::description::{Goal, Study};
 use super::extremes::{EnergyRow, ExtremeRow};
 use super::extremes_page;
 use super::front::front;
@@ -9,8 +9,10 @@ use super::motion::MotionRow;
 use super::motion_page;
 use super::row::Row;
 use crate::StudyError;
+use crate::templates::fill;
 use amberfield_draw::{Plot, Scale, Series, write_plot};
-use std::fmt::Write as _;
+use minijinja::context;
+use serde::Serialize;
 use std::path::{Path, PathBuf};
 
 /// Factor within which the a-priori model is said to be right.
@@ -73,7 +75,7 @@ pub fn write_report(
         page += &failures(rows, motions);
     }
     if !rows.is_empty() {
-        page += BIAS;
+        page += &fill(include_str!("../../templates/sweep/bias.md"), context! {});
     }
     let path = folder.join(format!("{name}.md"));
     std::fs::write(&path, page).map_err(|source| StudyError::Write { path: path.clone(), source })?;
@@ -103,108 +105,116 @@ fn setting(study: &Study, results: &Results, repeat: &str) -> String {
     if measured.is_empty() {
         return measured;
     }
-    let mut text = format!("Measured {measured}. ");
-    if let Some(row) = rows.first() {
-        let _infallible = write!(
-            text,
-            "Every point is first compared with the truth at every grain, then timed {} times, all points \
-             of a problem taking turns, \
-             each turn at least {} s long; times are medians. Errors are the root mean square of |ΔE| over \
-             the grains, relative to the larger of E_rms and q_rms n^{{2/3}}/(4πε). \
-             All rows, with the command that repeats each, are in [data](data/{}-{}.csv). ",
-            study.passes, study.least_s, row.date, study.name,
-        );
+    let template = include_str!("../../templates/sweep/setting.md");
+    let values = context! {
+        measured,
+        repeat,
+        points => !rows.is_empty(),
+        date => rows.first().map(|row| &row.date),
+        name => study.name,
+        passes => study.passes,
+        least_s => study.least_s,
+    };
+    fill(template, values)
+}
+
+/// Goal with what became of it, as the template wants it.
+#[derive(Serialize)]
+struct JudgedGoal<'a> {
+    text: &'a str,
+    verdict: Option<Verdict>,
+    /// What was tried, where the goal is missed.
+    tried: Option<&'a str>,
+}
+
+impl<'a> JudgedGoal<'a> {
+    fn new(goal: &'a Goal, rows: &[Row]) -> Self {
+        let verdict = verdict(goal, rows);
+        let missed = verdict.as_ref().is_some_and(|verdict| verdict.missed > 0);
+        Self { text: &goal.text, verdict, tried: goal.tried.as_deref().filter(|_| missed) }
     }
-    let _infallible = write!(text, "The whole study is repeated by\n\n    {repeat}\n\n");
-    text
+}
+
+/// Point without a promise beside the best with one, as the template wants it.
+#[derive(Serialize)]
+struct ComparedPoint<'a> {
+    problem: &'a str,
+    method: &'a str,
+    value: &'a str,
+    error: f64,
+    ns: f64,
+    in_time: Option<f64>,
+    times_less: Option<f64>,
+    as_exact: Option<f64>,
+    times_as_fast: Option<f64>,
+}
+
+impl<'a> ComparedPoint<'a> {
+    fn new(Comparison { row, error, ns, in_time, as_exact }: Comparison<'a>) -> Self {
+        Self {
+            problem: &row.problem,
+            method: &row.method,
+            value: &row.value,
+            error,
+            ns,
+            in_time,
+            times_less: in_time.map(|best| error / best),
+            as_exact,
+            times_as_fast: as_exact.map(|other| ns / other),
+        }
+    }
 }
 
 /// Conclusions from the rows, in words.
 fn conclusions(study: &Study, rows: &[Row]) -> String {
-    let mut text = "## What it says\n\n".to_owned();
-    for goal in &study.goals {
-        let said = match verdict(goal, rows) {
-            None => "not measured".to_owned(),
-            Some(Verdict { worst: (ratio, at), missed, of }) => {
-                let word = if missed == 0 {
-                    "**met**".to_owned()
-                } else {
-                    format!("**missed** at {missed} of {of}")
-                };
-                let tried = goal.tried.as_deref().filter(|_| missed > 0).map(|tried| format!(". {tried}"));
-                format!("{word} (worst of {of}: {}, {at}){}", rounded(ratio), tried.unwrap_or_default())
-            }
-        };
-        let _infallible = writeln!(text, "* {}: {said}.", goal.text);
-    }
-    let bound = rows.iter().filter(|row| row.bound().is_some() && row.error.is_some());
-    let (broken, all) = (bound.clone().filter(|row| row.breaks_its_bound()).count(), bound.count());
-    let _infallible =
-        writeln!(text, "* Of {all} points with a promised tolerance or a bound, {} keep it.\n", all - broken);
-    text += "What methods without a promised error, and other programs, reach; the smallest error that p3m \
-        reaches in the same time, and p3m's time for the same error:\n\n\
-             | problem | method | | error | ns/grain | p3m in that time | times less | p3m for that error \
-             [ns/grain] | times as fast |\n|---|---|---|---|---|---|---|---|---|\n";
-    for Comparison { row, error, ns, in_time, as_exact } in
-        rows.chunk_by(|a, b| a.problem == b.problem).flat_map(comparisons)
-    {
-        let none = || ("–".to_owned(), "–".to_owned());
-        let (best, less) = in_time.map_or_else(none, |best| {
-            (format!("{best:.1e}"), if best > 0.0 { rounded(error / best) } else { "∞".to_owned() })
-        });
-        let (time, faster) = as_exact.map_or_else(none, |other| (format!("{other:.0}"), rounded(ns / other)));
-        let Row { problem, method, value, .. } = row;
-        let _infallible = writeln!(
-            text,
-            "| {problem} | {method} | {value} | {error:.1e} | {ns:.0} | {best} | {less} | {time} | {faster} |"
-        );
-    }
-    text + "\n"
+    let bounded = rows.iter().filter(|row| row.bound().is_some() && row.error.is_some());
+    let kept = bounded.clone().filter(|row| !row.breaks_its_bound()).count();
+    let goals: Vec<_> = study.goals.iter().map(|goal| JudgedGoal::new(goal, rows)).collect();
+    let of_problems = rows.chunk_by(|a, b| a.problem == b.problem);
+    let points: Vec<_> = of_problems.flat_map(comparisons).map(ComparedPoint::new).collect();
+    let template = include_str!("../../templates/sweep/conclusions.md");
+    fill(template, context! { goals, points, kept, bounded => bounded.count() })
 }
 
-/// A ratio as a sentence gives it.
-fn rounded(ratio: f64) -> String {
-    if ratio < 10.0 {
-        return format!("{ratio:.1}");
-    }
-    let digits = 10_f64.powf(ratio.log10().floor() - 1.0);
-    format!("{:.0}", (ratio / digits).round() * digits)
+/// Point with what follows from its row, as the template wants it.
+#[derive(Serialize)]
+struct ShownPoint<'a> {
+    row: &'a Row,
+    ns_per_grain: Option<f64>,
+    /// Spread of the turns over the time [%].
+    spread_percent: Option<f64>,
+    megabytes: Option<f64>,
+    on_front: bool,
 }
 
+/// Section about a problem.
 fn section(rows: &[Row], picture: &str) -> String {
     let Some(first) = rows.first() else { return String::new() };
-    let plot =
-        if is_drawn(rows) { format!("![error and time](pictures/{picture}.svg)\n\n") } else { String::new() };
-    let mut text = format!(
-        "## {}\n\n{} grains; truth: {}.\n\n{plot}| method | | error | p99 | worst | bias | ns/grain | \
-         spread [%] | pairs/grain | MB | front |\n|---|---|---|---|---|---|---|---|---|---|---|\n",
-        first.problem, first.grains, first.truth
-    );
     let points: Vec<(f64, f64)> =
         rows.iter().map(|row| (row.error.unwrap_or(f64::NAN), row.seconds.unwrap_or(f64::NAN))).collect();
     let best = front(&points);
-    for (index, row) in rows.iter().enumerate().filter(|(_, row)| row.failure.is_empty()) {
-        let small = |value: Option<f64>| value.map_or_else(|| "–".to_owned(), |value| format!("{value:.1e}"));
-        let plain =
-            |value: Option<f64>, digits| value.map_or_else(|| "–".to_owned(), |v| format!("{v:.digits$}"));
+    let shown = |index: usize| {
+        let row = &rows[index];
         let spread = row.seconds.zip(row.seconds_least.zip(row.seconds_most));
-        let _infallible = writeln!(
-            text,
-            "| {} | {} | {} | {} | {} | {} | {} | {} | {} | {} | {} |",
-            row.method,
-            row.value,
-            small(row.error),
-            small(row.p99),
-            small(row.worst),
-            small(row.bias),
-            plain(row.ns_per_grain(), 0),
-            plain(spread.map(|(middle, (least, most))| 100.0 * (most - least) / middle), 0),
-            plain(row.pairs_per_grain, 0),
-            plain(row.memory_bytes.map(|bytes| bytes as f64 / 1e6), 1),
-            if best.contains(&index) { "●" } else { "" },
-        );
-    }
-    text + "\n"
+        ShownPoint {
+            row,
+            ns_per_grain: row.ns_per_grain(),
+            spread_percent: spread.map(|(middle, (least, most))| 100.0 * (most - least) / middle),
+            megabytes: row.memory_bytes.map(|bytes| bytes as f64 / 1e6),
+            on_front: best.contains(&index),
+        }
+    };
+    let sound = (0..rows.len()).filter(|&index| rows[index].failure.is_empty());
+    let points: Vec<_> = sound.map(shown).collect();
+    let values = context! {
+        problem => first.problem,
+        grains => first.grains,
+        truth => first.truth,
+        drawn => is_drawn(rows),
+        picture,
+        points,
+    };
+    fill(include_str!("../../templates/sweep/problem.md"), values)
 }
 
 /// Predicted and measured error.
@@ -219,54 +229,51 @@ fn model(rows: &[Row], picture: &str) -> String {
     }
     let within = points.iter().filter(|(model, error)| (error / model).max(model / error) <= WITHIN).count();
     let share = within as f64 / points.len() as f64;
-    format!(
-        "## The error model\n\n![predicted and measured error](pictures/{picture}.svg)\n\nThe model \
-         (docs/equations.md, Error model) is within a factor {WITHIN} of the measured error at {within} of \
-         {} points ({:.0} %); \
-         goal {:.0} %: {}.\n\n",
-        points.len(),
-        100.0 * share,
-        100.0 * SHARE,
-        if share >= SHARE { "**met**" } else { "**missed**" }
-    )
+    let values = context! {
+        picture,
+        factor => WITHIN,
+        within,
+        points => points.len(),
+        percent => 100.0 * share,
+        goal_percent => 100.0 * SHARE,
+        met => share >= SHARE,
+    };
+    fill(include_str!("../../templates/sweep/model.md"), values)
+}
+
+/// Point or run that failed, or whose error is above its bound.
+#[derive(Serialize)]
+struct FailedPoint<'a> {
+    problem: &'a str,
+    method: &'a str,
+    value: &'a str,
+    reason: String,
 }
 
 fn failures(rows: &[Row], motions: &[MotionRow]) -> String {
-    let mut text = "## What failed\n\n".to_owned();
-    let broken = rows.iter().filter(|row| row.breaks_its_bound()).map(|row| {
-        let number = |value: Option<f64>| value.unwrap_or(f64::NAN);
-        (row, format!("error {:.2e} above {:e}", number(row.error), number(row.bound())))
+    let number = |value: Option<f64>| value.unwrap_or(f64::NAN);
+    let failed = rows.iter().map(|row| FailedPoint {
+        problem: &row.problem,
+        method: &row.method,
+        value: &row.value,
+        reason: row.failure.clone(),
     });
-    let broken = broken.map(|(row, reason)| (&row.problem, &row.method, &row.value, reason));
-    let failed = rows.iter().map(|row| (&row.problem, &row.method, &row.value, row.failure.clone()));
-    let of_motions = motions.iter().map(|row| (&row.problem, &row.method, &row.value, row.failure.clone()));
-    let all: Vec<_> =
-        failed.chain(of_motions).filter(|(.., reason)| !reason.is_empty()).chain(broken).collect();
-    if all.is_empty() {
-        text += "Nothing.\n";
-    }
-    for (problem, method, value, reason) in all {
-        let _infallible = writeln!(text, "* {problem}, {method} {value}: {reason}");
-    }
-    text
+    let of_motions = motions.iter().map(|row| FailedPoint {
+        problem: &row.problem,
+        method: &row.method,
+        value: &row.value,
+        reason: row.failure.clone(),
+    });
+    let broken = rows.iter().filter(|row| row.breaks_its_bound()).map(|row| FailedPoint {
+        problem: &row.problem,
+        method: &row.method,
+        value: &row.value,
+        reason: format!("error {:.2e} above {:e}", number(row.error), number(row.bound())),
+    });
+    let failures: Vec<_> =
+        failed.chain(of_motions).filter(|point| !point.reason.is_empty()).chain(broken).collect();
+    fill(include_str!("../../templates/sweep/failures.md"), context! { failures })
 }
-
-/// Section of the page on what may favour one method over another.
-const BIAS: &str = "\n## Bias\n\n\
-    * Parameters: p3m has those that it chose, and timed, on this machine for these charges and the \
-    tolerance asked for. Methods without a promise have what the study gives them, swept. Other programs \
-    have the fastest setting of a sweep whose measured error is \
-    within the tolerance.\n\
-    * Time: p3m sorts the grains anew at every evaluation, and that counts. LAMMPS keeps a neighbour list \
-    without a skin, which no run could; building it does not count. Programs from a package index are built \
-    for any processor of the kind; ours picks its vector instructions when it runs.\n\
-    * Turns: all our points of a problem take turns, so that a busy machine is busy for all; other programs \
-    time themselves before that. The spread says how much the machine was disturbed.\n\
-    * Truth: where there are too many grains for the direct sum it is p3m itself with a far smaller \
-    tolerance and other parameters, which tests compare with the direct sum. Errors near that tolerance are \
-    not told apart from it.\n\
-    * Charges: random, without correlation, unless a problem says otherwise. A bed whose charges shield \
-    each other has a smaller E_rms, and relative errors of all methods grow alike.\n";
 
 /// Whether there is anything to draw.
 fn is_drawn(rows: &[Row]) -> bool {
