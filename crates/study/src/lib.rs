@@ -6,6 +6,6 @@
 mod error;
 pub mod peers;
 pub mod sweep;
-mod templates;
+pub mod templates;
 
 pub use error::StudyError;

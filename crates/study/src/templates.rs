@@ -13,7 +13,8 @@ use minijinja::{Environment, UndefinedBehavior, Value};
 ///
 /// # Panics
 /// On a template that names what is not given, which is our own bug.
-pub(crate) fn fill(template: &str, context: Value) -> String {
+#[must_use]
+pub fn fill(template: &str, context: Value) -> String {
     let mut environment = Environment::new();
     environment.set_trim_blocks(true);
     environment.set_lstrip_blocks(true);

@@ -1,4 +1,5 @@
 //! The recorded pages of studies are those of their recorded rows.
+#![expect(clippy::unwrap_used, reason = "helpers of tests fail as tests do")]
 
 use amberfield_study::sweep::{Results, Study, write_report};
 use serde::de::DeserializeOwned;

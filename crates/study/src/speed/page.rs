@@ -4,7 +4,9 @@ use crate::machine::Machine;
 use crate::sections::{charging, coupling, dem, field, gas, kernel, open, rates, scaling};
 use crate::store::Store;
 use amberfield_draw::{Plot, Scale, Series, write_plot};
+use amberfield_study::templates::fill;
 use anyhow::{Context as _, Result};
+use minijinja::context;
 use std::fmt;
 
 /// A Markdown table.
@@ -32,15 +34,6 @@ pub(crate) fn figure(value: Option<f64>, decimals: usize) -> String {
     value.map_or_else(|| "–".to_owned(), |value| format!("{value:.decimals$}"))
 }
 
-/// Whether a goal is met, as a word.
-pub(crate) fn verdict(met: Option<bool>) -> &'static str {
-    match met {
-        Some(true) => "**met**",
-        Some(false) => "**missed**",
-        None => "not measured",
-    }
-}
-
 /// Draws a picture of the report unless there is nothing to draw.
 pub(crate) fn plot(store: &Store, name: &str, title: &str, axes: [&str; 2], all: &[Series]) -> Result<()> {
     let series: Vec<Series> = all.iter().filter(|series| !series.points.is_empty()).cloned().collect();
@@ -65,16 +58,8 @@ pub(crate) fn write(store: &Store) -> Result<()> {
         charging::report(store)?,
         gas::report(store)?,
     ];
-    let mut page = "# How fast it is\n\nThis page is written by `cargo xtask bench`; its rows are in \
-        [data](data). Machines differ: only ratios \
-                    of the same run mean something.\n\n"
-        .to_owned();
-    if let Some((date, machines)) = store.newest::<Machine>("machine")? {
-        for Machine { cpu, cores, vectors, peers } in machines {
-            let peers = if peers.is_empty() { "no peers in the last run".to_owned() } else { peers };
-            page += &format!("Machine of {date}: {cpu}, {cores} cores, vectors {vectors}; {peers}.\n\n");
-        }
-    }
+    let (date, machines) = store.newest::<Machine>("machine")?.unwrap_or_default();
+    let mut page = fill(include_str!("../../templates/speed/page.md"), context! { date, machines });
     page += &parts.into_iter().flatten().collect::<Vec<_>>().join("\n");
     let notes = store.path("notes.md");
     if notes.exists() {

@@ -123,7 +123,7 @@ fn setting(study: &Study, results: &Results, repeat: &str) -> String {
 struct JudgedGoal<'a> {
     text: &'a str,
     verdict: Option<Verdict>,
-    /// What was tried, where the goal is missed.
+    /// Attempts that did not reach the goal, where it is missed.
     tried: Option<&'a str>,
 }
 

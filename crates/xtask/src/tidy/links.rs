@@ -8,7 +8,7 @@ const FOLDERS: [&str; 6] = ["cases/", "crates/", "docker/", "docs/", "openfoam-s
 
 pub(super) fn problems(tree: &Tree) -> Vec<Problem> {
     let mut problems = Vec::new();
-    for (path, text) in tree.files().filter(|(path, _)| path.ends_with(".md")) {
+    for (path, text) in tree.files().filter(|(path, _)| path.ends_with(".md") && !is_template(path)) {
         let folder = path.rsplit_once('/').map_or("", |(folder, _)| folder);
         for (line, content) in (1..).zip(text.lines()) {
             let linked = links(content).map(|link| (link, resolved(folder, link)));
@@ -22,6 +22,11 @@ pub(super) fn problems(tree: &Tree) -> Vec<Problem> {
         }
     }
     problems
+}
+
+/// Whether a document is a template, whose links hold in the folder of the page that is made from it.
+fn is_template(path: &str) -> bool {
+    path.contains("/templates/")
 }
 
 /// Targets of the line's links into this repository, without their anchors.

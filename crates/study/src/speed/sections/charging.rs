@@ -2,12 +2,14 @@
 
 use crate::Context;
 use crate::beds;
-use crate::page::{Table, figure, verdict};
+use crate::page::{Table, figure};
 use crate::store::Store;
 use crate::timing::{median, on_threads};
 use amberfield_core::{ChargeTransfer, CouplingInterval, FieldSettings, Tuning};
 use amberfield_dem::{FieldStageSetup, Setup, Simulation};
+use amberfield_study::templates::fill;
 use anyhow::Result;
+use minijinja::context;
 use serde::{Deserialize, Serialize};
 use std::time::Instant;
 
@@ -127,14 +129,16 @@ pub(crate) fn report(store: &Store) -> Result<Option<String>> {
             figure(Some(100.0 * with.ns_of_charging / without.ns_per_grain_step), 1),
         ]);
     }
-    Ok(Some(format!(
-        "## Charge transfer\n\nMeasured {date}, `cargo xtask bench charging`: {} grains of two work \
-         functions in a periodic box at a fraction of {FRACTION}, the field \
-         evaluated every {INTERVAL} steps and its time left out; both runs take turns, medians of \
-         {ROUNDS}.\n\n{table}\n* At most {:.0} % more per step: {} ({} %).\n",
-        rows[0].grains,
-        100.0 * GOAL,
-        verdict(Some(worst <= GOAL)),
-        figure(Some(100.0 * worst), 1),
-    )))
+    let values = context! {
+        date,
+        grains => rows[0].grains,
+        fraction => FRACTION,
+        interval => INTERVAL,
+        rounds => ROUNDS,
+        table => table.to_string(),
+        goal => 100.0 * GOAL,
+        met => worst <= GOAL,
+        worst => 100.0 * worst,
+    };
+    Ok(Some(fill(include_str!("../../../templates/speed/charging.md"), values)))
 }

@@ -3,7 +3,7 @@
 use super::change_file;
 use crate::Context;
 use crate::beds::{self, Cloud};
-use crate::page::{Table, figure, verdict};
+use crate::page::{Table, figure};
 use crate::store::Store;
 use crate::timing::{median, median_seconds};
 use amberfield_core::{
@@ -15,7 +15,9 @@ use amberfield_coupling::{
 use amberfield_dem::{FieldStageSetup, Simulation};
 use amberfield_field::far::{Connect, FarField, FarRequest, FarSolver, FarValues};
 use amberfield_field::{ElectricField, FieldValues, Wanted};
+use amberfield_study::templates::fill;
 use anyhow::Result;
+use minijinja::context;
 use serde::{Deserialize, Serialize};
 use std::io::{Read as _, Write as _};
 use std::os::unix::net::UnixStream;
@@ -340,34 +342,27 @@ pub(crate) fn report(store: &Store) -> Result<Option<String>> {
     let [empty, full] = ["exchange without payload", "exchange"].map(share);
     let socket = over("the same bytes through a Unix socket", "exchange");
     let step = over("far-field step", "bare Poisson solve");
-    Ok(Some(format!(
-        "## Coupling\n\nMeasured {date}, `cargo xtask bench coupling`: {} grains, {} cells, tolerance 1e-2, \
-         two processes on this machine. An exchange is charges and boundary data written, \
-         fields read, with an answer at once.\n\n{table}\n\
-         * An exchange takes under {:.0} % of a field evaluation without payload: {} ({} %); under {:.0} % \
-         with it: {} ({} %).\n\
-         * A Unix socket takes {} times as long for the same bytes.\n\
-         * With `overlap` a step of 100 000 grains at a fraction of 0.1, the field anew every ten steps, \
-         takes {} of the time that it takes when the solver is waited for.\n\
-         * Mapping: {} million grains a second on a core, goal {:.0}: {}.\n\
-         * The far-field step (density, solve, gradient, both ways) takes {} times the bare solve, goal \
-         {STEP}: {}; on two ranks {} times, with kolehmainen {} times.\n",
-        rows[0].grains,
-        rows[0].cells,
-        100.0 * GOALS[0],
-        verdict(empty.map(|share| share < GOALS[0])),
-        figure(empty.map(|share| 100.0 * share), 3),
-        100.0 * GOALS[1],
-        verdict(full.map(|share| share < GOALS[1])),
-        figure(full.map(|share| 100.0 * share), 2),
-        figure(socket, 2),
-        figure(over("step, solver beside", "step, solver waited for"), 2),
-        figure(rate.map(|rate| 1e-6 * rate), 1),
-        1e-6 * MAPPED,
-        verdict(rate.map(|rate| rate >= MAPPED)),
-        figure(step, 2),
-        verdict(step.map(|step| step <= STEP)),
-        figure(over("far-field step, 2 ranks", "bare Poisson solve, 2 ranks"), 2),
-        figure(over("far-field step, kolehmainen", "bare Poisson solve, kolehmainen"), 2),
-    )))
+    let values = context! {
+        date,
+        grains => rows[0].grains,
+        cells => rows[0].cells,
+        table => table.to_string(),
+        empty_goal => 100.0 * GOALS[0],
+        empty_met => empty.map(|share| share < GOALS[0]),
+        empty => empty.map(|share| 100.0 * share),
+        full_goal => 100.0 * GOALS[1],
+        full_met => full.map(|share| share < GOALS[1]),
+        full => full.map(|share| 100.0 * share),
+        socket,
+        beside => over("step, solver beside", "step, solver waited for"),
+        rate => rate.map(|rate| 1e-6 * rate),
+        mapped => 1e-6 * MAPPED,
+        mapped_met => rate.map(|rate| rate >= MAPPED),
+        step,
+        step_goal => STEP,
+        step_met => step.map(|step| step <= STEP),
+        two_ranks => over("far-field step, 2 ranks", "bare Poisson solve, 2 ranks"),
+        kolehmainen => over("far-field step, kolehmainen", "bare Poisson solve, kolehmainen"),
+    };
+    Ok(Some(fill(include_str!("../../../templates/speed/coupling.md"), values)))
 }

@@ -2,12 +2,14 @@
 
 use crate::Context;
 use crate::beds::{self, DENSITY, RADIUS, STEP_S};
-use crate::page::{Table, figure, verdict};
+use crate::page::{Table, figure};
 use crate::store::Store;
 use crate::timing::{median, on_threads};
 use amberfield_dem::{Setup, Simulation};
 use amberfield_study::peers::{Script, fastest};
+use amberfield_study::templates::fill;
 use anyhow::Result;
+use minijinja::context;
 use serde::{Deserialize, Serialize};
 use std::time::Instant;
 
@@ -157,14 +159,11 @@ pub(crate) fn report(store: &Store) -> Result<Option<String>> {
             ours.settings.clone(),
         ]);
     }
-    Ok(Some(format!(
-        "## DEM step\n\nMeasured {date}, `cargo xtask bench --peers dem`. Hertz contacts with tangential \
-         history in a periodic box; both programs start \
-         from the same positions and velocities with the same step; the peer has its best skin of four, and \
-         as many ranks as we have \
-         threads. Times of the stages are summed over all threads' wall clock.\n\n{table}\n* As fast as \
-         LAMMPS everywhere: {} (least ratio {}).\n",
-        verdict(least.is_finite().then_some(least >= 1.0)),
-        figure(least.is_finite().then_some(least), 2),
-    )))
+    let values = context! {
+        date,
+        table => table.to_string(),
+        met => least.is_finite().then_some(least >= 1.0),
+        least => least.is_finite().then_some(least),
+    };
+    Ok(Some(fill(include_str!("../../../templates/speed/dem.md"), values)))
 }

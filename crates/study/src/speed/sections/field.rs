@@ -2,14 +2,16 @@
 
 use crate::Context;
 use crate::beds::{self, Cloud, RADIUS, relative_error};
-use crate::page::{Table, figure, verdict};
+use crate::page::{Table, figure};
 use crate::store::Store;
 use crate::timing::{median_seconds, on_threads};
 use amberfield_core::{Boundary, FieldSettings, Method, Tuning, Vector3};
 use amberfield_draw::Series;
 use amberfield_field::{ElectricField, FieldValues, Wanted};
 use amberfield_study::peers::{SHARES, Script, fastest, pppm_sweep};
+use amberfield_study::templates::fill;
 use anyhow::Result;
+use minijinja::context;
 use serde::{Deserialize, Serialize};
 
 const NAME: &str = "field";
@@ -265,31 +267,37 @@ pub(crate) fn report(store: &Store) -> Result<Option<String>> {
         ]);
     }
     plots(store, &rows)?;
-    let faces = faces_line(&rows);
+    let faces = dearest_faces(&rows);
     let goal = least.is_finite().then_some(least > 1.0);
     let twice = least.is_finite().then_some(least > 2.0);
-    Ok(Some(format!(
-        "## Field in a periodic box\n\nMeasured {date}, one core, `cargo xtask bench --peers field`. ±q at \
-         random on spheres of a relaxed bed. Our time \
-         includes sorting the grains, every time. The peer is the fastest of a sweep over cut-off, order, \
-         asked accuracy and way of differentiation whose measured \
-         error is at most the tolerance; its time stands once with the neighbour list kept, which a run can \
-         do for some steps, and once with the \
-         list built anew.\n\n{table}\n![cost against error](pictures/field.svg)\n\n* Faster than pppm at \
-         every error, its list kept: {} (least ratio {}); list built anew: {} (least ratio {}).\n\
-         * Twice as fast, its list kept: {}.\n{faces}",
-        verdict(goal),
-        figure(least.is_finite().then_some(least), 2),
-        verdict(least_with_list.is_finite().then_some(least_with_list > 1.0)),
-        figure(least_with_list.is_finite().then_some(least_with_list), 2),
-        verdict(twice),
-    )))
+    let values = context! {
+        date,
+        table => table.to_string(),
+        kept_met => goal,
+        kept => least.is_finite().then_some(least),
+        anew_met => least_with_list.is_finite().then_some(least_with_list > 1.0),
+        anew => least_with_list.is_finite().then_some(least_with_list),
+        twice,
+        goal => FACES_GOAL,
+        worst => faces,
+    };
+    Ok(Some(fill(include_str!("../../../templates/speed/field.md"), values)))
 }
 
 /// Line of the page about the cost of closed boxes over periodic ones.
-fn faces_line(rows: &[Row]) -> String {
+/// Closed box that costs most beside the periodic one, as the template wants it.
+#[derive(Serialize)]
+struct Dearest {
+    met: bool,
+    faces: String,
+    grains: usize,
+    tolerance: String,
+    ratio: f64,
+}
+
+fn dearest_faces(rows: &[Row]) -> Option<Dearest> {
     let periodic = rows.iter().filter(|row| row.program == OURS && row.faces == "periodic");
-    let worst = rows
+    let (ratio, row) = rows
         .iter()
         .filter(|row| row.faces != "periodic")
         .filter_map(|row| {
@@ -298,16 +306,13 @@ fn faces_line(rows: &[Row]) -> String {
             };
             Some((row.ns_per_grain / periodic.clone().find(same)?.ns_per_grain, row))
         })
-        .max_by(|a, b| a.0.total_cmp(&b.0));
-    worst.map_or_else(String::new, |(ratio, row)| {
-        format!(
-            "* Closed boxes at most {FACES_GOAL} times the periodic one: {} (worst: {} box, {} grains, \
-             tolerance {:e}: {ratio:.2}).\n",
-            verdict(Some(ratio <= FACES_GOAL)),
-            row.faces,
-            row.grains,
-            row.tolerance
-        )
+        .max_by(|a, b| a.0.total_cmp(&b.0))?;
+    Some(Dearest {
+        met: ratio <= FACES_GOAL,
+        faces: row.faces.clone(),
+        grains: row.grains,
+        tolerance: format!("{:e}", row.tolerance),
+        ratio,
     })
 }
 

@@ -3,14 +3,16 @@
 
 use super::change_file;
 use crate::Context;
-use crate::page::{Table, figure, verdict};
+use crate::page::{Table, figure};
 use crate::store::Store;
 use amberfield_core::Particles;
 use amberfield_coupling::{Announced, SolverSettings, foam_command, solver_program};
 use amberfield_dem::{GasSetup, Setup, Simulation};
 use amberfield_gas::{ConnectFlow, ExchangeSeconds};
 use amberfield_scene::{Purpose, read_scene};
+use amberfield_study::templates::fill;
 use anyhow::{Context as _, Result, ensure};
+use minijinja::context;
 use serde::{Deserialize, Serialize};
 use std::path::{Path, PathBuf};
 use std::process::{Command, Stdio};
@@ -275,27 +277,20 @@ pub(crate) fn report(store: &Store) -> Result<Option<String>> {
     let apart = apart.fold(0.0, f64::max);
     let mean =
         |program| of(program).map(|row| row.pressure_pa).sum::<f64>() / of(program).count().max(1) as f64;
-    let percent = |part: fn(&Row) -> Option<f64>| figure(share(part).map(|share| 100.0 * share), 1);
-    Ok(Some(format!(
-        "## Gas\n\nMeasured {date}, `cargo xtask bench gas`: Goldschmidt's bed, 24 750 grains, 5400 cells, \
-         from the lattice of grains of OpenFOAM's example for DPMFoam, two threads and one process of \
-         amberPimpleFoam for ours, one process for DPMFoam. \
-         DPMFoam's step is its example's, 2e-5 s; its contacts are a soft spring, ours Hertz's with the \
-         same modulus.\n\n{table}\n\
-         * DPMFoam takes {} times as long for a simulated second (its processor time over our wall clock).\n\
-         * Mean heights differ by {:.1} % at most. Pressure drops, mean of the table: {:.0} Pa, DPMFoam \
-         {:.0} Pa; DPMFoam's jumps, a grain's volume being all in the cell of its centre there.\n\
-         * Of our time grains take {} %, the flow {} %, mapping {} %, the way there and back {} %, goal \
-         {:.0}: {}.\n",
-        figure(ratio, 1),
-        100.0 * apart,
-        mean("amberfield"),
-        mean("DPMFoam"),
-        percent(|row| row.grains_s),
-        percent(|row| row.flow_s),
-        percent(|row| row.mapping_s),
-        percent(|row| row.wire_s),
-        100.0 * GOAL,
-        verdict(share(|row| row.wire_s).map(|share| share < GOAL)),
-    )))
+    let percent = |part: fn(&Row) -> Option<f64>| share(part).map(|share| 100.0 * share);
+    let values = context! {
+        date,
+        table => table.to_string(),
+        ratio,
+        apart => 100.0 * apart,
+        our_pressure => mean("amberfield"),
+        their_pressure => mean("DPMFoam"),
+        grains => percent(|row| row.grains_s),
+        flow => percent(|row| row.flow_s),
+        mapping => percent(|row| row.mapping_s),
+        wire => percent(|row| row.wire_s),
+        goal => 100.0 * GOAL,
+        met => share(|row| row.wire_s).map(|share| share < GOAL),
+    };
+    Ok(Some(fill(include_str!("../../../templates/speed/gas.md"), values)))
 }

@@ -8,7 +8,9 @@ use crate::store::Store;
 use crate::timing::{median, on_threads};
 use amberfield_core::{Boundary, FieldSettings, Method};
 use amberfield_field::{ElectricField, FieldValues, Wanted};
+use amberfield_study::templates::fill;
 use anyhow::Result;
+use minijinja::context;
 use serde::{Deserialize, Serialize};
 
 const NAME: &str = "kernel";
@@ -113,15 +115,14 @@ pub(crate) fn report(store: &Store) -> Result<Option<String>> {
     }
     let peak = |index: usize| peaks.get(index).map(|row| row.rate);
     let direct = sums.first().map(|row| row.rate * DIRECT_FLOPS);
-    Ok(Some(format!(
-        "## Kernels\n\nMeasured {date}, one core, `cargo xtask bench kernel`, {} grains. Pairs of the near \
-         level are those within the cut-off: the kernel looks \
-         at more. Independent fused multiply-adds reach {} GFLOP/s in double and {} in single precision \
-         here; the direct sum, {DIRECT_FLOPS} \
-         operations a pair, does {} GFLOP/s.\n\n{table}\n",
-        sums.first().map_or(0, |row| row.grains),
-        figure(peak(0), 1),
-        figure(peak(1), 1),
-        figure(direct, 1),
-    )))
+    let values = context! {
+        date,
+        grains => sums.first().map_or(0, |row| row.grains),
+        double_peak => peak(0),
+        single_peak => peak(1),
+        flops => DIRECT_FLOPS,
+        direct,
+        table => table.to_string(),
+    };
+    Ok(Some(fill(include_str!("../../../templates/speed/kernel.md"), values)))
 }

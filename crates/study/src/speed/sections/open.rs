@@ -2,14 +2,16 @@
 
 use crate::Context;
 use crate::beds;
-use crate::page::{Table, figure, verdict};
+use crate::page::{Table, figure};
 use crate::sections::field::{self, OURS};
 use crate::store::Store;
 use crate::timing::on_threads;
 use amberfield_core::{Boundary, FieldSettings, Method};
 use amberfield_draw::Series;
 use amberfield_study::peers::{Script, fastest};
+use amberfield_study::templates::fill;
 use anyhow::Result;
+use minijinja::context;
 use serde::{Deserialize, Serialize};
 
 const NAME: &str = "open";
@@ -125,15 +127,14 @@ pub(crate) fn report(store: &Store) -> Result<Option<String>> {
     crate::page::plot(store, "open", "Open space, 100 000 grains", axes, &[series(OURS), series(PEER)])?;
     let direct =
         if slower_than_direct.is_empty() { "none".to_owned() } else { slower_than_direct.join(", ") };
-    Ok(Some(format!(
-        "## Field in open space\n\nMeasured {date}, one core, `cargo xtask bench --peers open`. The same \
-         clouds at a volume fraction of {FRACTION} without \
-         walls. FMM3D's precision is not its error of E: the peer is its fastest run whose measured error \
-         is at most the tolerance.\n\n{table}\n\
-         ![cost against error in open space](pictures/open.svg)\n\n* {GOAL} times as fast as FMM3D: {} \
-         (least ratio {}).\n\
-         * More than a tenth slower than our direct sum: {direct}.\n",
-        verdict(least.is_finite().then_some(least >= GOAL)),
-        figure(least.is_finite().then_some(least), 1),
-    )))
+    let values = context! {
+        date,
+        fraction => FRACTION,
+        table => table.to_string(),
+        goal => GOAL,
+        met => least.is_finite().then_some(least >= GOAL),
+        least => least.is_finite().then_some(least),
+        slower => direct,
+    };
+    Ok(Some(fill(include_str!("../../../templates/speed/open.md"), values)))
 }

@@ -7,10 +7,12 @@ mod replicas;
 mod trajectories;
 
 use crate::Context;
-use crate::page::{Table, figure, verdict};
+use crate::page::Table;
 use crate::store::Store;
 use amberfield_draw::Series;
+use amberfield_study::templates::fill;
 use anyhow::Result;
+use minijinja::context;
 use serde::{Deserialize, Serialize};
 use std::path::Path;
 
@@ -78,20 +80,20 @@ pub(crate) fn report(store: &Store) -> Result<Option<String>> {
     let seconds = |case| rows.get(bed::STUDY, case, "seconds");
     let ratio = seconds("charged").zip(seconds("uncharged")).map(|(a, b)| a / b);
     let charged = |quantity| rows.get(bed::STUDY, "charged", quantity);
-    let mut page = format!(
-        "## Several rates\n\nMeasured {date}, one core, `cargo xtask bench rates`. \
-         `cases/settling-charged-bed` at tolerance 1e-2 with and without its charges: {} s \
-         and {} s, ratio {}. The field was evaluated {} times in {} steps; the stage took {} s; the error \
-         of the forecasts in between was \
-         measured as {:.1e} of E.\n\n* At most {COST_GOAL} times the bed without charge: {}.\n\n",
-        figure(seconds("charged"), 1),
-        figure(seconds("uncharged"), 1),
-        figure(ratio, 2),
-        figure(charged("evaluations"), 0),
-        figure(charged("steps"), 0),
-        figure(charged("field seconds"), 1),
-        charged("forecast error").unwrap_or(f64::NAN),
-        verdict(ratio.map(|ratio| ratio <= COST_GOAL)),
+    let mut page = fill(
+        include_str!("../../../templates/speed/rates.md"),
+        context! {
+            date,
+            charged_s => seconds("charged"),
+            uncharged_s => seconds("uncharged"),
+            ratio,
+            evaluations => charged("evaluations"),
+            steps => charged("steps"),
+            field_s => charged("field seconds"),
+            forecast => charged("forecast error").unwrap_or(f64::NAN),
+            goal => COST_GOAL,
+            met => ratio.map(|ratio| ratio <= COST_GOAL),
+        },
     );
     page += &trajectory_part(store, &rows)?;
     page += &gas_part(&rows);
@@ -127,16 +129,13 @@ fn trajectory_part(store: &Store, rows: &Rows) -> Result<String> {
     let axes = ["steps between evaluations", "relative RMS error"];
     crate::page::plot(store, "rates", "The bed while it lands", axes, &all)?;
     let growth = get("1e-12 perturbation", "growth").unwrap_or(f64::NAN);
-    Ok(format!(
-        "Error against interval while the bed lands, over {} steps in which a perturbation of 1e-12 radii \
-         grows {growth:.1} times. The reference is \
-         evaluated at every step with tolerance {:e}. The error of the velocities is their RMS deviation \
-         from it over that of the \
-         uncharged bed, which is the whole effect of the charge.\n\n{table}\n![error against \
-         interval](pictures/rates.svg)\n\n",
-        figure(get("1e-12 perturbation", "steps"), 0),
-        trajectories::REFERENCE_TOLERANCE,
-    ))
+    let values = context! {
+        steps => get("1e-12 perturbation", "steps"),
+        growth,
+        tolerance => format!("{:e}", trajectories::REFERENCE_TOLERANCE),
+        table => table.to_string(),
+    };
+    Ok(fill(include_str!("../../../templates/speed/trajectories.md"), values))
 }
 
 fn gas_part(rows: &Rows) -> String {
@@ -151,10 +150,9 @@ fn gas_part(rows: &Rows) -> String {
             format!("{:.1e}", get(case, "energy drift")),
         ]);
     }
-    format!(
-        "Energy of a frictionless elastic gas of {} charged grains, kinetic and electric energy alike in \
-         size:\n\n{table}\n",
-        gas::GRAINS
+    fill(
+        include_str!("../../../templates/speed/elastic-gas.md"),
+        context! { grains => gas::GRAINS, table => table.to_string() },
     )
 }
 
@@ -170,12 +168,11 @@ fn replica_part(rows: &Rows) -> String {
         worst = worst.max(z.abs());
         table.row(&[quantity.to_owned(), format!("{every:.4e}"), format!("{auto:.4e}"), format!("{z:.2}")]);
     }
-    format!(
-        "Statistics of small beds at rest, means of {} seeds, field at every step with tolerance {:e} \
-         against `auto` at 1e-2:\n\n{table}\n\
-         * Within the spread of replicas (no difference above 3 standard errors): {}.\n",
-        replicas::SEEDS,
-        replicas::REFERENCE_TOLERANCE,
-        verdict((worst > 0.0).then_some(worst < 3.0)),
-    )
+    let values = context! {
+        seeds => replicas::SEEDS,
+        tolerance => format!("{:e}", replicas::REFERENCE_TOLERANCE),
+        table => table.to_string(),
+        met => (worst > 0.0).then_some(worst < 3.0),
+    };
+    fill(include_str!("../../../templates/speed/replicas.md"), values)
 }

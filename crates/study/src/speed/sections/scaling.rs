@@ -4,7 +4,7 @@
 use crate::Context;
 use crate::beds::{self, Cloud};
 use crate::machine::peak_memory;
-use crate::page::{Table, figure, verdict};
+use crate::page::{Table, figure};
 use crate::sections::field::timed;
 use crate::store::Store;
 use crate::timing::on_threads;
@@ -12,7 +12,9 @@ use amberfield_core::{FieldSettings, Particles, Tuning, Vector3};
 use amberfield_dem::{Setup, Simulation};
 use amberfield_draw::Series;
 use amberfield_oracle::observed_order;
+use amberfield_study::templates::fill;
 use anyhow::{Context as _, Result};
+use minijinja::context;
 use serde::{Deserialize, Serialize};
 use std::time::Instant;
 
@@ -136,14 +138,13 @@ pub(crate) fn report(store: &Store) -> Result<Option<String>> {
         series("DEM step, 2 threads", 2, &dem),
     ];
     crate::page::plot(store, "scaling", "Time per grain", ["grains", "time per grain [ns]"], &all)?;
-    Ok(Some(format!(
-        "## Scaling\n\nMeasured {date}, `cargo xtask bench scaling`. Field at tolerance {TOLERANCE:e} and \
-         plain DEM step, volume fraction 0.1, parameters from \
-         the cost model.\n\n{table}\n![time per grain](pictures/scaling.svg)\n\n* Slope of log time over \
-         log grains on one thread: field {:.2}, \
-         DEM step {:.2}.\n* The same bits for one thread and two: {}.\n",
-        slope(&points(1, &field)),
-        slope(&points(1, &dem)),
-        verdict(Some(rows.iter().all(|row| row.same_bits))),
-    )))
+    let values = context! {
+        date,
+        tolerance => format!("{TOLERANCE:e}"),
+        table => table.to_string(),
+        field => slope(&points(1, &field)),
+        dem => slope(&points(1, &dem)),
+        same => rows.iter().all(|row| row.same_bits),
+    };
+    Ok(Some(fill(include_str!("../../../templates/speed/scaling.md"), values)))
 }
