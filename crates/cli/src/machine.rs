@@ -30,12 +30,6 @@ pub(crate) fn cpu_name() -> Option<String> {
     line.split(':').nth(1).map(|name| name.trim().to_owned())
 }
 
-/// Today in UTC, as 2026-01-31.
-#[cfg(feature = "plots")]
-pub(crate) fn today() -> String {
-    time::OffsetDateTime::now_utc().date().to_string()
-}
-
 /// Total and available memory [bytes], where the system tells them.
 pub(crate) fn memory() -> Option<(u64, u64)> {
     let text = std::fs::read_to_string("/proc/meminfo").ok()?;

@@ -30,6 +30,9 @@ pub enum StudyError {
         /// Reason in words.
         reason: String,
     },
+    /// A table cannot be read or written.
+    #[error(transparent)]
+    Table(#[from] amberfield_scene::SceneError),
     /// A plot cannot be drawn.
     #[error(transparent)]
     Draw(#[from] amberfield_draw::DrawError),

@@ -4,8 +4,12 @@
 #![forbid(unsafe_code)]
 
 mod error;
+#[cfg(feature = "speed")]
+pub mod machine;
 pub mod peers;
+mod store;
 pub mod sweep;
 pub mod templates;
 
 pub use error::StudyError;
+pub use store::{Store, today};

@@ -5,19 +5,17 @@
 #![expect(clippy::print_stdout, reason = "a program for developers that reports to the terminal")]
 
 mod beds;
-mod machine;
 mod page;
-mod peers;
 mod sections;
-mod store;
 mod timing;
 
+use amberfield_study::Store;
+use amberfield_study::machine::Machine;
+use amberfield_study::peers::{PACKAGES, Peers};
 use anyhow::Result;
 use clap::{Parser, ValueEnum};
-use peers::Peers;
 use std::path::{Path, PathBuf};
 use std::process::ExitCode;
-use store::Store;
 
 /// Measures speed and memory and writes docs/reports/speed.md.
 #[derive(Debug, Parser)]
@@ -81,7 +79,12 @@ fn run(arguments: &Arguments) -> Result<()> {
     if arguments.page {
         return page::write(&Store::new(root.join(&arguments.out))?);
     }
-    let peers = if arguments.peers { Some(Peers::install(root)?) } else { None };
+    let peers = if arguments.peers {
+        println!("installing {} into target/peers", PACKAGES.join(", "));
+        Some(Peers::install(root)?)
+    } else {
+        None
+    };
     let context = Context {
         quick: arguments.quick,
         resume: arguments.resume,
@@ -105,8 +108,8 @@ fn run(arguments: &Arguments) -> Result<()> {
         }
     }
     // A run without peers keeps what an earlier one said of them.
-    if context.peers.is_some() || context.store.newest::<machine::Machine>("machine")?.is_none() {
-        context.store.save("machine", &[machine::Machine::read(context.peers.as_ref())])?;
+    if context.peers.is_some() || context.store.newest::<Machine>("machine")?.is_none() {
+        context.store.save("machine", &[Machine::read(context.peers.as_ref())])?;
     }
     page::write(&context.store)
 }

@@ -1,9 +1,9 @@
 //! The page `docs/reports/speed.md`, made from rows only.
 
-use crate::machine::Machine;
 use crate::sections::{charging, coupling, dem, field, gas, kernel, open, rates, scaling};
-use crate::store::Store;
 use amberfield_draw::{Plot, Scale, Series, write_plot};
+use amberfield_study::Store;
+use amberfield_study::machine::Machine;
 use amberfield_study::templates::fill;
 use anyhow::{Context as _, Result};
 use minijinja::context;

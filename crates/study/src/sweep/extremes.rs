@@ -1,7 +1,7 @@
 //! Scenes pushed to an end, each with what should become of it: whether that is so, by a rule.
 
 use super::description::{Ends, Extreme, Study, Sweep};
-use super::laboratory::{Endured, Laboratory, Look, Machine};
+use super::laboratory::{Endured, Laboratory, Look, Provenance};
 use super::points::command;
 use serde::{Deserialize, Serialize};
 use std::path::Path;
@@ -68,24 +68,30 @@ pub fn run_extremes<L: Laboratory>(
     laboratory: &mut L,
     mut done: impl FnMut(&ExtremeRow, &[EnergyRow]),
 ) {
-    let machine = laboratory.machine();
+    let provenance = laboratory.provenance();
     for extreme in &study.extremes {
         let scene = folder.join(&extreme.scene);
         for (swept, value) in Sweep::overrides(extreme.sweep.as_ref()) {
             let set = [&extreme.set[..], &swept].concat();
             let endured = laboratory.endure(&scene, &set, extreme);
-            let row = judged(extreme, &endured, row(&machine, extreme, &scene, &set, value));
+            let row = judged(extreme, &endured, row(&provenance, extreme, &scene, &set, value));
             done(&row, &energies(&row, &endured.looks));
         }
     }
 }
 
-fn row(machine: &Machine, extreme: &Extreme, scene: &Path, set: &[String], value: String) -> ExtremeRow {
+fn row(
+    provenance: &Provenance,
+    extreme: &Extreme,
+    scene: &Path,
+    set: &[String],
+    value: String,
+) -> ExtremeRow {
     ExtremeRow {
-        date: machine.date.clone(),
-        version: machine.version.clone(),
-        processor: machine.processor.clone(),
-        threads: machine.threads,
+        date: provenance.date.clone(),
+        version: provenance.version.clone(),
+        processor: provenance.processor.clone(),
+        threads: provenance.threads,
         extreme: extreme.name.clone(),
         value,
         command: command(extreme.command(), scene, set),

@@ -116,9 +116,9 @@ impl Look {
     }
 }
 
-/// Place where a study was made.
+/// Origin of a row: where, when and with which program it was measured.
 #[derive(Clone, Debug, Default)]
-pub struct Machine {
+pub struct Provenance {
     /// Processor.
     pub processor: String,
     /// Threads.
@@ -137,8 +137,8 @@ pub trait Laboratory {
     /// A method with its parameters chosen.
     type Method;
 
-    /// The machine.
-    fn machine(&self) -> Machine;
+    /// Origin of the rows.
+    fn provenance(&self) -> Provenance;
 
     /// Reads a scene with overrides.
     ///

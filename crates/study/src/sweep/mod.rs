@@ -18,7 +18,7 @@ mod row;
 
 pub use description::{Ends, Extreme, Goal, Method, Motion, Problem, Study, Sweep, Truth};
 pub use extremes::{EnergyRow, ExtremeRow, run_extremes};
-pub use laboratory::{Endured, Evaluation, Exact, Laboratory, Look, Machine, Moved, Peer};
+pub use laboratory::{Endured, Evaluation, Exact, Laboratory, Look, Moved, Peer, Provenance};
 pub use motion::{MotionRow, run_motions};
 pub use page::{Results, write_report};
 pub use points::run;

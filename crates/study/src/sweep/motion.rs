@@ -1,7 +1,7 @@
 //! Whole runs against a much finer one: trajectories as long as they are determined, statistics after that.
 
 use super::description::{Motion, Study, Sweep};
-use super::laboratory::{Laboratory, Machine, Moved};
+use super::laboratory::{Laboratory, Moved, Provenance};
 use super::points::command;
 use amberfield_oracle::{rms_difference, rms_scalar};
 use serde::{Deserialize, Serialize};
@@ -61,7 +61,7 @@ pub fn run_motions<L: Laboratory>(
     laboratory: &mut L,
     mut done: impl FnMut(&MotionRow),
 ) {
-    let machine = laboratory.machine();
+    let provenance = laboratory.provenance();
     for motion in &study.motions {
         let scene = folder.join(&motion.scene);
         match Truth::find(motion, &scene, laboratory) {
@@ -71,7 +71,7 @@ pub fn run_motions<L: Laboratory>(
                         method: name,
                         value,
                         command: command("run", &scene, &set),
-                        ..row(&machine, motion)
+                        ..row(&provenance, motion)
                     };
                     let row = match laboratory.simulate(&scene, &set, 0.0, LOOKS) {
                         Ok(moved) => truth.compare(&moved, row),
@@ -81,18 +81,18 @@ pub fn run_motions<L: Laboratory>(
                 }
             }
             Err(reason) => {
-                done(&MotionRow { failure: format!("no truth: {reason}"), ..row(&machine, motion) });
+                done(&MotionRow { failure: format!("no truth: {reason}"), ..row(&provenance, motion) });
             }
         }
     }
 }
 
-fn row(machine: &Machine, motion: &Motion) -> MotionRow {
+fn row(provenance: &Provenance, motion: &Motion) -> MotionRow {
     MotionRow {
-        date: machine.date.clone(),
-        version: machine.version.clone(),
-        processor: machine.processor.clone(),
-        threads: machine.threads,
+        date: provenance.date.clone(),
+        version: provenance.version.clone(),
+        processor: provenance.processor.clone(),
+        threads: provenance.threads,
         problem: motion.name.clone(),
         ..MotionRow::default()
     }

@@ -1,7 +1,7 @@
 //! Runs a study: truth, error, then time.
 
 use super::description::{Method, Study, Sweep, Truth};
-use super::laboratory::{Exact, Laboratory, Machine, Peer};
+use super::laboratory::{Exact, Laboratory, Peer, Provenance};
 use super::row::Row;
 use amberfield_core::Vector3;
 use amberfield_oracle::{ErrorNorms, grounded_cavity, rms};
@@ -11,7 +11,7 @@ use std::time::Instant;
 /// Measures every point, in the study's order; `done` hears of each problem's rows as soon as they are
 /// there. `folder` is the study's.
 pub fn run<L: Laboratory>(study: &Study, folder: &Path, laboratory: &mut L, mut done: impl FnMut(&[Row])) {
-    let machine = laboratory.machine();
+    let provenance = laboratory.provenance();
     for problem in &study.problems {
         for (swept, value) in Sweep::overrides(problem.sweep.as_ref()) {
             let set = [problem.set.clone(), swept].concat();
@@ -23,7 +23,7 @@ pub fn run<L: Laboratory>(study: &Study, folder: &Path, laboratory: &mut L, mut 
                 set: &set,
                 name: &name,
                 truth: &problem.truth,
-                machine: &machine,
+                provenance: &provenance,
             };
             let methods = study.methods.iter().filter(|method| {
                 method.problems.as_ref().is_none_or(|problems| problems.contains(&problem.name))
@@ -40,7 +40,7 @@ struct Setting<'a> {
     set: &'a [String],
     name: &'a str,
     truth: &'a Truth,
-    machine: &'a Machine,
+    provenance: &'a Provenance,
 }
 
 /// A point between its turns.
@@ -95,10 +95,10 @@ impl Setting<'_> {
 
     fn row(&self) -> Row {
         Row {
-            date: self.machine.date.clone(),
-            version: self.machine.version.clone(),
-            processor: self.machine.processor.clone(),
-            threads: self.machine.threads,
+            date: self.provenance.date.clone(),
+            version: self.provenance.version.clone(),
+            processor: self.provenance.processor.clone(),
+            threads: self.provenance.threads,
             problem: self.name.to_owned(),
             ..Row::default()
         }

@@ -2,7 +2,6 @@
 
 mod extremes;
 mod motion;
-mod peers;
 
 use crate::arguments::StudyOptions;
 use crate::failure::Failure;
@@ -12,10 +11,12 @@ use crate::run::{Charges, charges_of, connect_solver, domain_of, field_of, param
 use amberfield_core::{FieldSettings, Method, Tuning, Vector3};
 use amberfield_field::{ElectricField, FieldValues, Wanted};
 use amberfield_oracle::field_scale;
-use amberfield_scene::{Purpose, Scene, read_scene, read_table, write_table};
+use amberfield_scene::{Purpose, Scene, read_scene};
+use amberfield_study::peers::{PeerProblem, measure_field};
 use amberfield_study::sweep::{
-    self, Endured, Evaluation, Exact, Extreme, Laboratory, Machine, Moved, Peer, Results, Row, Study,
+    self, Endured, Evaluation, Exact, Extreme, Laboratory, Moved, Peer, Provenance, Results, Row, Study,
 };
+use amberfield_study::{Store, StudyError, today};
 use serde::de::DeserializeOwned;
 use std::path::{Path, PathBuf};
 use std::process::Command;
@@ -28,19 +29,17 @@ const TRUTH: f64 = 1e-8;
 pub(crate) fn study(options: &StudyOptions) -> Result<(), Failure> {
     let study = Study::read(&options.study).map_err(|error| Failure::of_study(&error))?;
     let out = options.out.clone().unwrap_or_else(|| PathBuf::from(format!("{}-study", study.name)));
-    let data = out.join("data");
-    std::fs::create_dir_all(&data)
-        .map_err(|error| Failure::bad_input(format!("cannot make {}: {error}", data.display())))?;
+    let store = Store::new(out.clone()).map_err(|error| Failure::of_study(&error))?;
     let results = if options.page {
         let newest_of = |kind: &str| format!("{}{kind}", study.name);
         Results {
-            points: newest(&data, &newest_of(""))?,
-            motions: newest(&data, &newest_of("-motions"))?,
-            extremes: newest(&data, &newest_of("-extremes"))?,
-            energies: newest(&data, &newest_of("-energies"))?,
+            points: newest(&store, &newest_of(""))?,
+            motions: newest(&store, &newest_of("-motions"))?,
+            extremes: newest(&store, &newest_of("-extremes"))?,
+            energies: newest(&store, &newest_of("-energies"))?,
         }
     } else {
-        measured(options, &study, &data)?
+        measured(options, &study, &store)?
     };
     let repeat = format!("amberfield study {}", options.study.display());
     let page =
@@ -76,9 +75,10 @@ pub(crate) fn study(options: &StudyOptions) -> Result<(), Failure> {
 }
 
 /// Measures all; what is known is on the disk, should the rest never come.
-fn measured(options: &StudyOptions, study: &Study, data: &Path) -> Result<Results, Failure> {
+fn measured(options: &StudyOptions, study: &Study, store: &Store) -> Result<Results, Failure> {
     let folder = options.study.parent().unwrap_or_else(|| Path::new(""));
-    let table = |kind: &str| data.join(format!("{}-{}{kind}.csv", machine::today(), study.name));
+    let name_of = |kind: &str| format!("{}{kind}", study.name);
+    let failed = |error: StudyError| Failure::of_study(&error);
     let mut known = Results::default();
     let mut unwritten = Ok(());
     sweep::run(study, folder, &mut Bench, |rows| {
@@ -86,42 +86,35 @@ fn measured(options: &StudyOptions, study: &Study, data: &Path) -> Result<Result
             tracing::info!("{}", told(row));
         }
         known.points.extend_from_slice(rows);
-        unwritten = write_table(&table(""), &known.points);
+        unwritten = store.save(&name_of(""), &known.points);
     });
-    unwritten?;
+    unwritten.map_err(failed)?;
     let mut unwritten = Ok(());
     sweep::run_motions(study, folder, &mut Bench, |row| {
         let seconds = row.seconds.unwrap_or(f64::NAN);
         tracing::info!("{}, {} {}: {seconds:.2} s", row.problem, row.method, row.value);
         known.motions.push(row.clone());
-        unwritten = write_table(&table("-motions"), &known.motions);
+        unwritten = store.save(&name_of("-motions"), &known.motions);
     });
-    unwritten?;
+    unwritten.map_err(failed)?;
     let mut unwritten = Ok(());
     sweep::run_extremes(study, folder, &mut Bench, |row, energies| {
         let verdict = if row.broken.is_empty() { "as expected" } else { &row.broken };
         tracing::info!("{} {}: {}, {verdict}", row.extreme, row.value, row.ended);
         known.extremes.push(row.clone());
         known.energies.extend_from_slice(energies);
-        unwritten = write_table(&table("-extremes"), &known.extremes)
-            .and_then(|()| write_table(&table("-energies"), &known.energies));
+        unwritten = store
+            .save(&name_of("-extremes"), &known.extremes)
+            .and_then(|()| store.save(&name_of("-energies"), &known.energies));
     });
-    unwritten?;
+    unwritten.map_err(failed)?;
     Ok(known)
 }
 
 /// The newest rows of a name; none where there is no such file.
-fn newest<R: DeserializeOwned>(data: &Path, name: &str) -> Result<Vec<R>, Failure> {
-    /// Characters of a date.
-    const DATE: usize = 10;
-    let ours = |file: &PathBuf| {
-        let file = file.file_stem().and_then(|stem| stem.to_str()).unwrap_or_default();
-        file.get(DATE..) == Some(&format!("-{name}"))
-    };
-    let entries = std::fs::read_dir(data)
-        .map_err(|error| Failure::bad_input(format!("cannot read {}: {error}", data.display())))?;
-    let newest = entries.filter_map(|entry| Some(entry.ok()?.path())).filter(ours).max();
-    Ok(newest.map_or_else(|| Ok(Vec::new()), |file| read_table(&file))?)
+fn newest<R: DeserializeOwned>(store: &Store, name: &str) -> Result<Vec<R>, Failure> {
+    let known = store.newest(name).map_err(|error| Failure::of_study(&error))?;
+    Ok(known.map_or_else(Vec::new, |(_, rows)| rows))
 }
 
 /// A point in a line.
@@ -154,12 +147,12 @@ impl Laboratory for Bench {
     type Problem = Charged;
     type Method = Built;
 
-    fn machine(&self) -> Machine {
-        Machine {
+    fn provenance(&self) -> Provenance {
+        Provenance {
             processor: machine::cpu_name().unwrap_or_else(|| "a processor without a name".to_owned()),
             threads: rayon::current_num_threads(),
             version: format!("{}{}", env!("CARGO_PKG_VERSION"), commit()),
-            date: machine::today(),
+            date: today(),
         }
     }
 
@@ -230,7 +223,16 @@ impl Laboratory for Bench {
         exact: &Exact,
         tolerance: f64,
     ) -> Result<Peer, String> {
-        peers::run(program, problem, exact, tolerance)
+        let domain = problem.scene.domain.as_ref().ok_or("the scene has no [domain]")?;
+        let largest = problem.scene.particles.radius.iter().copied().fold(0.0, f64::max);
+        let problem = PeerProblem {
+            domain,
+            permittivity: problem.settings.permittivity,
+            positions: &problem.positions,
+            charges: &problem.charges,
+            diameter_m: 2.0 * largest,
+        };
+        measure_field(program, &problem, exact, tolerance)
     }
 
     fn simulate(&mut self, scene: &Path, set: &[String], nudge: f64, looks: usize) -> Result<Moved, String> {
@@ -266,7 +268,7 @@ impl Laboratory for Bench {
     }
 }
 
-/// What the program was made from, where the study is run in its repository.
+/// Commit from which the program was made, where the study is run in its repository.
 fn commit() -> String {
     let output = Command::new("git").args(["describe", "--always", "--dirty"]).output();
     let output = output.ok().filter(|output| output.status.success());

@@ -3,10 +3,10 @@
 use crate::Context;
 use crate::beds;
 use crate::page::{Table, figure};
-use crate::store::Store;
 use crate::timing::{median, on_threads};
 use amberfield_core::{ChargeTransfer, CouplingInterval, FieldSettings, Tuning};
 use amberfield_dem::{FieldStageSetup, Setup, Simulation};
+use amberfield_study::Store;
 use amberfield_study::templates::fill;
 use anyhow::Result;
 use minijinja::context;
@@ -42,7 +42,7 @@ pub(crate) fn measure(context: &Context) -> Result<()> {
         println!("{first:?}\n{second:?}");
         rows.extend([first, second]);
     }
-    context.store.save(NAME, &rows)
+    Ok(context.store.save(NAME, &rows)?)
 }
 
 /// The bed without and with charging, taking turns.

@@ -4,7 +4,6 @@ use super::change_file;
 use crate::Context;
 use crate::beds::{self, Cloud};
 use crate::page::{Table, figure};
-use crate::store::Store;
 use crate::timing::{median, median_seconds};
 use amberfield_core::{
     Boundary, CouplingInterval, Domain, FarQuestion, FieldSettings, Method, SourceCloud, Tuning, Vector3,
@@ -15,6 +14,7 @@ use amberfield_coupling::{
 use amberfield_dem::{FieldStageSetup, Simulation};
 use amberfield_field::far::{Connect, FarField, FarRequest, FarSolver, FarValues};
 use amberfield_field::{ElectricField, FieldValues, Wanted};
+use amberfield_study::Store;
 use amberfield_study::templates::fill;
 use anyhow::Result;
 use minijinja::context;
@@ -80,7 +80,7 @@ pub(crate) fn measure(context: &Context, root: &Path) -> Result<()> {
     } else {
         println!("electricFieldFoam is not built (cargo xtask openfoam): what needs it is not measured");
     }
-    context.store.save(NAME, &rows)
+    Ok(context.store.save(NAME, &rows)?)
 }
 
 fn settings_of(case: &Path, start: bool) -> SolverSettings {

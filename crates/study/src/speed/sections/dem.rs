@@ -3,9 +3,9 @@
 use crate::Context;
 use crate::beds::{self, DENSITY, RADIUS, STEP_S};
 use crate::page::{Table, figure};
-use crate::store::Store;
 use crate::timing::{median, on_threads};
 use amberfield_dem::{Setup, Simulation};
+use amberfield_study::Store;
 use amberfield_study::peers::{Script, fastest};
 use amberfield_study::templates::fill;
 use anyhow::Result;

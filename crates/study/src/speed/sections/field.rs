@@ -3,11 +3,11 @@
 use crate::Context;
 use crate::beds::{self, Cloud, RADIUS, relative_error};
 use crate::page::{Table, figure};
-use crate::store::Store;
 use crate::timing::{median_seconds, on_threads};
 use amberfield_core::{Boundary, FieldSettings, Method, Tuning, Vector3};
 use amberfield_draw::Series;
 use amberfield_field::{ElectricField, FieldValues, Wanted};
+use amberfield_study::Store;
 use amberfield_study::peers::{SHARES, Script, fastest, pppm_sweep};
 use amberfield_study::templates::fill;
 use anyhow::Result;
@@ -88,7 +88,7 @@ pub(crate) fn measure(context: &Context) -> Result<()> {
             context.store.save(NAME, &rows)?;
         }
     }
-    context.store.save(NAME, &rows)
+    Ok(context.store.save(NAME, &rows)?)
 }
 
 /// The cloud in a closed box.

@@ -4,12 +4,12 @@
 use super::change_file;
 use crate::Context;
 use crate::page::{Table, figure};
-use crate::store::Store;
 use amberfield_core::Particles;
 use amberfield_coupling::{Announced, SolverSettings, foam_command, solver_program};
 use amberfield_dem::{GasSetup, Setup, Simulation};
 use amberfield_gas::{ConnectFlow, ExchangeSeconds};
 use amberfield_scene::{Purpose, read_scene};
+use amberfield_study::Store;
 use amberfield_study::templates::fill;
 use anyhow::{Context as _, Result, ensure};
 use minijinja::context;
@@ -66,7 +66,7 @@ pub(crate) fn measure(context: &Context, root: &Path) -> Result<()> {
     for row in &rows {
         println!("{row:?}");
     }
-    context.store.save(NAME, &rows)
+    Ok(context.store.save(NAME, &rows)?)
 }
 
 /// The case of this project, with grains at the places given [m].

@@ -4,10 +4,10 @@ use super::peak::peaks;
 use crate::Context;
 use crate::beds::{self, Cloud};
 use crate::page::{Table, figure};
-use crate::store::Store;
 use crate::timing::{median, on_threads};
 use amberfield_core::{Boundary, FieldSettings, Method};
 use amberfield_field::{ElectricField, FieldValues, Wanted};
+use amberfield_study::Store;
 use amberfield_study::templates::fill;
 use anyhow::Result;
 use minijinja::context;
@@ -56,7 +56,7 @@ pub(crate) fn measure(context: &Context) -> Result<()> {
         Ok(rows)
     })?;
     rows.iter().for_each(|row| println!("{row:?}"));
-    context.store.save(NAME, &rows)
+    Ok(context.store.save(NAME, &rows)?)
 }
 
 /// Median times of the stages, and the pairs over the time of one of them (or of all, where it is not told

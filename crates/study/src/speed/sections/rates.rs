@@ -8,8 +8,8 @@ mod trajectories;
 
 use crate::Context;
 use crate::page::Table;
-use crate::store::Store;
 use amberfield_draw::Series;
+use amberfield_study::Store;
 use amberfield_study::templates::fill;
 use anyhow::Result;
 use minijinja::context;
@@ -70,7 +70,7 @@ pub(crate) fn measure(context: &Context, root: &Path) -> Result<()> {
     gas::measure(context.quick, &mut rows)?;
     context.store.save(NAME, &rows.0)?;
     replicas::measure(&scene, context.quick, &mut rows)?;
-    context.store.save(NAME, &rows.0)
+    Ok(context.store.save(NAME, &rows.0)?)
 }
 
 /// The section's part of the page.

@@ -3,15 +3,15 @@
 
 use crate::Context;
 use crate::beds::{self, Cloud};
-use crate::machine::peak_memory;
 use crate::page::{Table, figure};
 use crate::sections::field::timed;
-use crate::store::Store;
 use crate::timing::on_threads;
 use amberfield_core::{FieldSettings, Particles, Tuning, Vector3};
 use amberfield_dem::{Setup, Simulation};
 use amberfield_draw::Series;
 use amberfield_oracle::observed_order;
+use amberfield_study::Store;
+use amberfield_study::machine::peak_memory;
 use amberfield_study::templates::fill;
 use anyhow::{Context as _, Result};
 use minijinja::context;

@@ -1,5 +1,4 @@
-//! Programs of others that compute the same, in a Python environment of their own. The scripts that drive
-//! them stand in `peers/`.
+//! The Python environment with the other programs, and the scripts that drive them.
 
 use std::io::Write as _;
 use std::path::{Path, PathBuf};
@@ -22,9 +21,9 @@ pub enum Script {
 impl Script {
     fn text(self) -> &'static str {
         match self {
-            Self::LammpsDem => include_str!("../peers/lammps_dem.py"),
-            Self::LammpsField => include_str!("../peers/lammps_field.py"),
-            Self::Fmm3d => include_str!("../peers/fmm3d.py"),
+            Self::LammpsDem => include_str!("../../peers/lammps_dem.py"),
+            Self::LammpsField => include_str!("../../peers/lammps_field.py"),
+            Self::Fmm3d => include_str!("../../peers/fmm3d.py"),
         }
     }
 
@@ -75,32 +74,6 @@ impl Environment {
     }
 }
 
-/// Cut-offs [diameters] and orders of a sweep over LAMMPS' settings, with commas.
-#[must_use]
-pub fn pppm_sweep(tolerance: f64) -> (&'static str, &'static str) {
-    match tolerance {
-        t if t > 2e-3 => ("1.5,2,2.5,3,4", "4,5"),
-        t if t > 2e-4 => ("2,2.5,3,4", "5,6"),
-        t if t > 2e-5 => ("2.5,3,4,5", "5,6"),
-        _ => ("4,5,6,7", "7"),
-    }
-}
-
-/// Shares of a tolerance asked of LAMMPS, whose estimate of its error is not its error.
-pub const SHARES: &str = "0.8,1.1";
-
-/// The line with the shortest time among those of the script's width whose error is at most a tolerance.
-#[must_use]
-pub fn fastest(script: Script, lines: &[Vec<f64>], tolerance: f64) -> Option<&[f64]> {
-    let (width, error, seconds) = match script {
-        Script::LammpsDem => (2, None, 1),
-        Script::LammpsField => (7, Some(4), 5),
-        Script::Fmm3d => (3, Some(1), 2),
-    };
-    let meets = |line: &&Vec<f64>| line.len() == width && error.is_none_or(|error| line[error] <= tolerance);
-    lines.iter().filter(meets).min_by(|a, b| a[seconds].total_cmp(&b[seconds])).map(Vec::as_slice)
-}
-
 /// Writes numbers as scripts read them: eight bytes each, little endian.
 ///
 /// # Errors
@@ -116,13 +89,6 @@ pub fn write_numbers(path: &Path, numbers: impl IntoIterator<Item = f64>) -> std
 #[cfg(test)]
 mod tests {
     use super::*;
-
-    #[test]
-    fn fastest_line_meets_the_tolerance() {
-        let lines = [vec![0.1, 2e-2, 1.0], vec![0.01, 5e-3, 3.0], vec![0.001, 1e-3, 2.0], vec![1.0]];
-        assert_eq!(fastest(Script::Fmm3d, &lines, 1e-2), Some(&[0.001, 1e-3, 2.0][..]));
-        assert_eq!(fastest(Script::Fmm3d, &lines, 1e-4), None);
-    }
 
     #[test]
     fn environment_is_there_or_not() {

@@ -1,19 +1,25 @@
-//! Machine on which was measured.
+//! The machine on which was measured, as a row of `data/DATE-machine.csv`.
 
 use crate::peers::Peers;
 use serde::{Deserialize, Serialize};
 
 /// The machine and the programs of a run.
 #[derive(Debug, Serialize, Deserialize)]
-pub(crate) struct Machine {
-    pub(crate) cpu: String,
-    pub(crate) cores: usize,
-    pub(crate) vectors: String,
-    pub(crate) peers: String,
+pub struct Machine {
+    /// Name of the processor; empty where the system does not tell.
+    pub cpu: String,
+    /// Cores.
+    pub cores: usize,
+    /// Widest vector instructions: avx512f, avx2 or sse2.
+    pub vectors: String,
+    /// Names and versions of the other programs; empty where none was measured.
+    pub peers: String,
 }
 
 impl Machine {
-    pub(crate) fn read(peers: Option<&Peers>) -> Self {
+    /// Reads what the system tells of this machine.
+    #[must_use]
+    pub fn read(peers: Option<&Peers>) -> Self {
         let info = std::fs::read_to_string("/proc/cpuinfo").unwrap_or_default();
         let value = |key: &str| {
             let line = info.lines().find(|line| line.starts_with(key));
@@ -32,7 +38,7 @@ impl Machine {
 }
 
 /// Peak resident memory of this process since the last call [bytes]; `None` where the system does not tell.
-pub(crate) fn peak_memory() -> Option<f64> {
+pub fn peak_memory() -> Option<f64> {
     let status = std::fs::read_to_string("/proc/self/status").ok()?;
     let line = status.lines().find(|line| line.starts_with("VmHWM:"))?;
     let kilobytes: f64 = line.split_whitespace().nth(1)?.parse().ok()?;
