@@ -34,7 +34,7 @@ fn host(bench: &Workbench) -> PathBuf {
 }
 
 fn run(program: &Path, arguments: &[&str], particles: &str) -> Output {
-    let solver = Path::new(env!("CARGO_MANIFEST_DIR")).join("../openfoam-solver/build/electricFieldFoam");
+    let solver = amberfield_coupling::solver_program(false);
     let mut command = Command::new(program);
     command.args(arguments).env("AMBERFIELD_SOLVER", solver);
     let mut child =

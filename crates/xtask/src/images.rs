@@ -1,9 +1,11 @@
 //! The two container images, and an engine that builds and runs them.
 
+use crate::openfoam::PROGRAM;
+use crate::profile::Profile;
 use crate::shell::{cargo, run as execute, works};
 use crate::{debian, openfoam};
 use anyhow::{Context, Result, bail};
-use std::path::Path;
+use std::path::{Path, PathBuf};
 use std::process::{Command, Stdio};
 use std::time::{Duration, Instant};
 
@@ -17,28 +19,53 @@ const STOCK: &str = "debian:bookworm-slim";
 const ENGINE: &str = "docker.io";
 /// Package of the program that drives two containers at once.
 const COMPOSE: &str = "docker-compose";
+/// Stage of the field solver's image that has OpenFOAM's package and nothing of ours.
+const PACKAGE_STAGE: &str = "package";
 /// Longest time that an engine may take to start.
 const START: Duration = Duration::from_secs(60);
 
 /// Builds both images.
 pub(crate) fn run(root: &Path) -> Result<()> {
     openfoam::run(root)?;
-    build(root)
+    execute(&mut cargo(root, &["build", "--release", "-p", "amberfield-cli"]))?;
+    provide(root)?;
+    build(root, Profile::Release)
 }
 
-/// Builds both images around a field solver that is built already.
-pub(crate) fn build(root: &Path) -> Result<()> {
-    let place = root.join("target/images");
-    std::fs::create_dir_all(&place)?;
+/// Starts an engine where none runs, and makes what the images begin with; compiles nothing.
+pub(crate) fn provide(root: &Path) -> Result<()> {
+    let place = place(root)?;
     provide_engine(&place)?;
     provide_base(&place)?;
-    execute(&mut cargo(root, &["build", "--release", "-p", "amberfield-cli"]))?;
-    let solver = ["electricFieldFoam", "amberPimpleFoam", "libelectricField.so", "selfTest"]
-        .map(|name| root.join("openfoam-solver/build").join(name));
-    let [field, gas, library, test] = &solver;
+    // OpenFOAM's package is most of an image: made now, it is taken from the engine's cache later.
+    let context = place.join(PACKAGE_STAGE);
+    std::fs::create_dir_all(&context)?;
+    let mut stage = Command::new("docker");
+    stage.args(["build", "-q", "--target", PACKAGE_STAGE, "--build-arg", &format!("BASE={BASE}"), "-f"]);
+    execute(stage.arg(recipe(root, "openfoam")).arg(context))
+}
+
+/// Builds both images around programs that are built already.
+pub(crate) fn build(root: &Path, profile: Profile) -> Result<()> {
+    let place = place(root)?;
+    let solver = root.join("openfoam-solver").join(profile.solver_folder());
+    let [field, gas, library, test] =
+        [PROGRAM, "amberPimpleFoam", "libelectricField.so", "selfTest"].map(|name| solver.join(name));
     let script = root.join("docker/solve.sh");
-    image(root, &place, "dem", &[&root.join("target/release/amberfield")])?;
-    image(root, &place, "openfoam", &[&script, field, gas, library, test])
+    image(root, &place, "dem", &[&profile.folder(root).join("amberfield")])?;
+    image(root, &place, "openfoam", &[&script, &field, &gas, &library, &test])
+}
+
+/// Folder in which images are made.
+fn place(root: &Path) -> Result<PathBuf> {
+    let place = root.join("target/images");
+    std::fs::create_dir_all(&place)?;
+    Ok(place)
+}
+
+/// File that says how an image is made.
+fn recipe(root: &Path, name: &str) -> PathBuf {
+    root.join(format!("docker/{name}.Dockerfile"))
 }
 
 /// Builds `amberfield-<name>` of `docker/<name>.Dockerfile` around some files.
@@ -49,7 +76,6 @@ fn image(root: &Path, place: &Path, name: &str, files: &[&Path]) -> Result<()> {
         let target = context.join(file.file_name().context("a file has a name")?);
         std::fs::copy(file, &target).with_context(|| format!("cannot copy {}", file.display()))?;
     }
-    let recipe = root.join(format!("docker/{name}.Dockerfile"));
     let mut build = Command::new("docker");
     build.args([
         "build",
@@ -60,7 +86,7 @@ fn image(root: &Path, place: &Path, name: &str, files: &[&Path]) -> Result<()> {
         &format!("amberfield-{name}"),
         "-f",
     ]);
-    execute(build.arg(recipe).arg(context))
+    execute(build.arg(recipe(root, name)).arg(context))
 }
 
 /// Installs and starts an engine where none runs.

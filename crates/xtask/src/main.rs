@@ -10,6 +10,7 @@ mod fuzz;
 mod images;
 mod leaving_out;
 mod openfoam;
+mod profile;
 mod sanitize;
 mod shell;
 mod test;

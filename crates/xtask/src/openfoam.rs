@@ -5,6 +5,7 @@
 //! unpacked into a folder below `target/`.
 
 use crate::debian;
+use crate::profile::Profile;
 use crate::shell::{cargo, run as execute};
 use anyhow::{Context, Result, bail};
 use std::path::{Path, PathBuf};
@@ -26,20 +27,35 @@ const HEADERS: [&str; 8] = [
 /// Variable without which nothing linked to OpenFOAM runs, and the folder that Debian's package has for it.
 const PROJECT: (&str, &str) = ("WM_PROJECT_DIR", "/usr/share/openfoam");
 
+/// Program of the solver that answers for the field alone; the others stand beside it.
+pub(crate) const PROGRAM: &str = "electricFieldFoam";
+
 /// Installs what is missing, fetches the headers, builds the C library, the solver and its self-test, and
 /// runs the self-test.
 pub(crate) fn run(root: &Path) -> Result<()> {
-    build(root, "build", &[]).map(drop)
+    release(root, Profile::Release.solver_folder(), &[]).map(drop)
 }
 
-/// Builds into a folder of `openfoam-solver/`, with more to tell cmake, and returns the programs' folder.
-pub(crate) fn build(root: &Path, folder: &str, flags: &[&str]) -> Result<PathBuf> {
-    debian::provide(&PACKAGES)?;
-    let headers = provide_headers(root)?;
+/// Does the same into a folder of `openfoam-solver/`, with more to tell cmake; returns the programs' folder.
+pub(crate) fn release(root: &Path, folder: &str, flags: &[&str]) -> Result<PathBuf> {
+    provide(root)?;
     execute(&mut cargo(root, &["build", "--release", "-p", "amberfield-capi"]))?;
+    build(root, Profile::Release, folder, flags)
+}
+
+/// Installs what a build needs and fetches the headers; compiles nothing.
+pub(crate) fn provide(root: &Path) -> Result<()> {
+    debian::provide(&PACKAGES)?;
+    provide_headers(root).map(drop)
+}
+
+/// Builds around a C library that is built already, into a folder of `openfoam-solver/`, with more to tell
+/// cmake; runs the self-test and returns the programs' folder.
+pub(crate) fn build(root: &Path, profile: Profile, folder: &str, flags: &[&str]) -> Result<PathBuf> {
+    let headers = provide_headers(root)?;
     let source = root.join("openfoam-solver");
     let build = source.join(folder);
-    let library = root.join("target/release/libamberfield_capi.a");
+    let library = profile.folder(root).join("libamberfield_capi.a");
     execute(
         Command::new("cmake")
             .args(["-S".as_ref(), source.as_os_str(), "-B".as_ref(), build.as_os_str()])

@@ -34,10 +34,10 @@ pub(crate) fn run(root: &Path) -> Result<()> {
 
     debian::provide(&["libasan8"])?;
     let flags = "-DCMAKE_CXX_FLAGS=-fsanitize=address -fno-omit-frame-pointer -g";
-    let build = openfoam::build(root, "build-sanitize", &[flags])?;
+    let build = openfoam::release(root, "build-sanitize", &[flags])?;
     let mut tests =
         cargo(root, &["test", "-p", "amberfield-tests", "--test", "commands", "--", "openfoam::"]);
     tests.args(NOT_THESE.iter().flat_map(|name| ["--skip", name]));
-    tests.env("AMBERFIELD_SOLVER", build.join("electricFieldFoam"));
+    tests.env("AMBERFIELD_SOLVER", build.join(openfoam::PROGRAM));
     execute(tests.env("ASAN_OPTIONS", OPTIONS))
 }

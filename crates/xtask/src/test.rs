@@ -1,5 +1,7 @@
 //! Every test of the repository; installs what they need and says so.
 
+use crate::openfoam::PROGRAM;
+use crate::profile::Profile;
 use crate::shell::{cargo, run as execute, works};
 use crate::{images, openfoam};
 use anyhow::Result;
@@ -8,15 +10,35 @@ use std::path::Path;
 /// Builds the field solver and its container images, then runs documentation examples, unit tests, command
 /// tests and cases at smoke size.
 ///
-/// The documentation examples come first so that the last line counts the tests proper.
+/// Everything is compiled once, as the tests are; what `cargo xtask openfoam` and `cargo xtask images` make
+/// for users is left as it is, but for the images, which have the same names.
+/// The documentation examples come before the tests so that the last line counts the tests proper.
 pub(crate) fn run(root: &Path) -> Result<()> {
-    openfoam::run(root)?;
-    images::build(root)?;
+    provide_and_compile(root)?;
+    let profile = Profile::Dev;
+    let solver = openfoam::build(root, profile, profile.solver_folder(), &[])?.join(PROGRAM);
+    images::build(root, profile)?;
     execute(&mut cargo(root, &["test", "--workspace", "--doc"]))?;
-    if works(&mut cargo(root, &["nextest", "--version"])) {
-        execute(&mut cargo(root, &["nextest", "run", "--workspace", "--no-fail-fast"]))
+
+    let mut tests = if works(&mut cargo(root, &["nextest", "--version"])) {
+        cargo(root, &["nextest", "run", "--workspace", "--no-fail-fast"])
     } else {
         println!("cargo-nextest is not installed and not needed: cargo test runs the same tests");
-        execute(&mut cargo(root, &["test", "--workspace", "--lib", "--bins", "--tests", "--no-fail-fast"]))
-    }
+        cargo(root, &["test", "--workspace", "--lib", "--bins", "--tests", "--no-fail-fast"])
+    };
+    execute(tests.env("AMBERFIELD_SOLVER", solver))
+}
+
+/// Installs packages, starts an engine and makes the images' base while the workspace is compiled: the one
+/// waits for disks and servers, the other for processors.
+fn provide_and_compile(root: &Path) -> Result<()> {
+    std::thread::scope(|scope| {
+        let provided = scope.spawn(|| {
+            openfoam::provide(root)?;
+            images::provide(root)
+        });
+        let compiled = execute(&mut cargo(root, &["build", "--workspace", "--all-targets"]));
+        provided.join().expect("what provides does not panic")?;
+        compiled
+    })
 }

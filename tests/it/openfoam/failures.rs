@@ -246,8 +246,8 @@ fn a_solver_that_dies_or_hangs_before_it_says_a_word_is_missed() {
 #[test]
 fn a_solver_refuses_a_run_of_a_later_version() {
     let scene = FoamBox::grounded();
-    let solver = concat!(env!("CARGO_MANIFEST_DIR"), "/../openfoam-solver/build/electricFieldFoam");
-    let script = format!("echo 1000 > /dev/shm/$4/protocol\nexec '{solver}' \"$@\"");
+    let solver = amberfield_coupling::solver_program(false);
+    let script = format!("echo 1000 > /dev/shm/$4/protocol\nexec '{}' \"$@\"", solver.display());
     let output = stand_in(&scene, &script).output().unwrap();
     let said = String::from_utf8_lossy(&output.stderr).into_owned();
     assert_eq!(output.status.code(), Some(3), "{said}");

@@ -135,10 +135,15 @@ fn near_this_program(name: &str) -> Option<PathBuf> {
     std::iter::once(beside).chain(built).find(|path| path.is_file())
 }
 
-/// The folders in which the system looks for libraries, with that of the function object.
+/// The folders in which the system looks for libraries, with that of the function object: beside the program
+/// that the environment names, or where [`near_this_program`] finds it.
 fn library_path() -> OsString {
     let known = std::env::var_os(LIBRARIES.0).unwrap_or_default();
-    let own = near_this_program(LIBRARIES.1).and_then(|path| path.parent().map(PathBuf::from));
+    let beside_named = std::env::var_os(VARIABLE)
+        .map(|named| PathBuf::from(named).with_file_name(LIBRARIES.1))
+        .filter(|library| library.is_file());
+    let library = beside_named.or_else(|| near_this_program(LIBRARIES.1));
+    let own = library.and_then(|path| path.parent().map(PathBuf::from));
     std::env::join_paths(own.into_iter().chain(std::env::split_paths(&known))).unwrap_or(known)
 }
 
