@@ -2,7 +2,7 @@
 
 use std::path::{Path, PathBuf};
 
-/// How a program is compiled, and where its parts are then found.
+/// The way in which a program is compiled, and the places of its parts.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) enum Profile {
     /// Compilation for users.
