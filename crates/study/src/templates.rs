@@ -1,7 +1,7 @@
 //! Templates of the pages: Markdown with the places of the numbers, by minijinja.
 //!
-//! Templates are wrapped like all prose of the project. A page has every paragraph and every point of a
-//! list in one line, so lines that go on are joined first.
+//! Templates are wrapped like all prose of the project. Numbers change the lengths of lines, so lines that
+//! go on are joined before a template is filled, and [`wrapped`] breaks those of the page anew.
 
 use minijinja::{Environment, UndefinedBehavior, Value};
 
@@ -74,6 +74,70 @@ fn verdict(met: Option<bool>) -> &'static str {
     }
 }
 
+/// Longest line of a page [characters]; tables, pictures and headings are not broken.
+const WIDTH: usize = 110;
+
+/// Breaks the paragraphs and the points of lists of a page.
+#[must_use]
+pub fn wrapped(page: &str) -> String {
+    let mut text = String::with_capacity(page.len());
+    for line in page.lines() {
+        let stays = ["|", "#", "![", "    ", "<"].iter().any(|start| line.starts_with(start));
+        if stays || line.chars().count() <= WIDTH {
+            text.push_str(line);
+        } else {
+            text.push_str(&broken(line));
+        }
+        text.push('\n');
+    }
+    text
+}
+
+/// One paragraph or point of a list in several lines.
+fn broken(line: &str) -> String {
+    let indent = if line.starts_with("* ") { "  " } else { "" };
+    let mut text = String::with_capacity(line.len());
+    let mut width = 0;
+    for words in together(line) {
+        let length = words.chars().count();
+        if width == 0 {
+            width = length;
+        } else if width + 1 + length <= WIDTH {
+            text.push(' ');
+            width += 1 + length;
+        } else {
+            text.push('\n');
+            text.push_str(indent);
+            width = indent.len() + length;
+        }
+        text.push_str(&words);
+    }
+    text
+}
+
+/// Words of a line; one that must not begin a line stays with the word before it.
+fn together(line: &str) -> Vec<String> {
+    let mut all: Vec<String> = Vec::new();
+    for word in line.split(' ') {
+        match all.last_mut() {
+            Some(before) if begins_a_list(word) => {
+                before.push(' ');
+                before.push_str(word);
+            }
+            _ => all.push(word.to_owned()),
+        }
+    }
+    all
+}
+
+/// Whether a word at the beginning of a line would make a point of a list or a heading of it.
+fn begins_a_list(word: &str) -> bool {
+    let number = word.trim_end_matches(['.', ')']);
+    ["*", "-", "+"].contains(&word)
+        || word.starts_with('#')
+        || number.len() < word.len() && !number.is_empty() && number.chars().all(|c| c.is_ascii_digit())
+}
+
 /// The template with every paragraph and every point of a list in one line.
 fn joined(template: &str) -> String {
     let mut text = String::with_capacity(template.len());
@@ -113,6 +177,18 @@ mod tests {
             joined(template),
             "# A\n\nOne two.\n\n* Point goes on.\n* Next\n\n| a |\n| b |\n\n    code\n"
         );
+    }
+
+    #[test]
+    fn lines_of_a_page_are_broken_and_say_the_same() {
+        let words = "The error - 12. of it - falls with the tolerance that was asked for. ".repeat(8);
+        let page = format!("# Head {words}\n\n{words}\n\n* {words}\n| {words} |\n");
+        let text = wrapped(&page);
+        let prose = text.lines().filter(|line| !line.starts_with(['#', '|']));
+        assert!(prose.clone().all(|line| line.chars().count() <= WIDTH));
+        assert!(prose.clone().all(|line| !line.trim_start().starts_with(['-', '1'])));
+        assert_eq!(text.split_whitespace().collect::<Vec<_>>(), page.split_whitespace().collect::<Vec<_>>());
+        assert_eq!(wrapped(&text), text);
     }
 
     #[test]

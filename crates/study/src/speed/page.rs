@@ -4,7 +4,7 @@ use crate::sections::{charging, coupling, dem, field, gas, kernel, open, rates, 
 use amberfield_draw::{Plot, Scale, Series, write_plot};
 use amberfield_study::Store;
 use amberfield_study::machine::Machine;
-use amberfield_study::templates::fill;
+use amberfield_study::templates::{fill, wrapped};
 use anyhow::{Context as _, Result};
 use minijinja::context;
 use std::fmt;
@@ -67,5 +67,5 @@ pub(crate) fn write(store: &Store) -> Result<()> {
         page += &std::fs::read_to_string(&notes)?;
     }
     let path = store.path("speed.md");
-    std::fs::write(&path, page).with_context(|| format!("cannot write {}", path.display()))
+    std::fs::write(&path, wrapped(&page)).with_context(|| format!("cannot write {}", path.display()))
 }

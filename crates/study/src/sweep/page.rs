@@ -9,7 +9,7 @@ use super::motion::MotionRow;
 use super::motion_page;
 use super::row::Row;
 use crate::StudyError;
-use crate::templates::fill;
+use crate::templates::{fill, wrapped};
 use amberfield_draw::{Plot, Scale, Series, write_plot};
 use minijinja::context;
 use serde::Serialize;
@@ -78,7 +78,8 @@ pub fn write_report(
         page += &fill(include_str!("../../templates/sweep/bias.md"), context! {});
     }
     let path = folder.join(format!("{name}.md"));
-    std::fs::write(&path, page).map_err(|source| StudyError::Write { path: path.clone(), source })?;
+    std::fs::write(&path, wrapped(&page))
+        .map_err(|source| StudyError::Write { path: path.clone(), source })?;
     Ok(path)
 }
 

@@ -9,9 +9,6 @@ use super::source::{code_only, is_test_file, lines_without_tests};
 use super::tree::Tree;
 use std::collections::{BTreeMap, VecDeque};
 
-/// Crates whose circles are still to be opened.
-const STILL_OPEN: [&str; 0] = [];
-
 /// Files that stand for the crate itself.
 const ROOTS: [&str; 2] = ["lib.rs", "main.rs"];
 
@@ -19,7 +16,7 @@ pub(super) fn problems(tree: &Tree) -> Vec<Problem> {
     let mut crates: Vec<&str> =
         tree.rust_files().filter_map(|(path, _)| in_source(path)).map(|(name, _)| name).collect();
     crates.dedup();
-    crates.into_iter().flat_map(|name| problems_of_crate(tree, name, &STILL_OPEN)).collect()
+    crates.into_iter().flat_map(|name| problems_of_crate(tree, name)).collect()
 }
 
 /// Name of the crate and path below its `src/`.
@@ -27,16 +24,8 @@ fn in_source(path: &str) -> Option<(&str, &str)> {
     path.strip_prefix("crates/")?.split_once("/src/")
 }
 
-fn problems_of_crate(tree: &Tree, name: &str, still_open: &[&str]) -> Vec<Problem> {
-    let circles = circles(&graph(tree, name));
-    if !still_open.contains(&name) {
-        return circles.iter().map(|circle| told(circle)).collect();
-    }
-    if circles.is_empty() {
-        let message = format!("'{name}' has no circle any more; remove it from the list in circles.rs");
-        return vec![Problem { path: format!("crates/{name}/src/lib.rs"), line: 0, message }];
-    }
-    Vec::new()
+fn problems_of_crate(tree: &Tree, name: &str) -> Vec<Problem> {
+    circles(&graph(tree, name)).iter().map(|circle| told(circle)).collect()
 }
 
 fn told(circle: &[Edge]) -> Problem {
@@ -267,7 +256,7 @@ mod tests {
 
     fn messages(files: &[(&str, &str)]) -> Vec<String> {
         let tree = Tree::made_up(&[&[LIB], files].concat());
-        problems_of_crate(&tree, "laws", &[]).into_iter().map(|problem| problem.message).collect()
+        problems_of_crate(&tree, "laws").into_iter().map(|problem| problem.message).collect()
     }
 
     #[test]
@@ -348,17 +337,5 @@ mod tests {
         ]);
         assert_eq!(found.len(), 1);
         assert!(found[0].contains("b uses c") && found[0].contains("c uses b"), "{}", found[0]);
-    }
-
-    #[test]
-    fn an_exception_that_is_not_needed_any_more_is_reported() {
-        let tree = Tree::made_up(&[LIB, ("crates/laws/src/a.rs", "use crate::b::B;\n")]);
-        assert_eq!(problems_of_crate(&tree, "laws", &["laws"]).len(), 1);
-        let files = [
-            LIB,
-            ("crates/laws/src/a.rs", "use crate::B;\n"),
-            ("crates/laws/src/b.rs", "use crate::a::A;\n"),
-        ];
-        assert_eq!(problems_of_crate(&Tree::made_up(&files), "laws", &["laws"]), []);
     }
 }

@@ -1,7 +1,6 @@
 //! An item's documentation begins with a noun or a verb, so that it can be read alone.
 
 use super::Problem;
-use super::areas;
 use super::tree::Tree;
 
 /// First words that lean on a sentence before, or are neither noun nor verb. "Whether" is the usual word
@@ -18,14 +17,7 @@ const LEANING: [&str; 66] = [
 /// First words after an article that lean likewise.
 const LEANING_PAIRS: [&str; 4] = ["The same", "The other", "The others", "The one"];
 
-/// Areas whose documentation is still to be read again.
-const STILL_OPEN: [&str; 0] = [];
-
 pub(super) fn problems(tree: &Tree) -> Vec<Problem> {
-    areas::without_the_open(tree, leaning(tree), &STILL_OPEN, "docs.rs")
-}
-
-fn leaning(tree: &Tree) -> Vec<Problem> {
     let mut problems = Vec::new();
     for (path, text) in tree.rust_files() {
         let mut before = None;
@@ -68,7 +60,7 @@ mod tests {
         let text = "//! By what it moves.\n\n\
                     mod a;\n/// Of a mesh.\n/// Its cells.\nfn a() {}\n\
                     fn b() {}\n/// The same, twice.\n#[must_use]\n/// Where it is.\nfn c() {}\n";
-        let found = leaning(&Tree::made_up(&[("crates/core/src/a.rs", text)]));
+        let found = problems(&Tree::made_up(&[("crates/core/src/a.rs", text)]));
         let lines: Vec<usize> = found.iter().map(|problem| problem.line).collect();
         assert_eq!(lines, [1, 4, 8, 10]);
         assert!(found[2].message.contains("'The same'"), "{}", found[2].message);
@@ -77,7 +69,7 @@ mod tests {
     #[test]
     fn nouns_verbs_and_later_lines_are_free() {
         let text = "/// Charge,\n/// By which it moves.\nfn a() {}\n/// Whether it moves.\n/// Formula.\n";
-        assert_eq!(leaning(&Tree::made_up(&[("crates/core/src/a.rs", text)])), []);
+        assert_eq!(problems(&Tree::made_up(&[("crates/core/src/a.rs", text)])), []);
         assert_eq!(leaning_words(" The samest"), None);
         assert_eq!(leaning_words(" Ofc"), None);
     }

@@ -1,6 +1,5 @@
 //! The rules of this repository that no other tool knows.
 
-mod areas;
 mod circles;
 mod dependencies;
 mod docs;

@@ -1,20 +1,12 @@
 //! No line is wider than a reader's window: code, comments and documents alike.
 
 use super::Problem;
-use super::areas;
 use super::tree::Tree;
 
 /// Widest line, in characters.
 const WIDTH: usize = 110;
 
-/// Areas whose lines are still to be broken.
-const STILL_OPEN: [&str; 1] = ["docs/reports"];
-
 pub(super) fn problems(tree: &Tree) -> Vec<Problem> {
-    areas::without_the_open(tree, too_wide(tree), &STILL_OPEN, "width.rs")
-}
-
-fn too_wide(tree: &Tree) -> Vec<Problem> {
     let mut problems = Vec::new();
     for (path, text) in tree.files() {
         let mut in_fence = false;
@@ -61,7 +53,7 @@ mod tests {
     use super::*;
 
     fn lines(path: &str, text: &str) -> Vec<usize> {
-        too_wide(&Tree::made_up(&[(path, text)])).into_iter().map(|problem| problem.line).collect()
+        problems(&Tree::made_up(&[(path, text)])).into_iter().map(|problem| problem.line).collect()
     }
 
     #[test]
