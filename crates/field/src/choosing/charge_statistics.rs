@@ -5,7 +5,7 @@ use nalgebra::Vector3;
 
 /// Statistics of a cloud of charges that decide the error.
 #[derive(Clone, Copy, Debug)]
-pub(crate) struct Cloud {
+pub(crate) struct ChargeStatistics {
     pub(crate) count: f64,
     /// q_rms [C].
     pub(crate) charge: f64,
@@ -15,7 +15,7 @@ pub(crate) struct Cloud {
     pub(crate) floor: f64,
 }
 
-impl Cloud {
+impl ChargeStatistics {
     pub(crate) fn new(
         domain: &Domain,
         permittivity: Permittivity,

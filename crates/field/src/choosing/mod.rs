@@ -4,5 +4,6 @@
 pub(crate) mod candidates;
 pub(crate) mod charge_statistics;
 pub(crate) mod choice;
+mod cost;
 pub(crate) mod error_model;
 pub(crate) mod tuner;

@@ -2,8 +2,9 @@
 //! timing, check.
 
 use crate::choosing::candidates::Candidate;
-use crate::choosing::charge_statistics::Cloud;
+use crate::choosing::charge_statistics::ChargeStatistics;
 use crate::choosing::choice::{Choice, Measured};
+use crate::choosing::cost;
 use crate::choosing::error_model::{error_squared, smooth_error_squared};
 use crate::error::FieldError;
 use crate::levels::grid::level::{grid_sizes, widest_spacing};
@@ -37,20 +38,6 @@ const MOST_EVALUATIONS: usize = 3;
 const TIMED: usize = 4;
 /// Tolerance of the first look at E_rms.
 const FIRST_LOOK: f64 = 0.05;
-/// Cost of the pieces, in nanoseconds on a reference machine; only ratios matter.
-mod cost {
-    /// A pair within the cut-off in single and in double precision, the neighbours beyond it that are
-    /// looked at included.
-    pub(super) const PAIR: [f64; 2] = [1.5, 2.8];
-    /// A pair of the direct sum.
-    pub(super) const ALL_PAIRS: f64 = 0.9;
-    /// Spreading and gathering, per node of a window.
-    pub(super) const NODE: f64 = 0.2;
-    /// Transforms there and back, per padded node and factor log₂(nodes).
-    pub(super) const TRANSFORM: f64 = 0.9;
-    /// Sorting, looking for partners, polynomials of the window and summing, per particle.
-    pub(super) const PARTICLE: f64 = 160.0;
-}
 
 /// Parameters with the shapes that suit them.
 fn with_best_shapes(order: usize, cutoff_m: f64, spacing_m: f64, kernel_accuracy: f64) -> P3mParameters {
@@ -83,7 +70,7 @@ pub(crate) struct Tuner<'a> {
     settings: &'a FieldSettings,
     positions: &'a [Vector3<f64>],
     charges: &'a [f64],
-    cloud: Cloud,
+    cloud: ChargeStatistics,
     /// Largest cut-off radius [m].
     longest: f64,
 }
@@ -95,7 +82,7 @@ impl<'a> Tuner<'a> {
         positions: &'a [Vector3<f64>],
         charges: &'a [f64],
     ) -> Self {
-        let cloud = Cloud::new(domain, settings.permittivity, positions, charges);
+        let cloud = ChargeStatistics::new(domain, settings.permittivity, positions, charges);
         Self { domain, settings, positions, charges, cloud, longest: f64::INFINITY }
     }
 
@@ -108,7 +95,7 @@ impl<'a> Tuner<'a> {
     pub(crate) fn choose(&self) -> Result<Chosen, FieldError> {
         if self.cloud.charge == 0.0 {
             // No charge yet: what a unit charge per grain would need.
-            let cloud = Cloud {
+            let cloud = ChargeStatistics {
                 charge: 1.0,
                 density: self.cloud.count.max(1.0) / self.domain.volume(),
                 ..self.cloud
@@ -205,7 +192,7 @@ impl<'a> Tuner<'a> {
     }
 
     /// Error of parameters by the model [V/m], where the grid's part of E is `smooth` [V/m].
-    fn modelled(&self, cloud: &Cloud, parameters: &P3mParameters, smooth: f64) -> f64 {
+    fn modelled(&self, cloud: &ChargeStatistics, parameters: &P3mParameters, smooth: f64) -> f64 {
         let spacing = widest_spacing(self.domain, parameters.spacing_m);
         let shapes = Shapes { cloud: parameters.cloud_shape, window: parameters.window_shape };
         let coefficient = error_squared(parameters.order, parameters.cutoff_m / spacing, shapes) / spacing;
@@ -221,7 +208,12 @@ impl<'a> Tuner<'a> {
         free && cost::ALL_PAIRS * images as f64 * self.cloud.count * self.cloud.count < grid
     }
 
-    fn best_by_model(&self, cloud: &Cloud, error: f64, smooth: f64) -> Result<P3mParameters, FieldError> {
+    fn best_by_model(
+        &self,
+        cloud: &ChargeStatistics,
+        error: f64,
+        smooth: f64,
+    ) -> Result<P3mParameters, FieldError> {
         let candidates = self.candidates(cloud, error, smooth);
         candidates.first().map(|(_, parameters)| *parameters).ok_or_else(|| self.no_parameters(error))
     }
@@ -252,7 +244,7 @@ impl<'a> Tuner<'a> {
     }
 
     /// Candidates with an error of `error` [V/m], cheapest first by the cost model: the best of each order.
-    fn candidates(&self, cloud: &Cloud, error: f64, smooth: f64) -> Vec<(f64, P3mParameters)> {
+    fn candidates(&self, cloud: &ChargeStatistics, error: f64, smooth: f64) -> Vec<(f64, P3mParameters)> {
         let mut best: Vec<(f64, P3mParameters)> = Vec::new();
         for order in ORDERS {
             let of_order = self
@@ -271,7 +263,7 @@ impl<'a> Tuner<'a> {
     /// most `spacing` apart, where the grid's part of E is `smooth` [V/m].
     fn candidate(
         &self,
-        cloud: &Cloud,
+        cloud: &ChargeStatistics,
         order: usize,
         spacing: f64,
         error: f64,
@@ -296,7 +288,13 @@ impl<'a> Tuner<'a> {
     }
 
     /// Finds a candidate for the random part of the error alone.
-    fn candidate_for(&self, cloud: &Cloud, order: usize, spacing: f64, error: f64) -> Option<P3mParameters> {
+    fn candidate_for(
+        &self,
+        cloud: &ChargeStatistics,
+        order: usize,
+        spacing: f64,
+        error: f64,
+    ) -> Option<P3mParameters> {
         /// A spacing that divides the box stays one when it is rounded.
         const ROUNDING: f64 = 1e-12;
         let coefficient = error * error / cloud.squared_error(self.settings.permittivity, 1.0);
@@ -314,7 +312,7 @@ impl<'a> Tuner<'a> {
     }
 
     /// Node spacings worth a look [m].
-    fn spacings(&self, cloud: &Cloud) -> Vec<f64> {
+    fn spacings(&self, cloud: &ChargeStatistics) -> Vec<f64> {
         const FINEST: f64 = 0.25;
         const FINEST_OF_CUTOFF: f64 = 0.05;
         const COARSEST: f64 = 4.0;
@@ -333,7 +331,7 @@ impl<'a> Tuner<'a> {
     }
 
     /// Modelled cost of one evaluation [ns].
-    fn cost(&self, cloud: &Cloud, parameters: &P3mParameters) -> f64 {
+    fn cost(&self, cloud: &ChargeStatistics, parameters: &P3mParameters) -> f64 {
         let pairs = 4.0 / 3.0 * std::f64::consts::PI * cloud.density * parameters.cutoff_m.powi(3);
         let nodes: f64 = grid_sizes(self.domain, parameters.spacing_m, parameters.cloud())
             .iter()

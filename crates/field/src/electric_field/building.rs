@@ -60,8 +60,8 @@ impl ElectricField {
         Ok(Self { error_estimated, error_measured, ..field })
     }
 
-    /// The field over somebody else's mesh, whose boundary conditions take the place of a domain's: p3m
-    /// with three levels.
+    /// Makes the field over a field solver's mesh, whose boundary conditions take the place of a domain's:
+    /// p3m with three levels.
     ///
     /// # Errors
     /// As [`Self::new`]; a method that has no far level.

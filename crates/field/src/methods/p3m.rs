@@ -1,7 +1,7 @@
 //! Particle–particle particle–mesh with smooth splitting:
 //!
 //! 1/r = [1 − Φ(r/r_c)]/r + Φ(r/r_c)/r — pairs within r_c, and the internal grid with the box's faces; or,
-//! over a mesh of somebody else's,
+//! over a field solver's mesh,
 //!
 //! 1/r = [1 − Φ(r/r_c)]/r + [Φ(r/r_c) − Φ(r/R)]/r + Φ(r/R)/r — pairs, a middle grid without faces, and the
 //! far level's cells, to which R is matched.
@@ -91,7 +91,7 @@ impl P3m {
         Self::with_levels(domain, settings, parameters, near, grid)
     }
 
-    /// Three levels, the last one somebody else's.
+    /// Makes p3m of three levels, the last one a field solver's.
     pub(crate) fn over(far: FarLevel, settings: &FieldSettings, parameters: P3mParameters) -> Self {
         let near = NearLevel::new(&far.domain_of_pairs(), parameters.near());
         let wider = far.cloud_as_returned();

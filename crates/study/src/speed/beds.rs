@@ -66,7 +66,7 @@ pub(crate) fn sparse(count: usize) -> Setup {
 }
 
 /// ±q on the grains of [`sparse`].
-pub(crate) fn sparse_cloud(count: usize) -> Cloud {
+pub(crate) fn sparse_cloud(count: usize) -> ChargedBed {
     charged(sparse(count))
 }
 
@@ -116,28 +116,28 @@ fn jittered(count: usize, fraction: f64, jitter: f64) -> Setup {
 
 /// Charged grains.
 #[derive(Clone, Debug)]
-pub(crate) struct Cloud {
+pub(crate) struct ChargedBed {
     pub(crate) domain: Domain,
     pub(crate) position: Vec<Vector3<f64>>,
     pub(crate) charge: Vec<f64>,
 }
 
 /// ±q at random, as many of each, on the grains of a relaxed bed.
-pub(crate) fn cloud(count: usize, fraction: f64) -> Cloud {
+pub(crate) fn cloud(count: usize, fraction: f64) -> ChargedBed {
     charged(relaxed(count, fraction))
 }
 
-fn charged(scene: Setup) -> Cloud {
+fn charged(scene: Setup) -> ChargedBed {
     let count = scene.particles.len();
     let mut charge: Vec<f64> = (0..count).map(|i| if i % 2 == 0 { 1e-12 } else { -1e-12 }).collect();
     let mut random = ChaCha8Rng::seed_from_u64(3);
     for i in (1..count).rev() {
         charge.swap(i, random.random_range(0..=i));
     }
-    Cloud { domain: scene.domain, position: scene.particles.position, charge }
+    ChargedBed { domain: scene.domain, position: scene.particles.position, charge }
 }
 
-impl Cloud {
+impl ChargedBed {
     /// Copy of the charges in a box with other faces, a radius from the centres: nearer ones would have
     /// little but their images for a field.
     pub(crate) fn within(&self, boundary: Boundary) -> Self {

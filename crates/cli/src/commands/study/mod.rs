@@ -81,7 +81,7 @@ fn measured(options: &StudyOptions, study: &Study, store: &Store) -> Result<Resu
     let failed = |error: StudyError| Failure::of_study(&error);
     let mut known = Results::default();
     let mut unwritten = Ok(());
-    sweep::run(study, folder, &mut Bench, |rows| {
+    sweep::run(study, folder, &mut OurMethods, |rows| {
         for row in rows {
             tracing::info!("{}", told(row));
         }
@@ -90,7 +90,7 @@ fn measured(options: &StudyOptions, study: &Study, store: &Store) -> Result<Resu
     });
     unwritten.map_err(failed)?;
     let mut unwritten = Ok(());
-    sweep::run_motions(study, folder, &mut Bench, |row| {
+    sweep::run_motions(study, folder, &mut OurMethods, |row| {
         let seconds = row.seconds.unwrap_or(f64::NAN);
         tracing::info!("{}, {} {}: {seconds:.2} s", row.problem, row.method, row.value);
         known.motions.push(row.clone());
@@ -98,7 +98,7 @@ fn measured(options: &StudyOptions, study: &Study, store: &Store) -> Result<Resu
     });
     unwritten.map_err(failed)?;
     let mut unwritten = Ok(());
-    sweep::run_extremes(study, folder, &mut Bench, |row, energies| {
+    sweep::run_extremes(study, folder, &mut OurMethods, |row, energies| {
         let verdict = if row.broken.is_empty() { "as expected" } else { &row.broken };
         tracing::info!("{} {}: {}, {verdict}", row.extreme, row.value, row.ended);
         known.extremes.push(row.clone());
@@ -127,7 +127,7 @@ fn told(row: &Row) -> String {
 }
 
 /// Our own methods.
-struct Bench;
+struct OurMethods;
 
 /// A scene's charges.
 struct Charged {
@@ -143,7 +143,7 @@ struct Built {
     values: FieldValues,
 }
 
-impl Laboratory for Bench {
+impl Laboratory for OurMethods {
     type Problem = Charged;
     type Method = Built;
 

@@ -1,4 +1,4 @@
-//! The far level of p3m on somebody else's mesh.
+//! The far level of p3m on a field solver's mesh.
 //!
 //! The grains' clouds are as wide as the mesh can carry; pairs and the middle grid carry the rest, images
 //! included, and reach the walls: what they make there is taken off the far level's boundary conditions,

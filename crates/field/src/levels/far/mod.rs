@@ -1,4 +1,4 @@
-//! The far level: a smooth field that somebody else solves for, on cells of any shape with boundary
+//! The far level: a smooth field that a field solver computes, on cells of any shape with boundary
 //! conditions of its own.
 //!
 //! Another process with OpenFOAM does, or a solver in this one: whoever implements [`FarField`].
@@ -109,7 +109,7 @@ impl fmt::Debug for Connect {
     }
 }
 
-/// Somebody who solves for the far level's potential.
+/// A field solver: it computes the far level's potential.
 pub trait FarField: fmt::Debug + Send + Sync {
     /// The cells.
     fn mesh(&self) -> &FarMesh;

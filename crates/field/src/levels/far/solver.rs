@@ -1,4 +1,4 @@
-//! Somebody who solves for the far field, what was found last, and where the next solve starts.
+//! The field solver with its state: what it found last, and where its next solve starts.
 //!
 //! With overlap the solver works while the grains move on: an evaluation takes the answer to what the one
 //! before asked, asks for its own, and goes on with a forecast, the potential on the line through the last

@@ -17,9 +17,9 @@ pub(crate) struct Sources<'a> {
     pub(crate) charge: &'a [f64],
 }
 
-/// Candidates for partners: coordinates and charges.
+/// NearSources for partners: coordinates and charges.
 #[derive(Debug, Default)]
-pub(crate) struct Candidates<T> {
+pub(crate) struct NearSources<T> {
     pub(crate) x: Vec<T>,
     pub(crate) y: Vec<T>,
     pub(crate) z: Vec<T>,
@@ -31,7 +31,7 @@ pub(crate) struct Candidates<T> {
     len: usize,
 }
 
-impl<T: Real> Candidates<T> {
+impl<T: Real> NearSources<T> {
     pub(crate) fn clear(&mut self) {
         self.len = 0;
     }

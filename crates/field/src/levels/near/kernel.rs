@@ -8,9 +8,9 @@
 //! box are dropped. Every one left is computed, masked beyond the cut-off: that costs less than packing the
 //! ones that count for a single target.
 
-use super::candidates::Candidates;
+use super::candidates::NearSources;
 use super::cells::NearCells;
-use super::target::{Sum, sum_one, sum_two};
+use super::target::{NearSum, sum_one, sum_two};
 use crate::numerics::chebyshev::{chebyshev, monomials};
 use crate::numerics::processor::{Instructions, Real, Vector};
 use amberfield_laws::kaiser_bessel_cloud::Cloud;
@@ -68,8 +68,8 @@ impl<T: Real> NearKernel<T> {
         &self,
         group: Group<'_>,
         potential: bool,
-        candidates: &mut Candidates<T>,
-        sums: &mut [Sum],
+        candidates: &mut NearSources<T>,
+        sums: &mut [NearSum],
     ) {
         match self.field.len() {
             6 => self.unrolled::<6>(group, potential, candidates, sums),
@@ -88,8 +88,8 @@ impl<T: Real> NearKernel<T> {
         &self,
         group: Group<'_>,
         potential: bool,
-        candidates: &mut Candidates<T>,
-        sums: &mut [Sum],
+        candidates: &mut NearSources<T>,
+        sums: &mut [NearSum],
     ) {
         if potential {
             self.dispatched::<N, true>(group, candidates, sums);
@@ -102,8 +102,8 @@ impl<T: Real> NearKernel<T> {
     fn dispatched<const N: usize, const POTENTIAL: bool>(
         &self,
         group: Group<'_>,
-        candidates: &mut Candidates<T>,
-        sums: &mut [Sum],
+        candidates: &mut NearSources<T>,
+        sums: &mut [NearSum],
     ) {
         match self.instructions {
             #[cfg(target_arch = "x86_64")]
@@ -124,8 +124,8 @@ impl<T: Real> NearKernel<T> {
 fn avx512<T: Real, const N: usize, const POTENTIAL: bool>(
     kernel: &NearKernel<T>,
     group: Group<'_>,
-    candidates: &mut Candidates<T>,
-    sums: &mut [Sum],
+    candidates: &mut NearSources<T>,
+    sums: &mut [NearSum],
 ) {
     sum_group::<T::Avx512, N, POTENTIAL>(kernel, group, candidates, sums);
 }
@@ -135,8 +135,8 @@ fn avx512<T: Real, const N: usize, const POTENTIAL: bool>(
 fn avx2<T: Real, const N: usize, const POTENTIAL: bool>(
     kernel: &NearKernel<T>,
     group: Group<'_>,
-    candidates: &mut Candidates<T>,
-    sums: &mut [Sum],
+    candidates: &mut NearSources<T>,
+    sums: &mut [NearSum],
 ) {
     sum_group::<T::Avx2, N, POTENTIAL>(kernel, group, candidates, sums);
 }
@@ -145,8 +145,8 @@ fn avx2<T: Real, const N: usize, const POTENTIAL: bool>(
 fn sum_group<V: Vector, const N: usize, const POTENTIAL: bool>(
     kernel: &NearKernel<V::Number>,
     group: Group<'_>,
-    candidates: &mut Candidates<V::Number>,
-    sums: &mut [Sum],
+    candidates: &mut NearSources<V::Number>,
+    sums: &mut [NearSum],
 ) {
     let field: &[V::Number; N] = kernel.field[..].try_into().expect("N coefficients");
     let potential: &[V::Number; N] = kernel.potential[..].try_into().expect("N coefficients");
@@ -181,7 +181,7 @@ fn relative<T: Real>(cells: &NearCells, source: u32, reference: [f64; 3]) -> [T;
 /// target's number among them was its number plus what is returned. Their places are relative to the other
 /// result.
 #[inline(always)]
-fn gather<V: Vector>(group: Group<'_>, candidates: &mut Candidates<V::Number>) -> (usize, [f64; 3]) {
+fn gather<V: Vector>(group: Group<'_>, candidates: &mut NearSources<V::Number>) -> (usize, [f64; 3]) {
     let cells = group.cells;
     let first = group.targets[0] as usize;
     let mut range = [cells.place(first)[0]; 2];
@@ -250,9 +250,9 @@ mod tests {
     }
 
     /// The sum at every source, in the kernel's units; sources of a row in groups of at most five.
-    fn sums<T: Real>(kernel: &NearKernel<T>, scatter: &Scatter) -> Vec<Sum> {
-        let mut candidates = Candidates::default();
-        let mut sums = vec![Sum::default(); COUNT];
+    fn sums<T: Real>(kernel: &NearKernel<T>, scatter: &Scatter) -> Vec<NearSum> {
+        let mut candidates = NearSources::default();
+        let mut sums = vec![NearSum::default(); COUNT];
         let sources: Vec<u32> = (0..COUNT as u32).collect();
         let row = |source: u32| scatter.cells.row_of(source as usize);
         for together in sources.chunk_by(|&a, &b| row(a) == row(b)) {

@@ -9,13 +9,13 @@ use crate::geometry::images::ImageLattice;
 use crate::numerics::scratch::PerThread;
 use crate::values::FieldAt;
 use amberfield_core::Domain;
-use candidates::Candidates;
+use candidates::NearSources;
 use cells::NearCells;
 use kernel::{Group, NearKernel};
 use nalgebra::Vector3;
 use rayon::prelude::*;
 use serde::{Deserialize, Serialize};
-use target::Sum;
+use target::NearSum;
 
 /// Targets handled by one task.
 const TASK: usize = 64;
@@ -48,7 +48,7 @@ impl NearParameters {
     }
 }
 
-/// Sum over real and image charges within the cut-off of a charge's field less its cloud's.
+/// NearSum over real and image charges within the cut-off of a charge's field less its cloud's.
 #[derive(Debug)]
 pub(crate) struct NearLevel {
     parameters: NearParameters,
@@ -62,14 +62,14 @@ pub(crate) struct NearLevel {
     largest: f64,
     /// Sources that are particles, in cell order.
     targets: Vec<u32>,
-    sums: Vec<Sum>,
+    sums: Vec<NearSum>,
     scratch: PerThread<Scratch>,
 }
 
 #[derive(Debug, Default)]
 struct Scratch {
-    single: Candidates<f32>,
-    double: Candidates<f64>,
+    single: NearSources<f32>,
+    double: NearSources<f64>,
 }
 
 impl NearLevel {
@@ -121,7 +121,7 @@ impl NearLevel {
         let targets: Vec<u32> = particles.iter().map(|&particle| target_of[particle]).collect();
         let mut sums = Vec::new();
         self.evaluate(&targets, false, &mut sums);
-        sums.iter().map(Sum::field_at).collect()
+        sums.iter().map(NearSum::field_at).collect()
     }
 
     /// Mean number of sources within the cut-off of a sample of targets.
@@ -146,12 +146,12 @@ impl NearLevel {
     }
 
     pub(crate) fn memory_bytes(&self) -> usize {
-        self.cells.memory_bytes() + 4 * self.targets.capacity() + self.sums.capacity() * size_of::<Sum>()
+        self.cells.memory_bytes() + 4 * self.targets.capacity() + self.sums.capacity() * size_of::<NearSum>()
     }
 
-    fn evaluate(&self, targets: &[u32], potential: bool, sums: &mut Vec<Sum>) {
+    fn evaluate(&self, targets: &[u32], potential: bool, sums: &mut Vec<NearSum>) {
         sums.clear();
-        sums.resize(targets.len(), Sum::default());
+        sums.resize(targets.len(), NearSum::default());
         if self.largest == 0.0 {
             return;
         }
@@ -179,7 +179,7 @@ impl NearLevel {
     }
 
     /// Sums of one group, in m and C.
-    fn sum(&self, group: Group<'_>, potential: bool, scratch: &mut Scratch, sums: &mut [Sum]) {
+    fn sum(&self, group: Group<'_>, potential: bool, scratch: &mut Scratch, sums: &mut [NearSum]) {
         let Scratch { single, double } = scratch;
         if let Some(kernel) = &self.single {
             kernel.sum(group, potential, single, sums);

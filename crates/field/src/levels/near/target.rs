@@ -1,19 +1,19 @@
 //! A target's sums over candidates, all in lanes.
 
-use super::candidates::Candidates;
+use super::candidates::NearSources;
 use crate::numerics::processor::{Real, Vector};
 use crate::values::FieldAt;
 
 /// Field (x, y, z) and potential of a target in the kernel's units (4πε = 1), and the square of the
 /// distance to the nearest candidate.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
-pub(crate) struct Sum {
+pub(crate) struct NearSum {
     pub(crate) field: [f64; 3],
     pub(crate) potential: f64,
     pub(crate) nearest_squared: f64,
 }
 
-impl Sum {
+impl NearSum {
     /// Field and potential without the distance.
     pub(super) fn field_at(&self) -> FieldAt {
         FieldAt { e: self.field.into(), potential: self.potential }
@@ -72,8 +72,8 @@ impl<V: Vector> Target<V> {
     }
 
     #[inline(always)]
-    fn sum(&self) -> Sum {
-        Sum {
+    fn sum(&self) -> NearSum {
+        NearSum {
             field: [self.ex.total(), self.ey.total(), self.ez.total()],
             potential: self.potential.total(),
             nearest_squared: self.nearest.smallest(),
@@ -81,7 +81,7 @@ impl<V: Vector> Target<V> {
     }
 }
 
-/// Place at which a sum is taken, and the candidate there that does not count: [`Candidates::len`] if there
+/// Place at which a sum is taken, and the candidate there that does not count: [`NearSources::len`] if there
 /// is none.
 pub(super) type Place<T> = ([T; 3], usize);
 
@@ -89,9 +89,9 @@ pub(super) type Place<T> = ([T; 3], usize);
 #[inline(always)]
 pub(super) fn sum_one<V: Vector, const N: usize, const POTENTIAL: bool>(
     polynomials: Polynomials<'_, V::Number, N>,
-    candidates: &Candidates<V::Number>,
+    candidates: &NearSources<V::Number>,
     (place, own): Place<V::Number>,
-) -> Sum {
+) -> NearSum {
     let mut target = Target::<V>::new(place);
     let apart = candidates.apart(own);
     for at in (0..candidates.len()).step_by(V::LANES) {
@@ -105,9 +105,9 @@ pub(super) fn sum_one<V: Vector, const N: usize, const POTENTIAL: bool>(
 #[inline(always)]
 pub(super) fn sum_two<V: Vector, const N: usize, const POTENTIAL: bool>(
     polynomials: Polynomials<'_, V::Number, N>,
-    candidates: &Candidates<V::Number>,
+    candidates: &NearSources<V::Number>,
     [(place_one, first), (place_two, second)]: [Place<V::Number>; 2],
-) -> [Sum; 2] {
+) -> [NearSum; 2] {
     let mut one = Target::<V>::new(place_one);
     let mut two = Target::<V>::new(place_two);
     let (apart_one, apart_two) = (candidates.apart(first), candidates.apart(second));

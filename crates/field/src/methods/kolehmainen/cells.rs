@@ -1,4 +1,4 @@
-//! Cells with a field that is constant in each, whoever solves for it.
+//! ChargeCells with a field that is constant in each, whoever solves for it.
 
 use super::mesh::Mesh;
 use crate::error::FieldError;
@@ -7,8 +7,8 @@ use amberfield_core::{FarQuestion, Permittivity, SourceCloud};
 use nalgebra::Vector3;
 use std::fmt::Debug;
 
-/// Cells that take each charge whole and answer with a potential and a field.
-pub(super) trait Cells: Debug + Send + Sync {
+/// ChargeCells that take each charge whole and answer with a potential and a field.
+pub(super) trait ChargeCells: Debug + Send + Sync {
     /// Finds each charge's cell and solves ∇²φ = −ρ/ε for the charges at a time [s].
     fn solve(
         &mut self,
@@ -38,14 +38,14 @@ pub(super) trait Cells: Debug + Send + Sync {
         None
     }
 
-    /// Cells along each axis, where they are a box's.
+    /// ChargeCells along each axis, where they are a box's.
     fn counts(&self) -> Option<[usize; 3]>;
 
     /// Memory held [bytes].
     fn memory_bytes(&self) -> usize;
 }
 
-impl Cells for Mesh {
+impl ChargeCells for Mesh {
     fn solve(
         &mut self,
         _time_s: f64,
@@ -98,7 +98,7 @@ impl SolverCells {
     }
 }
 
-impl Cells for SolverCells {
+impl ChargeCells for SolverCells {
     fn solve(
         &mut self,
         time_s: f64,

@@ -16,14 +16,14 @@ use crate::numerics::stopwatch::Stopwatch;
 use crate::sum::{Levels, Part};
 use crate::values::{FieldAt, Wanted};
 use amberfield_core::{Domain, Permittivity};
-use cells::{Cells, SolverCells};
+use cells::{ChargeCells, SolverCells};
 use mesh::Mesh;
 use nalgebra::Vector3;
 use rayon::prelude::*;
 
-/// Cells per cut-off radius when the scene leaves them open: just above √3, the diagonal of a cube.
+/// ChargeCells per cut-off radius when the scene leaves them open: just above √3, the diagonal of a cube.
 const CELLS_PER_RADIUS: f64 = 1.75;
-/// Cells at most; beyond it the cut-off radius is a mistake.
+/// ChargeCells at most; beyond it the cut-off radius is a mistake.
 const MOST_CELLS: f64 = 2e8;
 
 /// The hybrid of Kolehmainen, Ozel, Boyce and Sundaresan (2016): every charge goes to its cell, Poisson's
@@ -47,7 +47,7 @@ pub struct Kolehmainen {
     permittivity: Permittivity,
     neutralising_background: bool,
     radius: f64,
-    mesh: Box<dyn Cells>,
+    mesh: Box<dyn ChargeCells>,
     images: ImageCells<InCell>,
     wrapped: Vec<Vector3<f64>>,
     cells: Vec<u32>,
@@ -110,7 +110,7 @@ impl Kolehmainen {
         permittivity: Permittivity,
         neutralising_background: bool,
         radius: f64,
-        mesh: Box<dyn Cells>,
+        mesh: Box<dyn ChargeCells>,
     ) -> Self {
         Self {
             domain: domain.clone(),
@@ -232,7 +232,7 @@ impl FieldMethod for Kolehmainen {
     }
 }
 
-/// Cells per axis, given or by the radius, whose diagonal is at most the radius.
+/// ChargeCells per axis, given or by the radius, whose diagonal is at most the radius.
 fn choose_cells(domain: &Domain, radius: f64, cells: Option<[usize; 3]>) -> Result<[usize; 3], FieldError> {
     let extent = domain.extent();
     let wanted: [f64; 3] = match cells {

@@ -2,7 +2,7 @@
 
 use super::change_file;
 use crate::Context;
-use crate::beds::{self, Cloud};
+use crate::beds::{self, ChargedBed};
 use crate::page::{Table, figure};
 use crate::timing::{median, median_seconds};
 use amberfield_core::{
@@ -98,7 +98,7 @@ fn settings_of(case: &Path, start: bool) -> SolverSettings {
 
 /// Seconds of an exchange with a field side that answers at once, without charges and with all of them, and
 /// the bytes there and back.
-fn exchange(domain: &Domain, cells_along: usize, cloud: &Cloud) -> Result<(f64, f64, [usize; 2])> {
+fn exchange(domain: &Domain, cells_along: usize, cloud: &ChargedBed) -> Result<(f64, f64, [usize; 2])> {
     let announced = Announced::new(settings_of(Path::new("none"), false))?;
     let (run, box_of) = (announced.run().to_owned(), domain.clone());
     let field = std::thread::spawn(move || -> Result<()> {
@@ -218,7 +218,7 @@ const HYBRID_CUTOFF: f64 = 1.8;
 
 /// Whole evaluations over OpenFOAM: all of it, its far-field step, and the bare linear solve in that.
 fn over_openfoam(
-    cloud: &Cloud,
+    cloud: &ChargedBed,
     (edge, cells_along): (f64, usize),
     path: &SolvedBy,
     root: &Path,

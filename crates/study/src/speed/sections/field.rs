@@ -1,7 +1,7 @@
 //! One evaluation of the field in a periodic box, against LAMMPS `pppm` at equal error.
 
 use crate::Context;
-use crate::beds::{self, Cloud, RADIUS, relative_error};
+use crate::beds::{self, ChargedBed, RADIUS, relative_error};
 use crate::page::{Table, figure};
 use crate::timing::{median_seconds, on_threads};
 use amberfield_core::{Boundary, FieldSettings, Method, Tuning, Vector3};
@@ -94,12 +94,12 @@ pub(crate) fn measure(context: &Context) -> Result<()> {
 /// The cloud in a closed box.
 struct Closed {
     faces: &'static str,
-    cloud: Cloud,
+    cloud: ChargedBed,
     exact: Vec<Vector3<f64>>,
 }
 
 /// The cloud in a grounded and in an insulating box.
-fn closed(cloud: &Cloud) -> Result<Vec<Closed>> {
+fn closed(cloud: &ChargedBed) -> Result<Vec<Closed>> {
     let insulating = Boundary::Insulating { normal_field_v_m: 0.0 };
     let one = |(faces, boundary)| {
         let cloud = cloud.within(boundary);
@@ -111,7 +111,7 @@ fn closed(cloud: &Cloud) -> Result<Vec<Closed>> {
 
 /// E to compare with: `direct` for few grains, else a much tighter evaluation, which is itself compared with
 /// `direct` in the tests of the field crate.
-pub(crate) fn exact(cloud: &Cloud) -> Result<Vec<Vector3<f64>>> {
+pub(crate) fn exact(cloud: &ChargedBed) -> Result<Vec<Vector3<f64>>> {
     let method = if cloud.position.len() <= 10_000 { Method::Direct } else { Method::P3m };
     let tolerance = if cloud.position.len() > 100_000 { 1e-7 } else { 1e-8 };
     let settings = FieldSettings { method, tolerance, tuning: Tuning::Model, ..FieldSettings::default() };
@@ -120,14 +120,14 @@ pub(crate) fn exact(cloud: &Cloud) -> Result<Vec<Vector3<f64>>> {
     Ok(values.e)
 }
 
-fn built(cloud: &Cloud, settings: &FieldSettings) -> Result<(ElectricField, FieldValues)> {
+fn built(cloud: &ChargedBed, settings: &FieldSettings) -> Result<(ElectricField, FieldValues)> {
     let field = ElectricField::new(&cloud.domain, settings, &cloud.position, &cloud.charge)?;
     Ok((field, FieldValues::default()))
 }
 
 /// Median seconds of an evaluation, repeated for `least_s` seconds at least; the field, and E.
 pub(crate) fn timed(
-    cloud: &Cloud,
+    cloud: &ChargedBed,
     settings: &FieldSettings,
     least_s: f64,
 ) -> Result<(f64, ElectricField, Vec<Vector3<f64>>)> {
@@ -147,7 +147,7 @@ pub(crate) struct Measured {
 }
 
 /// Time and error of an evaluation on one thread.
-pub(crate) fn ours(cloud: &Cloud, exact: &[Vector3<f64>], tolerance: f64) -> Result<Measured> {
+pub(crate) fn ours(cloud: &ChargedBed, exact: &[Vector3<f64>], tolerance: f64) -> Result<Measured> {
     let settings = FieldSettings { tolerance, ..FieldSettings::default() };
     let (seconds, field, e) = on_threads(1, || timed(cloud, &settings, 1.0))?;
     Ok(Measured {
@@ -164,7 +164,7 @@ const VERY_MANY: usize = 1_000_000;
 /// The peer's fastest settings whose error is at most the tolerance.
 fn peer(
     context: &Context,
-    cloud: &Cloud,
+    cloud: &ChargedBed,
     exact: &[Vector3<f64>],
     tolerance: f64,
     fraction: f64,

@@ -2,7 +2,7 @@
 
 use super::peak::peaks;
 use crate::Context;
-use crate::beds::{self, Cloud};
+use crate::beds::{self, ChargedBed};
 use crate::page::{Table, figure};
 use crate::timing::{median, on_threads};
 use amberfield_core::{Boundary, FieldSettings, Method};
@@ -61,7 +61,7 @@ pub(crate) fn measure(context: &Context) -> Result<()> {
 
 /// Median times of the stages, and the pairs over the time of one of them (or of all, where it is not told
 /// apart).
-fn row(what: &str, cloud: &Cloud, settings: &FieldSettings, stage: &str) -> Result<Row> {
+fn row(what: &str, cloud: &ChargedBed, settings: &FieldSettings, stage: &str) -> Result<Row> {
     let count = cloud.position.len() as f64;
     let mut field = ElectricField::new(&cloud.domain, settings, &cloud.position, &cloud.charge)?;
     let mut values = FieldValues::default();

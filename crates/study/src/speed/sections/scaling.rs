@@ -2,7 +2,7 @@
 //! the same bits.
 
 use crate::Context;
-use crate::beds::{self, Cloud};
+use crate::beds::{self, ChargedBed};
 use crate::page::{Table, figure};
 use crate::sections::field::timed;
 use crate::timing::on_threads;
@@ -69,7 +69,7 @@ pub(crate) fn measure(context: &Context) -> Result<()> {
 }
 
 /// Nanoseconds and bytes per grain, and E.
-fn field(cloud: &Cloud) -> Result<(f64, f64, Vec<Vector3<f64>>)> {
+fn field(cloud: &ChargedBed) -> Result<(f64, f64, Vec<Vector3<f64>>)> {
     let settings = FieldSettings { tolerance: TOLERANCE, tuning: Tuning::Model, ..FieldSettings::default() };
     let count = cloud.position.len() as f64;
     let (seconds, field, e) = timed(cloud, &settings, 0.3)?;
