@@ -17,7 +17,7 @@ pub(crate) struct Sources<'a> {
     pub(crate) charge: &'a [f64],
 }
 
-/// NearSources for partners: coordinates and charges.
+/// Candidates for partners: coordinates and charges.
 #[derive(Debug, Default)]
 pub(crate) struct NearSources<T> {
     pub(crate) x: Vec<T>,

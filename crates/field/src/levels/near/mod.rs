@@ -48,7 +48,7 @@ impl NearParameters {
     }
 }
 
-/// NearSum over real and image charges within the cut-off of a charge's field less its cloud's.
+/// Sum over real and image charges within the cut-off of a charge's field less its cloud's.
 #[derive(Debug)]
 pub(crate) struct NearLevel {
     parameters: NearParameters,

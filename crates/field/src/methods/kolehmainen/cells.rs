@@ -1,4 +1,4 @@
-//! ChargeCells with a field that is constant in each, whoever solves for it.
+//! Cells with a field that is constant in each, whoever solves for it.
 
 use super::mesh::Mesh;
 use crate::error::FieldError;
@@ -7,7 +7,7 @@ use amberfield_core::{FarQuestion, Permittivity, SourceCloud};
 use nalgebra::Vector3;
 use std::fmt::Debug;
 
-/// ChargeCells that take each charge whole and answer with a potential and a field.
+/// Cells that take each charge whole and answer with a potential and a field.
 pub(super) trait ChargeCells: Debug + Send + Sync {
     /// Finds each charge's cell and solves ∇²φ = −ρ/ε for the charges at a time [s].
     fn solve(
@@ -38,7 +38,7 @@ pub(super) trait ChargeCells: Debug + Send + Sync {
         None
     }
 
-    /// ChargeCells along each axis, where they are a box's.
+    /// Cells along each axis, where they are a box's.
     fn counts(&self) -> Option<[usize; 3]>;
 
     /// Memory held [bytes].

@@ -41,7 +41,7 @@ impl Beyond {
 /// One axis of the mesh.
 #[derive(Debug)]
 pub(super) struct MeshAxis {
-    /// ChargeCells of the box.
+    /// Cells of the box.
     pub(super) cells: usize,
     /// Cell size [m].
     pub(super) spacing: f64,
@@ -49,7 +49,7 @@ pub(super) struct MeshAxis {
     offset: usize,
     /// Transform over the cells, and over free space beside them where a face is open.
     pub(super) transform: LineTransform,
-    /// ChargeCells after which an open axis repeats itself; `None` for a closed axis.
+    /// Cells after which an open axis repeats itself; `None` for a closed axis.
     pub(super) period: Option<usize>,
     beyond: [Beyond; 2],
 }
@@ -95,7 +95,7 @@ struct Share {
     tile: Vec<f64>,
 }
 
-/// ChargeCells of a box with their potential.
+/// Cells of a box with their potential.
 #[derive(Debug)]
 pub(super) struct Mesh {
     axes: [MeshAxis; 3],
@@ -160,7 +160,7 @@ impl Mesh {
         Ok(mesh)
     }
 
-    /// ChargeCells of the box per axis.
+    /// Cells of the box per axis.
     pub(super) fn cells(&self) -> [usize; 3] {
         self.axes.each_ref().map(|axis| axis.cells)
     }

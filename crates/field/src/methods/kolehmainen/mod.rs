@@ -21,9 +21,9 @@ use mesh::Mesh;
 use nalgebra::Vector3;
 use rayon::prelude::*;
 
-/// ChargeCells per cut-off radius when the scene leaves them open: just above √3, the diagonal of a cube.
+/// Cells per cut-off radius when the scene leaves them open: just above √3, the diagonal of a cube.
 const CELLS_PER_RADIUS: f64 = 1.75;
-/// ChargeCells at most; beyond it the cut-off radius is a mistake.
+/// Cells at most; beyond it the cut-off radius is a mistake.
 const MOST_CELLS: f64 = 2e8;
 
 /// The hybrid of Kolehmainen, Ozel, Boyce and Sundaresan (2016): every charge goes to its cell, Poisson's
@@ -232,7 +232,7 @@ impl FieldMethod for Kolehmainen {
     }
 }
 
-/// ChargeCells per axis, given or by the radius, whose diagonal is at most the radius.
+/// Cells per axis, given or by the radius, whose diagonal is at most the radius.
 fn choose_cells(domain: &Domain, radius: f64, cells: Option<[usize; 3]>) -> Result<[usize; 3], FieldError> {
     let extent = domain.extent();
     let wanted: [f64; 3] = match cells {
