@@ -12,14 +12,15 @@ use std::process::{Command, Output, Stdio};
 
 const EDGE: f64 = 0.012;
 
-/// Builds the library with the profile of this test, and the program with the library.
+/// Builds the library with the profile of this test, and the program with the library. The whole workspace
+/// is named, as where the tests were built: for a part of it, crates would be compiled with other features.
 fn host(bench: &Workbench) -> PathBuf {
     let root = Path::new(env!("CARGO_MANIFEST_DIR")).join("..");
     let mut folder = std::env::current_exe().unwrap();
     folder.pop();
     folder.pop();
     let mut build = Command::new(std::env::var_os("CARGO").unwrap_or_else(|| "cargo".into()));
-    build.args(["build", "--quiet", "--package", "amberfield-capi"]).current_dir(&root);
+    build.args(["build", "--quiet", "--workspace", "--all-targets"]).current_dir(&root);
     if folder.ends_with("release") {
         build.arg("--release");
     }

@@ -12,6 +12,8 @@ const MOST: f64 = 0.01;
 const WHOLE: &str = "plain_bed";
 /// Example that runs the same bed with the folders `motion` and `contacts` alone, which know no field.
 const BARE: &str = "bare_bed";
+/// Folder in which both are built.
+const TARGET: &str = "target/leaving-out";
 /// Setting that keeps the C library from `rep stosb` and `rep movsb`, of which callgrind counts an
 /// instruction per byte.
 ///
@@ -24,8 +26,16 @@ const NO_REP: &str =
 /// with the same numbers.
 pub(crate) fn run(root: &Path) -> Result<()> {
     provide_valgrind()?;
-    let whole = measure(root, WHOLE)?;
-    let bare = measure(root, BARE)?;
+    for example in [WHOLE, BARE] {
+        let build = ["build", "--release", "-p", "amberfield-dem", "--example", example];
+        execute(cargo(root, &build).arg("--target-dir").arg(root.join(TARGET)))?;
+    }
+    let (whole, bare) = std::thread::scope(|scope| {
+        let whole = scope.spawn(|| measure(root, WHOLE));
+        let bare = measure(root, BARE);
+        (whole.join().expect("what measures does not panic"), bare)
+    });
+    let (whole, bare) = (whole?, bare?);
     ensure!(
         whole.told == bare.told,
         "the two programs do not run the same bed: {WHOLE} ends with {}, {BARE} with {}",
@@ -55,9 +65,7 @@ struct Measured {
 }
 
 fn measure(root: &Path, example: &str) -> Result<Measured> {
-    let target = root.join("target/leaving-out");
-    let build = ["build", "--release", "-p", "amberfield-dem", "--example", example];
-    execute(cargo(root, &build).arg("--target-dir").arg(&target))?;
+    let target = root.join(TARGET);
     let counts = target.join(format!("{example}.callgrind"));
     let mut count = Command::new("valgrind");
     count
