@@ -7,6 +7,7 @@
 #include "fixedGradientFvPatchFields.H"
 #include "fixedValueFvPatchFields.H"
 #include "globalIndex.H"
+#include "processorPolyPatch.H"
 #include "symmetryFvPatchFields.H"
 #include "symmetryPlaneFvPatchFields.H"
 #include "syncTools.H"
@@ -63,6 +64,21 @@ Foam::symmTensor spread
     return sum/Foam::scalar(corners.size());
 }
 
+//- Names and types of the patches that all ranks have, each on a line of its
+//  own. Patches between ranks come after them.
+Foam::string describe(const Foam::polyBoundaryMesh& patches)
+{
+    Foam::string lines;
+    for (const Foam::polyPatch& patch : patches)
+    {
+        if (!Foam::isA<Foam::processorPolyPatch>(patch))
+        {
+            lines += patch.name() + ' ' + patch.type() + '\n';
+        }
+    }
+    return lines;
+}
+
 } // End anonymous namespace
 
 
@@ -83,6 +99,8 @@ Foam::wordList Foam::meshDescription::farTypes(const volScalarField& V)
 Foam::meshDescription::meshDescription(const volScalarField& V)
 :
     view_(),
+    firstCorner_(1, 0),
+    patchLines_(describe(V.mesh().boundaryMesh())),
     centres_(V.mesh().C().primitiveField()),
     volumes_(V.mesh().V())
 {
@@ -144,7 +162,8 @@ Foam::meshDescription::meshDescription(const volScalarField& V)
             boundaryIndex[patch.start() + i - nInternal] = label(boundary_.size());
             const vector& c = patch.Cf()[i];
             const vector& n = nf[i];
-            const symmTensor m(spread(mesh.faces()[patch.start() + i], mesh.points(), c));
+            const face& corners = mesh.faces()[patch.start() + i];
+            const symmTensor m(spread(corners, mesh.points(), c));
 
             AmberfieldBoundaryFace described;
             for (direction axis = 0; axis < 3; ++axis)
@@ -154,6 +173,7 @@ Foam::meshDescription::meshDescription(const volScalarField& V)
             }
             described.area_m2 = patch.magSf()[i];
             described.cell = uint64_t(patch.faceCells()[i]);
+            described.patch = uint64_t(patchi);
             described.is_conductor = isConductor(pV) ? 1 : 0;
             described.prescribed = values[i];
             described.spread_xx_m2 = m.xx();
@@ -163,6 +183,11 @@ Foam::meshDescription::meshDescription(const volScalarField& V)
             described.spread_yz_m2 = m.yz();
             described.spread_zz_m2 = m.zz();
             boundary_.push_back(described);
+            for (const label corner : corners)
+            {
+                corners_.append(mesh.points()[corner]);
+            }
+            firstCorner_.push_back(uint64_t(corners_.size()));
         }
     }
     const globalIndex globalBoundary(label(boundary_.size()));
@@ -233,6 +258,7 @@ Foam::meshDescription::meshDescription(const volScalarField& V)
     view_.cells = uint64_t(mesh.nCells());
     view_.faces = uint64_t(count);
     view_.boundary = uint64_t(boundary_.size());
+    view_.corners = uint64_t(corners_.size());
     view_.centres = reinterpret_cast<const double*>(centres_.cdata());
     view_.volumes = volumes_.cdata();
     view_.first_face = firstFace_.data();
@@ -241,4 +267,7 @@ Foam::meshDescription::meshDescription(const volScalarField& V)
     view_.face_neighbours = neighbours_.data();
     view_.face_shifts = reinterpret_cast<const double*>(shifts_.cdata());
     view_.boundary_faces = boundary_.data();
+    view_.first_corner = firstCorner_.data();
+    view_.corner_points = reinterpret_cast<const double*>(corners_.cdata());
+    view_.patches = patchLines_.c_str();
 }

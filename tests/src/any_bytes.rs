@@ -36,7 +36,7 @@ const SURFACE: &str = include_str!("../fuzz/good/surface.stl");
 /// Fingerprint with which checkpoints are read.
 const HASH: u64 = 42;
 /// Sections of messages.
-const SECTIONS: [Section; 32] = [
+const SECTIONS: [Section; 35] = [
     Section::Text,
     Section::Positions,
     Section::Charges,
@@ -69,6 +69,9 @@ const SECTIONS: [Section; 32] = [
     Section::FlowAnswer,
     Section::FlowState,
     Section::FlowStateSizes,
+    Section::FirstCorner,
+    Section::Corners,
+    Section::Patches,
 ];
 
 /// Reads a good scene in which the bytes replace one file.
@@ -214,12 +217,15 @@ fn mesh(bytes: &[u8]) {
     let mut neighbours = part.face_neighbours.to_vec();
     let mut shifts = part.face_shifts.to_vec();
     let mut boundary = part.boundary_faces.to_vec();
+    let mut first_corner = part.first_corner.to_vec();
+    let mut corners = part.corners.to_vec();
+    let mut patches = part.patches.to_vec();
     let mut outline = part.outline;
     for change in bytes.chunks_exact(11) {
         let place = usize::from(change[1]) | usize::from(change[2]) << 8;
         let word = u64::from_le_bytes(change[3..].try_into().expect("eight bytes"));
         let number = f64::from_bits(word);
-        match change[0] % 10 {
+        match change[0] % 13 {
             0 if place % 2 == 0 => outline.low_m[(place >> 1) % 3] = number,
             0 => outline.high_m[(place >> 1) % 3] = number,
             1 => outline.first_cell = word,
@@ -230,7 +236,10 @@ fn mesh(bytes: &[u8]) {
             6 => set_in(&mut centres, place, number),
             7 => set_in(&mut normals, place, number),
             8 => set_in(&mut shifts, place, number),
-            _ => set_in_face(&mut boundary, place, word),
+            9 => set_in_face(&mut boundary, place, word),
+            10 => set(&mut first_corner, place, word),
+            11 => set_in(&mut corners, place, number),
+            _ => set(&mut patches, place, word as u8),
         }
     }
     let changed = MeshPart {
@@ -242,6 +251,9 @@ fn mesh(bytes: &[u8]) {
         face_neighbours: &neighbours,
         face_shifts: &shifts,
         boundary_faces: &boundary,
+        first_corner: &first_corner,
+        corners: &corners,
+        patches: &patches,
         ..part
     };
     if let Ok(mesh) = assemble(&[changed]) {
@@ -249,6 +261,8 @@ fn mesh(bytes: &[u8]) {
             let (cell, _) = mesh.locate(&place, None);
             assert!((cell as usize) < mesh.cell_count());
         }
+        let faces = 0..mesh.boundary().len();
+        assert!(faces.into_iter().all(|face| mesh.corners_of(face).len() >= 3));
     }
 }
 
@@ -264,22 +278,23 @@ fn set_in<const N: usize>(vectors: &mut [[f64; N]], place: usize, number: f64) {
     vectors[place % count / N][place % N] = number;
 }
 
-/// Sets one of the sixteen numbers of a face, in the order of its fields.
+/// Sets one of the seventeen numbers of a face, in the order of its fields.
 fn set_in_face(faces: &mut [BoundaryFace], place: usize, word: u64) {
-    let count = 16 * faces.len();
-    let (face, number) = (&mut faces[place % count / 16], f64::from_bits(word));
-    match place % 16 {
+    let count = 17 * faces.len();
+    let (face, number) = (&mut faces[place % count / 17], f64::from_bits(word));
+    match place % 17 {
         axis @ 0..3 => face.centre_m[axis] = number,
         axis @ 3..6 => face.normal[axis - 3] = number,
         6 => face.area_m2 = number,
         7 => face.cell = word,
-        8 => face.is_conductor = word,
-        9 => face.prescribed = number,
-        10 => face.spread_xx_m2 = number,
-        11 => face.spread_xy_m2 = number,
-        12 => face.spread_xz_m2 = number,
-        13 => face.spread_yy_m2 = number,
-        14 => face.spread_yz_m2 = number,
+        8 => face.patch = word,
+        9 => face.is_conductor = word,
+        10 => face.prescribed = number,
+        11 => face.spread_xx_m2 = number,
+        12 => face.spread_xy_m2 = number,
+        13 => face.spread_xz_m2 = number,
+        14 => face.spread_yy_m2 = number,
+        15 => face.spread_yz_m2 = number,
         _ => face.spread_zz_m2 = number,
     }
 }

@@ -77,6 +77,8 @@ typedef struct AmberfieldBoundaryFace {
   double area_m2;
   // Cell of this rank that the face belongs to.
   uint64_t cell;
+  // Patch that the face belongs to, by its place among all patches.
+  uint64_t patch;
   // 1: the potential is prescribed; 0: its outward slope is.
   uint64_t is_conductor;
   // Prescribed potential [V] or outward slope [V/m].
@@ -107,6 +109,8 @@ typedef struct AmberfieldMesh {
   uint64_t faces;
   // Boundary faces of this rank.
   uint64_t boundary;
+  // Corners of this rank's boundary faces; one that faces share counts once for each.
+  uint64_t corners;
   // Cell centres.
   const double *centres;
   // Cell volumes.
@@ -123,6 +127,12 @@ typedef struct AmberfieldMesh {
   const double *face_shifts;
   // Boundary faces of this rank, with the conditions there.
   const struct AmberfieldBoundaryFace *boundary_faces;
+  // Place of each boundary face's first corner, and at last the number of corners.
+  const uint64_t *first_corner;
+  // Corners of the boundary faces, in order around each, right-handed about its normal.
+  const double *corner_points;
+  // Patches of the mesh: lines of a name, a blank and a type; the same for all ranks.
+  const char *patches;
 } AmberfieldMesh;
 
 // Cloud of charge that stands for a grain in the far part of the field.
@@ -283,7 +293,7 @@ const char *amberfield_field_error(const struct AmberfieldField *field);
 //
 // # Safety
 // `field` comes from amberfield_field_open and is not closed; the mesh's arrays have the lengths that it
-// says.
+// says, and its patches are a C string.
 enum AmberfieldStatus amberfield_field_send_mesh(struct AmberfieldField *field,
                                                  const struct AmberfieldMesh *mesh);
 

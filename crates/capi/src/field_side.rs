@@ -27,6 +27,8 @@ pub struct AmberfieldMesh {
     pub faces: u64,
     /// Boundary faces of this rank.
     pub boundary: u64,
+    /// Corners of this rank's boundary faces; one that faces share counts once for each.
+    pub corners: u64,
     /// Cell centres.
     pub centres: *const f64,
     /// Cell volumes.
@@ -43,6 +45,12 @@ pub struct AmberfieldMesh {
     pub face_shifts: *const f64,
     /// Boundary faces of this rank, with the conditions there.
     pub boundary_faces: *const BoundaryFace,
+    /// Place of each boundary face's first corner, and at last the number of corners.
+    pub first_corner: *const u64,
+    /// Corners of the boundary faces, in order around each, right-handed about its normal.
+    pub corner_points: *const f64,
+    /// Patches of the mesh: lines of a name, a blank and a type; the same for all ranks.
+    pub patches: *const c_char,
 }
 
 /// The far field at this rank's cell centres, and how it was found.
@@ -158,7 +166,7 @@ pub unsafe extern "C" fn amberfield_field_error(field: *const AmberfieldField) -
 ///
 /// # Safety
 /// `field` comes from amberfield_field_open and is not closed; the mesh's arrays have the lengths that it
-/// says.
+/// says, and its patches are a C string.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn amberfield_field_send_mesh(
     field: *mut AmberfieldField,
@@ -166,7 +174,7 @@ pub unsafe extern "C" fn amberfield_field_send_mesh(
 ) -> AmberfieldStatus {
     // SAFETY: the caller's promise.
     let mesh = unsafe { &*mesh };
-    let (cells, faces) = (mesh.cells as usize, mesh.faces as usize);
+    let (cells, faces, boundary) = (mesh.cells as usize, mesh.faces as usize, mesh.boundary as usize);
     // SAFETY: the caller's promise; three doubles have the layout of an array of three.
     let part = unsafe {
         MeshPart {
@@ -178,7 +186,10 @@ pub unsafe extern "C" fn amberfield_field_send_mesh(
             face_offsets: slice(mesh.face_offsets, faces),
             face_neighbours: slice(mesh.face_neighbours, faces),
             face_shifts: slice(mesh.face_shifts.cast(), faces),
-            boundary_faces: slice(mesh.boundary_faces, mesh.boundary as usize),
+            boundary_faces: slice(mesh.boundary_faces, boundary),
+            first_corner: slice(mesh.first_corner, boundary + 1),
+            corners: slice(mesh.corner_points.cast(), mesh.corners as usize),
+            patches: CStr::from_ptr(mesh.patches).to_bytes(),
         }
     };
     // SAFETY: the caller's promise.

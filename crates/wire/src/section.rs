@@ -71,4 +71,10 @@ pub enum Section {
     FlowState = 31,
     /// Number of each rank's numbers in the state of the flow (`u64`).
     FlowStateSizes = 32,
+    /// Place of each boundary face's first corner (`u64`), one more than there are boundary faces.
+    FirstCorner = 33,
+    /// Corners of the boundary faces, in order around each, right-handed about its normal [m].
+    Corners = 34,
+    /// Patches of the mesh, UTF-8: lines of a name, a blank and a type; the same for all ranks.
+    Patches = 35,
 }

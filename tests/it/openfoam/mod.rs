@@ -7,6 +7,7 @@ mod function_object;
 mod gas;
 mod gas_runs;
 mod meshes;
+mod patches;
 mod sharing;
 
 use amberfield_tests::Answer;

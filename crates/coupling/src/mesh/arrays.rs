@@ -15,6 +15,9 @@ pub struct MeshArrays {
     neighbours: Vec<i64>,
     shifts: Vec<[f64; 3]>,
     boundary: Vec<payloads::BoundaryFace>,
+    first_corner: Vec<u64>,
+    corners: Vec<[f64; 3]>,
+    patches: String,
 }
 
 impl MeshArrays {
@@ -25,6 +28,12 @@ impl MeshArrays {
         let mut first_face = vec![0];
         for cell in 0..mesh.cell_count() {
             first_face.push(first_face[cell] + mesh.faces_of(cell).len() as u64);
+        }
+        let mut first_corner = vec![0];
+        let mut corners: Vec<[f64; 3]> = Vec::new();
+        for face in 0..mesh.boundary().len() {
+            corners.extend(mesh.corners_of(face).iter().map(|&corner| <[f64; 3]>::from(corner)));
+            first_corner.push(corners.len() as u64);
         }
         let beyond = |neighbour: Neighbour| match neighbour {
             Neighbour::Cell { cell, shift } => (i64::from(cell), shift.into()),
@@ -38,6 +47,9 @@ impl MeshArrays {
             neighbours: faces.iter().map(|face| beyond(face.neighbour).0).collect(),
             shifts: faces.iter().map(|face| beyond(face.neighbour).1).collect(),
             boundary: mesh.boundary().iter().map(boundary_face).collect(),
+            first_corner,
+            corners,
+            patches: mesh.patches().iter().map(|patch| format!("{} {}\n", patch.name, patch.kind)).collect(),
         }
     }
 
@@ -61,6 +73,9 @@ impl MeshArrays {
             face_neighbours: &self.neighbours,
             face_shifts: &self.shifts,
             boundary_faces: &self.boundary,
+            first_corner: &self.first_corner,
+            corners: &self.corners,
+            patches: self.patches.as_bytes(),
         }
     }
 }
@@ -76,6 +91,7 @@ fn boundary_face(face: &BoundaryFace) -> payloads::BoundaryFace {
         normal: face.normal.into(),
         area_m2: face.area,
         cell: u64::from(face.cell),
+        patch: u64::from(face.patch),
         is_conductor,
         prescribed,
         spread_xx_m2: face.spread.m11,

@@ -3,10 +3,13 @@
 use crate::CouplingError;
 use amberfield_core::{Boundary, Domain, Matrix3, Vector3};
 use amberfield_field::FieldError;
-use amberfield_field::far::{BoundaryFace, CellFace, Condition, FarMesh, FarMeshParts, Neighbour};
+use amberfield_field::far::{BoundaryFace, CellFace, Condition, FarMesh, FarMeshParts, MeshPatch, Neighbour};
 use amberfield_wire::payloads::{self, MeshOutline};
 use amberfield_wire::{Block64, Header, Layout, MessageKind, Section, Sections, WireError};
 use std::mem::MaybeUninit;
+
+/// Patch that ends one rank's cells where another's begin, in the form of [`MeshPart`].
+const END_OF_PART: &[u8] = b"anotherRank processor\n";
 
 /// One rank's part of a mesh, in arrays as the wire has them: see [`Section`].
 #[derive(Clone, Copy, Debug)]
@@ -29,6 +32,12 @@ pub struct MeshPart<'a> {
     pub face_shifts: &'a [[f64; 3]],
     /// Boundary faces of this rank, with the conditions there.
     pub boundary_faces: &'a [payloads::BoundaryFace],
+    /// Place of each boundary face's first corner, and at last the number of corners.
+    pub first_corner: &'a [u64],
+    /// Corners of the boundary faces, in order around each, right-handed about its normal [m].
+    pub corners: &'a [[f64; 3]],
+    /// Patches of the mesh: lines of a name, a blank and a type; the same for all ranks.
+    pub patches: &'a [u8],
 }
 
 impl MeshPart<'_> {
@@ -43,6 +52,9 @@ impl MeshPart<'_> {
             .with::<i64>(Section::FaceNeighbours, self.face_neighbours.len())
             .with::<[f64; 3]>(Section::FaceShifts, self.face_shifts.len())
             .with::<payloads::BoundaryFace>(Section::BoundaryFaces, self.boundary_faces.len())
+            .with::<u64>(Section::FirstCorner, self.first_corner.len())
+            .with::<[f64; 3]>(Section::Corners, self.corners.len())
+            .with::<u8>(Section::Patches, self.patches.len())
     }
 
     pub(crate) fn write(
@@ -60,6 +72,9 @@ impl MeshPart<'_> {
         layout.section_mut::<[f64; 3]>(payload, Section::FaceShifts)?.copy_from_slice(self.face_shifts);
         let faces = layout.section_mut::<payloads::BoundaryFace>(payload, Section::BoundaryFaces)?;
         faces.copy_from_slice(self.boundary_faces);
+        layout.section_mut::<u64>(payload, Section::FirstCorner)?.copy_from_slice(self.first_corner);
+        layout.section_mut::<[f64; 3]>(payload, Section::Corners)?.copy_from_slice(self.corners);
+        layout.section_mut::<u8>(payload, Section::Patches)?.copy_from_slice(self.patches);
         Ok(())
     }
 
@@ -70,6 +85,7 @@ impl MeshPart<'_> {
     pub fn read<'a>(sections: &Sections<'a>) -> Result<MeshPart<'a>, WireError> {
         let centres = sections.get::<[f64; 3]>(Section::Centres)?;
         let face_normals = sections.get::<[f64; 3]>(Section::FaceNormals)?;
+        let boundary_faces = sections.get::<payloads::BoundaryFace>(Section::BoundaryFaces)?;
         Ok(MeshPart {
             outline: *sections.one(Section::MeshOutline)?,
             centres,
@@ -79,7 +95,10 @@ impl MeshPart<'_> {
             face_offsets: sections.exactly(Section::FaceOffsets, face_normals.len())?,
             face_neighbours: sections.exactly(Section::FaceNeighbours, face_normals.len())?,
             face_shifts: sections.exactly(Section::FaceShifts, face_normals.len())?,
-            boundary_faces: sections.get(Section::BoundaryFaces)?,
+            boundary_faces,
+            first_corner: sections.exactly(Section::FirstCorner, boundary_faces.len() + 1)?,
+            corners: sections.get(Section::Corners)?,
+            patches: sections.get(Section::Patches)?,
         })
     }
 }
@@ -104,22 +123,23 @@ pub fn assemble(parts: &[MeshPart<'_>]) -> Result<FarMesh, CouplingError> {
         first_face: vec![0],
         faces: Vec::new(),
         boundary: Vec::new(),
+        first_corner: vec![0],
+        corners: Vec::new(),
+        patches: patches_of(&parts[0]),
     };
     for part in parts {
         let first = whole.centres.len();
-        let (first_face, first_boundary) = (whole.faces.len() as u64, whole.boundary.len() as i64);
-        let face_from = |face: &u64| {
-            let face = first_face.saturating_add(*face);
-            u32::try_from(face).map_err(|_| broken(format!("a face's number is {face}")))
-        };
+        let (first_face, first_boundary) = (whole.faces.len(), whole.boundary.len() as i64);
         let announced = part.outline.first_cell;
         if announced != first as u64 {
             return Err(broken(format!("a rank's cells begin at {announced} instead of {first}")));
         }
+        if part.patches != parts[0].patches {
+            return Err(broken("its ranks have different patches".to_owned()));
+        }
         whole.centres.extend(part.centres.iter().map(|&centre| Vector3::from(centre)));
         whole.volumes.extend(part.volumes);
-        let ends: Result<Vec<u32>, _> = part.first_face[1..].iter().map(face_from).collect();
-        whole.first_face.extend(ends?);
+        whole.first_face.extend(ends_from(first_face, part.first_face)?);
         for (face, &neighbour) in part.face_neighbours.iter().enumerate() {
             let neighbour = if neighbour >= 0 {
                 let shift = Vector3::from(part.face_shifts[face]);
@@ -133,12 +153,32 @@ pub fn assemble(parts: &[MeshPart<'_>]) -> Result<FarMesh, CouplingError> {
         for face in part.boundary_faces {
             whole.boundary.push(boundary_face(face, first)?);
         }
+        whole.first_corner.extend(ends_from(whole.corners.len(), part.first_corner)?);
+        whole.corners.extend(part.corners.iter().map(|&corner| Vector3::from(corner)));
     }
     let (announced, came) = (parts[0].outline.all_cells, whole.centres.len());
     if announced != came as u64 {
         return Err(broken(format!("{announced} cells were announced, {came} came")));
     }
     Ok(FarMesh::new(whole)?)
+}
+
+/// Ends of the lists whose begins a rank gives, where `first` entries of lower ranks come before its own.
+fn ends_from(first: usize, begins: &[u64]) -> Result<Vec<u32>, CouplingError> {
+    let end_from = |end: &u64| {
+        let end = (first as u64).saturating_add(*end);
+        u32::try_from(end).map_err(|_| broken(format!("the end of a list in it is {end}")))
+    };
+    begins[1..].iter().map(end_from).collect()
+}
+
+/// Patches that a rank describes.
+fn patches_of(part: &MeshPart<'_>) -> Vec<MeshPatch> {
+    let patch = |line: &str| {
+        let (name, kind) = line.split_once(' ').unwrap_or((line, ""));
+        MeshPatch { name: name.to_owned(), kind: kind.to_owned() }
+    };
+    String::from_utf8_lossy(part.patches).lines().map(patch).collect()
 }
 
 /// A boundary face as it travels, of a rank whose first cell has the number `first` among all.
@@ -152,6 +192,7 @@ fn boundary_face(face: &payloads::BoundaryFace, first: usize) -> Result<Boundary
         area: face.area_m2,
         spread: Matrix3::new(xx, xy, xz, xy, yy, yz, xz, yz, zz),
         cell: index((first as i64).saturating_add(cell))?,
+        patch: index(i64::try_from(face.patch).unwrap_or(i64::MAX))?,
         condition: match face.is_conductor {
             0 => Condition::Slope(face.prescribed),
             _ => Condition::Potential(face.prescribed),
@@ -165,6 +206,9 @@ pub(crate) fn own_cells(part: &MeshPart<'_>) -> Result<FarMesh, CouplingError> {
     let first = part.outline.first_cell;
     let own = first..first + part.centres.len() as u64;
     let mut boundary = part.boundary_faces.to_vec();
+    let (mut first_corner, mut corners) = (part.first_corner.to_vec(), part.corners.to_vec());
+    let patches = [part.patches, END_OF_PART].concat();
+    let patch = patches_of(part).len() as u64;
     let mut neighbours = part.face_neighbours.to_vec();
     for (cell, ends) in part.first_face.windows(2).enumerate() {
         let faces = ends[0] as usize..ends[1] as usize;
@@ -176,7 +220,10 @@ pub(crate) fn own_cells(part: &MeshPart<'_>) -> Result<FarMesh, CouplingError> {
                 *neighbour -= first as i64;
             } else {
                 *neighbour = -1 - boundary.len() as i64;
-                boundary.push(end_of_part(part.centres[cell], *normal, cell as u64));
+                let centre = part.centres[cell];
+                boundary.push(end_of_part(centre, *normal, cell as u64, patch));
+                corners.extend([centre; 3]);
+                first_corner.push(corners.len() as u64);
             }
         }
     }
@@ -184,18 +231,22 @@ pub(crate) fn own_cells(part: &MeshPart<'_>) -> Result<FarMesh, CouplingError> {
         outline: MeshOutline { first_cell: 0, all_cells: part.centres.len() as u64, ..part.outline },
         face_neighbours: &neighbours,
         boundary_faces: &boundary,
+        first_corner: &first_corner,
+        corners: &corners,
+        patches: &patches,
         ..*part
     };
     assemble(&[alone])
 }
 
 /// A face between a cell of this rank and one of another: only where it is and that it ends the part counts.
-fn end_of_part(centre_m: [f64; 3], normal: [f64; 3], cell: u64) -> payloads::BoundaryFace {
+fn end_of_part(centre_m: [f64; 3], normal: [f64; 3], cell: u64, patch: u64) -> payloads::BoundaryFace {
     payloads::BoundaryFace {
         centre_m,
         normal,
         area_m2: 1.0,
         cell,
+        patch,
         is_conductor: 0,
         prescribed: 0.0,
         spread_xx_m2: 0.0,

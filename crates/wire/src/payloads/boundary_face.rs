@@ -15,6 +15,8 @@ pub struct BoundaryFace {
     pub area_m2: f64,
     /// Cell of this rank that the face belongs to.
     pub cell: u64,
+    /// Patch that the face belongs to, by its place among all patches.
+    pub patch: u64,
     /// 1: the potential is prescribed; 0: its outward slope is.
     pub is_conductor: u64,
     /// Prescribed potential [V] or outward slope [V/m].
@@ -33,17 +35,18 @@ pub struct BoundaryFace {
     pub spread_zz_m2: f64,
 }
 
-// SAFETY: sixteen numbers without padding, see below.
+// SAFETY: seventeen numbers without padding, see below.
 unsafe impl Element for BoundaryFace {}
 
 const _: () = {
-    assert!(size_of::<BoundaryFace>() == 128);
+    assert!(size_of::<BoundaryFace>() == 136);
     assert!(offset_of!(BoundaryFace, centre_m) == 0);
     assert!(offset_of!(BoundaryFace, normal) == 24);
     assert!(offset_of!(BoundaryFace, area_m2) == 48);
     assert!(offset_of!(BoundaryFace, cell) == 56);
-    assert!(offset_of!(BoundaryFace, is_conductor) == 64);
-    assert!(offset_of!(BoundaryFace, prescribed) == 72);
-    assert!(offset_of!(BoundaryFace, spread_xx_m2) == 80);
-    assert!(offset_of!(BoundaryFace, spread_zz_m2) == 120);
+    assert!(offset_of!(BoundaryFace, patch) == 64);
+    assert!(offset_of!(BoundaryFace, is_conductor) == 72);
+    assert!(offset_of!(BoundaryFace, prescribed) == 80);
+    assert!(offset_of!(BoundaryFace, spread_xx_m2) == 88);
+    assert!(offset_of!(BoundaryFace, spread_zz_m2) == 128);
 };

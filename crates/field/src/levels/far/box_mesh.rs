@@ -1,9 +1,12 @@
 //! A mesh of equal cells in a box.
 
-use super::{BoundaryFace, CellFace, Condition, FarMeshParts, Neighbour};
+use super::{BoundaryFace, CellFace, Condition, FarMeshParts, MeshPatch, Neighbour};
 use crate::error::FieldError;
 use amberfield_core::{Axis, Boundary, Domain};
 use nalgebra::{Matrix3, Vector3};
+
+/// Names of a box's patches: both sides of each axis.
+const PATCHES: [&str; 6] = ["xMin", "xMax", "yMin", "yMax", "zMin", "zMax"];
 
 impl FarMeshParts {
     /// A box of `counts` equal cells with the domain's faces; a mesh for tests and comparisons.
@@ -14,6 +17,7 @@ impl FarMeshParts {
         let size = Vector3::from_fn(|axis, _| domain.extent()[axis] / counts[axis] as f64);
         let mut faces = Vec::new();
         let (mut boundary, mut first_face, mut centres) = (Vec::new(), vec![0], Vec::new());
+        let (mut first_corner, mut corners) = (vec![0], Vec::new());
         let index = |at: [usize; 3]| ((at[2] * counts[1] + at[1]) * counts[0] + at[0]) as u32;
         for cell in 0..counts.iter().product::<usize>() {
             let at = [cell % counts[0], cell / counts[0] % counts[1], cell / counts[0] / counts[1]];
@@ -56,8 +60,11 @@ impl FarMeshParts {
                             area,
                             spread: Matrix3::from_diagonal(&half.component_mul(&half)),
                             cell,
+                            patch: (2 * a + side) as u32,
                             condition,
                         });
+                        corners.extend(corners_of(face_centre, half, a, sign));
+                        first_corner.push(corners.len() as u32);
                         Neighbour::Boundary(boundary.len() as u32 - 1)
                     };
                     faces.push(CellFace { normal, offset: normal.dot(&face_centre), neighbour });
@@ -70,6 +77,20 @@ impl FarMeshParts {
         });
         let domain = Domain::new(domain.min(), domain.max(), ends).expect("as good as the domain given");
         let volumes = vec![size.product(); centres.len()];
-        Ok(Self { domain, centres, volumes, first_face, faces, boundary })
+        let wall = |name: &str| MeshPatch { name: name.to_owned(), kind: "wall".to_owned() };
+        let patches = PATCHES.map(wall).to_vec();
+        Ok(Self { domain, centres, volumes, first_face, faces, boundary, first_corner, corners, patches })
     }
+}
+
+/// Corners of a rectangle across an axis, right-handed about its normal, which points along the axis or, with
+/// a negative sign, against it.
+fn corners_of(centre: Vector3<f64>, half: Vector3<f64>, axis: usize, sign: f64) -> [Vector3<f64>; 4] {
+    let (next, last) = ((axis + 1) % 3, (axis + 2) % 3);
+    [[-1.0, -1.0], [1.0, -1.0], [1.0, 1.0], [-1.0, 1.0]].map(|[u, v]| {
+        let mut corner = centre;
+        corner[next] += sign * u * half[next];
+        corner[last] += v * half[last];
+        corner
+    })
 }

@@ -1,5 +1,6 @@
 //! Cells of any shape, what lies beyond each of their faces, and in which of them a point lies.
 
+use super::boundary::{MeshPatch, check_boundary};
 use crate::error::FieldError;
 use amberfield_core::Domain;
 use nalgebra::{Matrix3, Vector3};
@@ -75,6 +76,8 @@ pub struct BoundaryFace {
     pub spread: Matrix3<f64>,
     /// Cell that the face belongs to.
     pub cell: u32,
+    /// Patch that the face belongs to.
+    pub patch: u32,
     /// Condition on the whole potential.
     pub condition: Condition,
 }
@@ -94,6 +97,12 @@ pub struct FarMeshParts {
     pub faces: Vec<CellFace>,
     /// Faces at the end of the mesh.
     pub boundary: Vec<BoundaryFace>,
+    /// Begin of each boundary face's corners in `corners`; one more than there are boundary faces.
+    pub first_corner: Vec<u32>,
+    /// Corners of the boundary faces, face by face, in order around each: right-handed about its normal [m].
+    pub corners: Vec<Vector3<f64>>,
+    /// Patches of the boundary; some may have no face.
+    pub patches: Vec<MeshPatch>,
 }
 
 /// The cells of a far level.
@@ -112,6 +121,7 @@ impl FarMesh {
     /// The first part that makes no sense.
     pub fn new(parts: FarMeshParts) -> Result<Self, FieldError> {
         check(&parts)?;
+        check_boundary(&parts)?;
         let sizes = parts.volumes.iter().map(|volume| volume.cbrt()).collect();
         let mut mesh = Self { bins: Bins::new(&parts), sizes, parts };
         mesh.bins.fill(&mesh.parts);
@@ -152,6 +162,19 @@ impl FarMesh {
     #[must_use]
     pub fn boundary(&self) -> &[BoundaryFace] {
         &self.parts.boundary
+    }
+
+    /// Corners of a boundary face in order around it, right-handed about its normal [m]; at least three.
+    #[must_use]
+    pub fn corners_of(&self, face: usize) -> &[Vector3<f64>] {
+        let first = &self.parts.first_corner;
+        &self.parts.corners[first[face] as usize..first[face + 1] as usize]
+    }
+
+    /// Patches of the boundary, by the index that its faces have; some may have no face.
+    #[must_use]
+    pub fn patches(&self) -> &[MeshPatch] {
+        &self.parts.patches
     }
 
     /// Place at which a boundary face's condition counts [m]: a slope at the face's centre; a potential at
@@ -366,6 +389,21 @@ mod tests {
     }
 
     #[test]
+    fn boundary_faces_have_their_corners_around_their_normals_and_a_named_patch() {
+        let mesh = mesh();
+        for (index, face) in mesh.boundary().iter().enumerate() {
+            let corners = mesh.corners_of(index);
+            let area = (corners[1] - corners[0]).cross(&(corners[2] - corners[1]));
+            assert!((area - face.normal * face.area).norm() < 1e-12, "{area} {face:?}");
+            assert!((corners.iter().sum::<Vector3<f64>>() / 4.0 - face.centre).norm() < 1e-12);
+            let axis = face.normal.iamax();
+            let side = if face.normal[axis] < 0.0 { "Min" } else { "Max" };
+            let name = format!("{}{side}", ["x", "y", "z"][axis]);
+            assert_eq!(mesh.patches()[face.patch as usize].name, name);
+        }
+    }
+
+    #[test]
     fn broken_meshes_are_refused() {
         let break_it = |harm: &dyn Fn(&mut FarMeshParts)| {
             let mut parts = mesh().parts;
@@ -377,5 +415,12 @@ mod tests {
         assert!(break_it(&|parts| parts.first_face[60] = 7).contains("count of faces"));
         assert!(break_it(&|parts| parts.faces[1].neighbour = Neighbour::Boundary(99)).contains("face 1"));
         assert!(break_it(&|parts| parts.centres[7].x = f64::INFINITY).contains("centre of cell 7"));
+        assert!(break_it(&|parts| parts.corners[9].z = f64::NAN).contains("corner 9"));
+        assert!(break_it(&|parts| parts.first_corner[2] = 6).contains("corners of boundary face 1 is 2"));
+        assert!(break_it(&|parts| parts.first_corner[2] = 3).contains("corners of boundary face 1 is -1"));
+        assert!(break_it(&|parts| _ = parts.corners.pop()).contains("54 counts of their corners"));
+        assert!(
+            break_it(&|parts| parts.boundary[3].patch = 6).contains("patch of boundary face 3 is 6 of 6")
+        );
     }
 }

@@ -3,6 +3,7 @@
 //!
 //! Another process with OpenFOAM does, or a solver in this one: whoever implements [`FarField`].
 
+mod boundary;
 mod box_mesh;
 mod density;
 mod level;
@@ -11,6 +12,7 @@ mod mesh;
 mod solver;
 mod walls;
 
+pub use boundary::MeshPatch;
 pub use density::SmoothDensity;
 pub(crate) use level::FarLevel;
 pub use mesh::{BoundaryFace, CellFace, Condition, FarMesh, FarMeshParts, Neighbour};
