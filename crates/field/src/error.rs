@@ -16,6 +16,28 @@ pub enum FieldError {
         /// Net charge [C], less what the faces' normal fields take.
         net_charge_c: f64,
     },
+    /// Net charge in a part of a mesh that is closed off from the rest, and whose faces are all insulating or
+    /// cyclic.
+    #[error(
+        "net charge {net_charge_c:e} C in a part of the mesh whose faces are all insulating or cyclic has no \
+         field: {cells} of {all_cells} cells, with centres from {} to {} m, which no face joins to the \
+         rest; make the charge there zero, ground a patch there, or set \
+         electric_field.neutralising_background = true",
+        shown(low_m),
+        shown(high_m)
+    )]
+    NetChargeOfPart {
+        /// Net charge of the part [C], less what its faces' slopes take.
+        net_charge_c: f64,
+        /// Number of its cells.
+        cells: usize,
+        /// Number of all cells.
+        all_cells: usize,
+        /// Lower corner of the box of its cells' centres [m].
+        low_m: [f64; 3],
+        /// Upper corner of that box [m].
+        high_m: [f64; 3],
+    },
     /// A position or charge is not finite.
     #[error("grain at index {index} has a position or charge that is not finite")]
     NotFinite {
@@ -25,6 +47,9 @@ pub enum FieldError {
     /// The field solver of another process is lost or makes no sense.
     #[error("{0}")]
     Solver(String),
+    /// The linear solver of another process gave up before its tolerance.
+    #[error("{0}")]
+    NotConverged(String),
     /// The tolerance cannot be met.
     #[error("tolerance {asked:e} cannot be met: best measured error {reached:e}; {advice}")]
     Tolerance {
@@ -43,4 +68,9 @@ impl FieldError {
     pub fn is_of_solver(&self) -> bool {
         matches!(self, Self::Solver(_))
     }
+}
+
+/// A place in few digits.
+fn shown([x, y, z]: &[f64; 3]) -> String {
+    format!("({x:.4e} {y:.4e} {z:.4e})")
 }

@@ -191,15 +191,13 @@ impl FieldMethod for P3m {
         let background = self.neutralising_background;
         match &self.far {
             None => check_charges_in_box(&self.domain, permittivity, background, positions, charges)?,
-            Some(far) => {
-                check_finite(positions, charges)?;
-                far.check_net_charge(charges)?;
-            }
+            Some(_) => check_finite(positions, charges)?,
         }
         self.stopwatch.restart();
         let targets = self.load(positions, charges);
         if let Some(far) = &mut self.far {
             far.locate(&self.positions[..positions.len()])?;
+            far.check_net_charge(charges)?;
         }
         self.near.sort(&self.positions, &self.charges, targets);
         self.stopwatch.lap("sort");

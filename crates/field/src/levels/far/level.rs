@@ -82,9 +82,10 @@ impl FarLevel {
         self.around(self.depth + 0.5 * self.cloud_as_returned().radius, Boundary::Periodic)
     }
 
-    /// Refuses a net charge that no face of the mesh takes.
+    /// Refuses a net charge that no face of its part of the mesh takes, after [`Self::locate`].
     pub(crate) fn check_net_charge(&self, charges: &[f64]) -> Result<(), FieldError> {
-        check_net_charge(self.mesh(), self.permittivity, self.neutralising_background, charges)
+        let background = self.neutralising_background;
+        check_net_charge(self.mesh(), self.permittivity, background, charges, &self.cells)
     }
 
     fn around(&self, margin: f64, face: Boundary) -> Domain {

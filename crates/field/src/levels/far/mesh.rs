@@ -1,25 +1,16 @@
-//! Cells of any shape, what lies beyond each of their faces, and in which of them a point lies.
+//! Cells of any shape, and what lies beyond each of their faces.
 
 use super::boundary::{MeshPatch, check_boundary};
+use super::connected::ConnectedParts;
+use super::reentrant::ReentrantEdges;
+use super::tree::CellTree;
 use crate::error::FieldError;
 use amberfield_core::Domain;
 use nalgebra::{Matrix3, Vector3};
-use rayon::prelude::*;
 use std::fmt::Display;
 
-/// Distance beyond a face at which a point still counts as inside, over the cell's size.
-const ON_FACE: f64 = 1e-9;
-/// Farthest that a grain's centre may be outside the mesh, over the size of the cell there.
-const MOST_BEYOND: f64 = 0.5;
 /// Shift of the place of a condition from the foot towards its face's centre, over their distance.
 const APART: f64 = 1e-3;
-/// Cells of a walk at most, before the search begins anew.
-const LONGEST_WALK: usize = 10_000;
-/// Cells per bin of the table in which walks begin.
-const CELLS_PER_BIN: f64 = 2.0;
-/// Bins along an axis at most.
-const MOST_BINS: f64 = 256.0;
-
 /// Neighbour of a cell beyond one of its faces.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Neighbour {
@@ -43,6 +34,13 @@ pub struct CellFace {
     pub offset: f64,
     /// Neighbour beyond the face.
     pub neighbour: Neighbour,
+}
+
+impl CellFace {
+    /// Distance of a point beyond the face's plane [m]; negative on the cell's side.
+    pub(super) fn beyond(&self, point: &Vector3<f64>) -> f64 {
+        self.normal.dot(point) - self.offset
+    }
 }
 
 /// Condition that is prescribed on a boundary face.
@@ -110,8 +108,10 @@ pub struct FarMeshParts {
 pub struct FarMesh {
     parts: FarMeshParts,
     /// Cube root of each cell's volume [m].
-    sizes: Vec<f64>,
-    bins: Bins,
+    pub(super) sizes: Vec<f64>,
+    pub(super) reentrant: ReentrantEdges,
+    pub(super) tree: CellTree,
+    connected: ConnectedParts,
 }
 
 impl FarMesh {
@@ -123,9 +123,10 @@ impl FarMesh {
         check(&parts)?;
         check_boundary(&parts)?;
         let sizes = parts.volumes.iter().map(|volume| volume.cbrt()).collect();
-        let mut mesh = Self { bins: Bins::new(&parts), sizes, parts };
-        mesh.bins.fill(&mesh.parts);
-        Ok(mesh)
+        let reentrant = ReentrantEdges::new(&parts);
+        let tree = CellTree::new(&parts, &reentrant);
+        let connected = ConnectedParts::new(&parts);
+        Ok(Self { parts, sizes, reentrant, tree, connected })
     }
 
     /// Number of cells.
@@ -204,64 +205,9 @@ impl FarMesh {
         self.sizes.iter().fold(0.0, |largest: f64, size| largest.max(*size))
     }
 
-    /// The cell that holds a point of the domain [m], and whether the point is in it (a point beyond the
-    /// last face is given to the cell in which the walk towards it ends). `last` is where it was before.
-    #[must_use]
-    pub fn locate(&self, point: &Vector3<f64>, last: Option<u32>) -> (u32, bool) {
-        if let Some((cell, true)) = last.map(|last| self.walk(point, last)) {
-            return (cell, true);
-        }
-        self.walk(point, self.bins.start(point))
-    }
-
-    /// Refuses grains whose centre lies farther outside the mesh than half of the nearest wall's cell; what
-    /// lies a hair beyond a faceted wall belongs to that wall's cell.
-    pub(crate) fn check_inside(&self, positions: &[Vector3<f64>], cells: &[u32]) -> Result<(), FieldError> {
-        let is_outside = |position: &Vector3<f64>, cell: u32| {
-            let most = MOST_BEYOND * self.sizes[cell as usize];
-            let at_end = |face: &&CellFace| matches!(face.neighbour, Neighbour::Boundary(_));
-            let mut ends = self.faces_of(cell as usize).iter().filter(at_end);
-            ends.any(|face| face.normal.dot(position) - face.offset > most)
-        };
-        let pairs = positions.par_iter().zip(cells);
-        match pairs.position_first(|(position, &cell)| is_outside(position, cell)) {
-            None => Ok(()),
-            Some(index) => Err(FieldError::Settings(format!(
-                "grain at index {index} lies outside the field solver's mesh at {:?} m; enlarge the mesh, \
-                 add a wall or move the grain",
-                positions[index].as_slice()
-            ))),
-        }
-    }
-
-    /// Goes from cell to cell through the face that the point is farthest beyond.
-    fn walk(&self, point: &Vector3<f64>, from: u32) -> (u32, bool) {
-        let mut cell = from;
-        for _ in 0..LONGEST_WALK {
-            let size = self.sizes[cell as usize];
-            // Through the farthest face that leads on; a walk ends at the mesh's end only where no other
-            // face is crossed.
-            let (mut next, mut farthest, mut outside) = (None, ON_FACE * size, false);
-            for face in self.faces_of(cell as usize) {
-                let beyond = face.normal.dot(point) - face.offset;
-                if beyond <= ON_FACE * size {
-                    continue;
-                }
-                match face.neighbour {
-                    Neighbour::Cell { cell, shift } if shift == Vector3::zeros() => {
-                        if beyond > farthest {
-                            (next, farthest) = (Some(cell), beyond);
-                        }
-                    }
-                    _ => outside = true,
-                }
-            }
-            match next {
-                Some(next) => cell = next,
-                None => return (cell, !outside),
-            }
-        }
-        (cell, false)
+    /// Parts that no face joins.
+    pub(crate) fn connected(&self) -> &ConnectedParts {
+        &self.connected
     }
 }
 
@@ -312,54 +258,25 @@ fn check(parts: &FarMeshParts) -> Result<(), FieldError> {
     Ok(())
 }
 
-/// Boxes of the domain with a cell near each, where walks begin.
-#[derive(Clone, Debug)]
-struct Bins {
-    low: Vector3<f64>,
-    per_length: Vector3<f64>,
-    counts: [usize; 3],
-    cell: Vec<u32>,
-}
-
-impl Bins {
-    fn new(parts: &FarMeshParts) -> Self {
-        let extent = parts.domain.extent();
-        let edge = (CELLS_PER_BIN * parts.domain.volume() / parts.centres.len() as f64).cbrt();
-        #[expect(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "clamped")]
-        let counts = [0, 1, 2].map(|axis| (extent[axis] / edge).ceil().clamp(1.0, MOST_BINS) as usize);
-        let per_length = Vector3::from_fn(|axis, _| counts[axis] as f64 / extent[axis]);
-        Self { low: parts.domain.min(), per_length, counts, cell: vec![u32::MAX; counts.iter().product()] }
-    }
-
-    /// Every bin gets a cell whose centre lies in it, and an empty bin one from the bins around it.
-    fn fill(&mut self, parts: &FarMeshParts) {
-        for (cell, centre) in parts.centres.iter().enumerate() {
-            let bin = self.bin(centre);
-            self.cell[bin] = cell as u32;
-        }
-        let mut last = self.cell.iter().copied().find(|&cell| cell != u32::MAX).unwrap_or(0);
-        for cell in &mut self.cell {
-            if *cell == u32::MAX {
-                *cell = last;
-            }
-            last = *cell;
-        }
-    }
-
-    fn start(&self, point: &Vector3<f64>) -> u32 {
-        self.cell[self.bin(point)]
-    }
-
-    fn bin(&self, point: &Vector3<f64>) -> usize {
-        (0..3).fold(0, |index, axis| {
-            #[expect(
-                clippy::cast_possible_truncation,
-                clippy::cast_sign_loss,
-                reason = "clamped to the bins"
-            )]
-            let at = ((point[axis] - self.low[axis]) * self.per_length[axis]).max(0.0) as usize;
-            index * self.counts[axis] + at.min(self.counts[axis] - 1)
-        })
+#[cfg(test)]
+impl FarMeshParts {
+    /// Ends the mesh at a face of a cell, by a triangle of some area.
+    pub(super) fn end_at(&mut self, cell: usize, number: usize, area: f64, condition: Condition) {
+        let face = &mut self.faces[number];
+        let inside = &self.centres[cell];
+        let centre = inside + face.normal * (face.offset - face.normal.dot(inside));
+        self.boundary.push(BoundaryFace {
+            centre,
+            normal: face.normal,
+            area,
+            spread: Matrix3::identity(),
+            cell: cell as u32,
+            patch: 0,
+            condition,
+        });
+        face.neighbour = Neighbour::Boundary(self.boundary.len() as u32 - 1);
+        self.corners.extend([centre; 3]);
+        self.first_corner.push(self.corners.len() as u32);
     }
 }
 
@@ -372,20 +289,6 @@ mod tests {
         let faces = [[Boundary::Periodic; 2], [Boundary::Grounded; 2], [Boundary::Grounded; 2]];
         let domain = Domain::new(Vector3::zeros(), Vector3::new(3.0, 4.0, 5.0), faces).unwrap();
         FarMesh::new(FarMeshParts::of_box(&domain, [3, 4, 5]).unwrap()).unwrap()
-    }
-
-    #[test]
-    fn points_are_found_from_anywhere_and_strays_belong_to_the_wall() {
-        let mesh = mesh();
-        for (index, centre) in mesh.centres().iter().enumerate() {
-            let near = centre + Vector3::new(0.4, -0.4, 0.3);
-            for last in [None, Some(0), Some(59)] {
-                assert_eq!(mesh.locate(&near, last), (index as u32, true));
-            }
-        }
-        assert_eq!(mesh.locate(&Vector3::new(0.5, -0.1, 0.5), None), (0, false));
-        assert_eq!(mesh.locate(&Vector3::new(0.5, 0.5, 5.1), Some(3)), (48, false));
-        assert_eq!(mesh.boundary().len(), 2 * (3 * 5 + 3 * 4));
     }
 
     #[test]

@@ -5,22 +5,26 @@
 
 mod boundary;
 mod box_mesh;
+mod connected;
 mod density;
 mod level;
 mod local_fit;
 mod mesh;
+mod reentrant;
+mod search;
 mod solver;
+mod tree;
 mod walls;
 
 pub use boundary::MeshPatch;
+pub(crate) use connected::check_net_charge;
 pub use density::SmoothDensity;
 pub(crate) use level::FarLevel;
 pub use mesh::{BoundaryFace, CellFace, Condition, FarMesh, FarMeshParts, Neighbour};
 pub use solver::{FarSolver, FarState};
 
 use crate::error::FieldError;
-use crate::geometry::inputs::NET_CHARGE_ROUND_OFF;
-use amberfield_core::{FarQuestion, Permittivity};
+use amberfield_core::FarQuestion;
 use nalgebra::Vector3;
 use std::fmt;
 use std::sync::Arc;
@@ -63,26 +67,6 @@ pub struct FarValues {
     pub residual: f64,
     /// Time that the linear solver took, without the mapping of charges and the way there and back [s].
     pub seconds: f64,
-}
-
-/// Refuses a net charge [C] that no face of a mesh takes, in a medium of a permittivity.
-pub(crate) fn check_net_charge(
-    mesh: &FarMesh,
-    permittivity: Permittivity,
-    neutralising_background: bool,
-    charges: &[f64],
-) -> Result<(), FieldError> {
-    if neutralising_background || mesh.has_conductor() {
-        return Ok(());
-    }
-    let of_slopes =
-        || mesh.boundary().iter().map(|face| permittivity.absolute() * face.condition.value() * face.area);
-    let net_charge_c = charges.iter().sum::<f64>() + of_slopes().sum::<f64>();
-    let all = charges.iter().map(|charge| charge.abs()).sum::<f64>() + of_slopes().map(f64::abs).sum::<f64>();
-    if net_charge_c.abs() > NET_CHARGE_ROUND_OFF * all {
-        return Err(FieldError::NetCharge { net_charge_c });
-    }
-    Ok(())
 }
 
 /// Way in which a far level is reached when a field is built, and again after it was lost.

@@ -86,15 +86,13 @@ impl ChargeCells for Mesh {
 pub(super) struct SolverCells {
     solver: FarSolver,
     neutralising_background: bool,
-    /// Places of the charges for the solver [m].
-    places: Vec<Vector3<f64>>,
     boundary: Vec<f64>,
 }
 
 impl SolverCells {
     pub(super) fn new(solver: Box<dyn FarField>, neutralising_background: bool) -> Self {
         let boundary = solver.mesh().boundary().iter().map(|face| face.condition.value()).collect();
-        Self { solver: FarSolver::new(solver, false), neutralising_background, places: Vec::new(), boundary }
+        Self { solver: FarSolver::new(solver, false), neutralising_background, boundary }
     }
 }
 
@@ -108,18 +106,13 @@ impl ChargeCells for SolverCells {
         cells: &mut Vec<u32>,
     ) -> Result<(), FieldError> {
         let mesh = self.solver.mesh();
-        check_net_charge(mesh, permittivity, self.neutralising_background, charges)?;
-        cells.clear();
+        // Where each was before; at first nobody knows.
         cells.resize(positions.len(), u32::MAX);
-        // A stray belongs to the nearest wall's cell, whichever process has that: it is sent as if it were
-        // at its centre.
-        self.places.clear();
-        self.places.extend(positions.iter().zip(cells.iter_mut()).map(|(position, cell)| {
-            let (found, inside) = mesh.locate(position, None);
-            *cell = found;
-            if inside { *position } else { mesh.centres()[found as usize] }
-        }));
+        for (position, cell) in positions.iter().zip(cells.iter_mut()) {
+            *cell = mesh.locate(position, (*cell != u32::MAX).then_some(*cell)).0;
+        }
         mesh.check_inside(positions, cells)?;
+        check_net_charge(mesh, permittivity, self.neutralising_background, charges, cells)?;
         let question = FarQuestion {
             cloud: SourceCloud::nearest_cell(),
             permittivity_f_m: permittivity.absolute(),
@@ -129,7 +122,7 @@ impl ChargeCells for SolverCells {
         };
         let request = FarRequest {
             question,
-            positions: &self.places,
+            positions,
             charges,
             image_positions: &[],
             image_charges: &[],
@@ -137,9 +130,6 @@ impl ChargeCells for SolverCells {
             guess: &[],
         };
         self.solver.solve(&request)?;
-        // The same cells, unless a charge lies on a face, where the solver's word counts.
-        let theirs = self.solver.values.cells.iter().zip(cells);
-        theirs.filter(|(theirs, _)| **theirs != u32::MAX).for_each(|(theirs, ours)| *ours = *theirs);
         Ok(())
     }
 
