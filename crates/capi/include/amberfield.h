@@ -304,7 +304,7 @@ enum AmberfieldStatus amberfield_field_send_mesh(struct AmberfieldField *field,
 enum AmberfieldStatus amberfield_field_wait(struct AmberfieldField *field, struct AmberfieldRequest *request);
 
 // Writes the charge density [C/m^3] at this rank's cell centres. Of charges that are spread over their cells
-// it finds the cells too, which the reply then names.
+// it takes the cells down too, which the reply then names.
 //
 // # Safety
 // `field` comes from amberfield_field_open and is not closed; `density` has room for `cells` numbers, this

@@ -222,7 +222,7 @@ pub unsafe extern "C" fn amberfield_field_wait(
 }
 
 /// Writes the charge density [C/m^3] at this rank's cell centres. Of charges that are spread over their cells
-/// it finds the cells too, which the reply then names.
+/// it takes the cells down too, which the reply then names.
 ///
 /// # Safety
 /// `field` comes from amberfield_field_open and is not closed; `density` has room for `cells` numbers, this

@@ -60,7 +60,9 @@ impl Failure {
     /// Failure of a field that cannot be computed.
     pub(crate) fn of_field(error: &FieldError) -> Self {
         match error {
-            FieldError::Tolerance { .. } => Self::outside_tolerance(error.to_string()),
+            FieldError::Tolerance { .. } | FieldError::NotConverged(_) => {
+                Self::outside_tolerance(error.to_string())
+            }
             FieldError::Solver(message) => Self::of_peer(message),
             error => Self::bad_input(error.to_string()),
         }

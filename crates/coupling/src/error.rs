@@ -27,6 +27,23 @@ pub enum CouplingError {
         /// Reason that it gave.
         reason: String,
     },
+    /// The solver does not take the case.
+    #[error("the field solver refuses the case: {0}")]
+    Refused(String),
+    /// The linear solver gave up before its tolerance.
+    #[error(
+        "the linear solver for V gave up after {iterations} iterations with a residual of {residual:e}, the \
+         tolerance is {tolerance:e}; look at maxIter and the other entries of the solver V in \
+         system/fvSolution, or raise electric_field.far_tolerance"
+    )]
+    NotConverged {
+        /// Iterations of the linear solver.
+        iterations: u64,
+        /// Residual that it reached, relative.
+        residual: f64,
+        /// Residual that it was asked for.
+        tolerance: f64,
+    },
     /// The peer is gone without a word.
     #[error("the {peer} is gone ({how}) at solve {solve}; see its log")]
     Lost {
@@ -71,6 +88,10 @@ pub enum CouplingError {
 
 impl From<CouplingError> for FieldError {
     fn from(error: CouplingError) -> Self {
-        Self::Solver(error.to_string())
+        match error {
+            CouplingError::Refused(_) => Self::Settings(error.to_string()),
+            CouplingError::NotConverged { .. } => Self::NotConverged(error.to_string()),
+            error => Self::Solver(error.to_string()),
+        }
     }
 }

@@ -60,7 +60,12 @@ impl Announced {
         let mut messages: Vec<Option<Message>> = (0..settings.ranks).map(|_| None).collect();
         while messages.iter().any(Option::is_none) {
             let left = deadline.saturating_duration_since(Instant::now());
-            let message = link.receive(0, left, || alive(&mut process))?;
+            let received = link.receive(0, left, || alive(&mut process));
+            // Who ends before its mesh is there cannot use the case.
+            let message = received.map_err(|error| match error {
+                CouplingError::Ended { reason, .. } => CouplingError::Refused(reason),
+                error => error,
+            })?;
             check_sender(message.header(), settings.ranks, MessageKind::Mesh, 0).map_err(of_solver)?;
             let rank = message.header().rank as usize;
             messages[rank] = Some(message);

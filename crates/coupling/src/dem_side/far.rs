@@ -17,13 +17,15 @@ use std::sync::{Arc, Mutex};
 pub struct RemoteSolver {
     mesh: Arc<FarMesh>,
     shared: Arc<Mutex<Shared>>,
+    /// Cells of the charges that were asked about last, where each is spread over its cell.
+    cells: Vec<u64>,
 }
 
 impl RemoteSolver {
     /// A process that has sent its mesh.
     pub(super) fn new(mesh: Arc<FarMesh>, remote: Remote) -> Self {
         let shared = Shared { remote, far: Pending::NOTHING, flow: Pending::NOTHING };
-        Self { mesh, shared: Arc::new(Mutex::new(shared)) }
+        Self { mesh, shared: Arc::new(Mutex::new(shared)), cells: Vec::new() }
     }
 
     /// The flow of the same process.
@@ -38,15 +40,29 @@ impl RemoteSolver {
         request: &FarRequest<'_>,
         values: &mut FarValues,
     ) -> Result<(), CouplingError> {
+        self.find_cells(request);
         let mut shared = locked(&self.shared);
-        shared.send_far(request)?;
+        shared.send_far(request, &self.cells)?;
         shared.take_far(values)
+    }
+
+    /// Finds the cells of charges that are spread over them. No rank could: a charge beside an edge of cells
+    /// of several ranks would be in none of them or in two.
+    fn find_cells(&mut self, request: &FarRequest<'_>) {
+        if !request.question.cloud.is_nearest_cell() {
+            self.cells.clear();
+            return;
+        }
+        self.cells.resize(request.positions.len(), u64::MAX);
+        for (cell, place) in self.cells.iter_mut().zip(request.positions) {
+            *cell = u64::from(self.mesh.locate(place, u32::try_from(*cell).ok()).0);
+        }
     }
 }
 
 impl Shared {
-    /// Asks for the far field without waiting.
-    fn send_far(&mut self, request: &FarRequest<'_>) -> Result<(), CouplingError> {
+    /// Asks for the far field without waiting; `cells` are those of charges that are spread over them.
+    fn send_far(&mut self, request: &FarRequest<'_>, cells: &[u64]) -> Result<(), CouplingError> {
         self.clear_the_way()?;
         let question = FarQuestion { tolerance: self.remote.settings.far_tolerance, ..request.question };
         let layout = |layout: Layout| {
@@ -54,6 +70,7 @@ impl Shared {
                 .with::<FarQuestion>(Section::FarQuestion, 1)
                 .with::<[f64; 3]>(Section::Positions, request.positions.len())
                 .with::<f64>(Section::Charges, request.charges.len())
+                .with::<u64>(Section::Cells, cells.len())
                 .with::<[f64; 3]>(Section::ImagePositions, request.image_positions.len())
                 .with::<f64>(Section::ImageCharges, request.image_charges.len())
                 .with::<f64>(Section::Boundary, request.boundary.len());
@@ -66,6 +83,7 @@ impl Shared {
             layout.section_mut::<FarQuestion>(payload, Section::FarQuestion)?.fill(question);
             write_vectors(layout.section_mut(payload, Section::Positions)?, request.positions);
             layout.section_mut::<f64>(payload, Section::Charges)?.copy_from_slice(request.charges);
+            layout.section_mut::<u64>(payload, Section::Cells)?.copy_from_slice(cells);
             write_vectors(layout.section_mut(payload, Section::ImagePositions)?, request.image_positions);
             layout.section_mut::<f64>(payload, Section::ImageCharges)?.copy_from_slice(request.image_charges);
             layout.section_mut::<f64>(payload, Section::Boundary)?.copy_from_slice(request.boundary);
@@ -92,7 +110,7 @@ impl Shared {
         values.cells.resize(charges, u32::MAX);
         (values.outside, values.iterations, values.residual, values.seconds) = (0, 0, 0.0, 0.0);
         self.remote.collect(MessageKind::Fields, |cells, _, sections| read(cells, sections, values))?;
-        let outcome = sound(values);
+        let outcome = sound(values).and_then(|()| converged(values, self.remote.settings.far_tolerance));
         self.remote.noted(outcome)
     }
 }
@@ -139,6 +157,15 @@ fn sound(values: &FarValues) -> Result<(), CouplingError> {
     }
 }
 
+/// Refuses an answer whose linear solver gave up.
+fn converged(values: &FarValues, tolerance: f64) -> Result<(), CouplingError> {
+    let FarValues { iterations, residual, .. } = *values;
+    if residual <= tolerance {
+        return Ok(());
+    }
+    Err(CouplingError::NotConverged { iterations, residual, tolerance })
+}
+
 impl FarField for RemoteSolver {
     fn mesh(&self) -> &FarMesh {
         &self.mesh
@@ -149,7 +176,8 @@ impl FarField for RemoteSolver {
     }
 
     fn ask(&mut self, request: &FarRequest<'_>) -> Result<(), FieldError> {
-        Ok(locked(&self.shared).send_far(request)?)
+        self.find_cells(request);
+        Ok(locked(&self.shared).send_far(request, &self.cells)?)
     }
 
     fn take(&mut self, values: &mut FarValues) -> Result<(), FieldError> {

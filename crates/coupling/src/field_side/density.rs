@@ -2,6 +2,7 @@
 
 use super::side::{FieldSide, no_mesh, no_request, of_dem};
 use crate::CouplingError;
+use crate::mesh::OwnCells;
 use amberfield_core::Vector3;
 use amberfield_field::FieldError;
 use amberfield_field::far::SmoothDensity;
@@ -9,8 +10,7 @@ use amberfield_wire::Section;
 use amberfield_wire::payloads::FarQuestion;
 
 impl FieldSide {
-    /// Density [C/m³] at this rank's cell centres of the charges that were asked about. Of charges that are
-    /// spread over their cells the cells are found too.
+    /// Density [C/m³] at this rank's cell centres of the charges that were asked about.
     ///
     /// # Errors
     /// Charges that are not finite.
@@ -23,15 +23,14 @@ impl FieldSide {
         // Clouds belong to no cell, and the DEM side knows where its grains are.
         self.cells.clear();
         (self.charge, self.outside) = (0.0, 0);
-        let mesh = self.mesh.as_ref().ok_or_else(no_mesh)?;
+        let own = self.cells_of_rank.as_ref().ok_or_else(no_mesh)?;
+        let OwnCells { whole, centres, .. } = own;
         if self.density.as_ref().is_none_or(|(known, _)| *known != cloud) {
-            let centres = mesh.centres();
             let first = centres.first().copied().unwrap_or_default();
             let low = centres.iter().fold(first, |low, centre| low.inf(centre));
             let high = centres.iter().fold(first, |high, centre| high.sup(centre));
             // The box of a rank that has all cells along an axis is the mesh's, whose period counts.
-            let reach = Vector3::repeat(0.5 * mesh.largest_cell());
-            let whole = mesh.domain();
+            let reach = Vector3::repeat(0.5 * own.largest());
             let (low, high) = ((low - reach).sup(&whole.min()), (high + reach).inf(&whole.max()));
             self.density = Some((cloud, SmoothDensity::new(whole, low, high, cloud.radius_m, cloud.shape)));
         }
@@ -48,7 +47,7 @@ impl FieldSide {
             self.positions.extend(places.iter().map(|&place| Vector3::from(place)));
             smooth.add(&self.positions, charges);
         }
-        smooth.at(mesh.centres(), density);
+        smooth.at(centres, density);
         Ok(())
     }
 
@@ -69,32 +68,27 @@ impl FieldSide {
         Ok(())
     }
 
-    /// Finds each charge's cell and adds up the cells' charge over their volumes.
+    /// Adds up the charge of each cell of this rank over its volume; the DEM side has found the cells.
     fn map(&mut self, density: &mut [f64]) -> Result<(), CouplingError> {
+        let numbers = self.own_cells();
         let message = self.asked.as_ref().ok_or_else(no_request)?;
-        let mesh = self.mesh.as_ref().ok_or_else(no_mesh)?;
+        let own = self.cells_of_rank.as_ref().ok_or_else(no_mesh)?;
         let sections = message.sections();
-        let places = sections.get::<[f64; 3]>(Section::Positions).map_err(of_dem)?;
-        let charges = sections.exactly::<f64>(Section::Charges, places.len()).map_err(of_dem)?;
-        self.cells.resize(places.len(), u64::MAX);
-        self.last_cells.resize(places.len(), u32::MAX);
+        let charges = sections.get::<f64>(Section::Charges).map_err(of_dem)?;
+        let cells = sections.exactly::<u64>(Section::Cells, charges.len()).map_err(of_dem)?;
+        self.cells.clear();
         (self.charge, self.outside) = (0.0, 0);
         density.fill(0.0);
-        for (index, (place, &charge)) in places.iter().zip(charges).enumerate() {
-            let place = Vector3::from(*place);
-            let last = (self.last_cells[index] != u32::MAX).then_some(self.last_cells[index]);
-            let (cell, inside) = mesh.locate(&place, last);
-            self.last_cells[index] = cell;
-            // Strays belong to the nearest wall's cell; with several ranks they are the DEM side's to place.
-            let mine = inside || self.ranks == 1;
-            self.cells[index] = if mine { u64::from(cell) } else { u64::MAX };
-            self.outside += u64::from(!inside && self.ranks == 1);
-            if mine {
+        for (&charge, &cell) in charges.iter().zip(cells) {
+            let place = usize::try_from(cell).ok().filter(|cell| numbers.contains(cell));
+            let place = place.map(|cell| cell - numbers.start);
+            self.cells.push(place.map_or(u64::MAX, |place| place as u64));
+            if let Some(place) = place {
                 self.charge += charge;
-                density[cell as usize] += charge;
+                density[place] += charge;
             }
         }
-        for (density, volume) in density.iter_mut().zip(mesh.volumes()) {
+        for (density, volume) in density.iter_mut().zip(&own.volumes) {
             *density /= volume;
         }
         Ok(())

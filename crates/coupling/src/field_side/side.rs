@@ -4,9 +4,9 @@ use super::question::Question;
 use crate::CouplingError;
 use crate::meeting::RunRoot;
 use crate::meeting::{Link, Message, SideOf};
-use crate::mesh::{MeshPart, mesh_header, own_cells};
+use crate::mesh::{MeshPart, OwnCells, mesh_header};
 use amberfield_core::Vector3;
-use amberfield_field::far::{FarMesh, SmoothDensity};
+use amberfield_field::far::SmoothDensity;
 use amberfield_wire::payloads::{FarAnswer, SourceCloud};
 use amberfield_wire::{Block64, Header, Layout, MessageKind, Section, Sections, WireError};
 use std::mem::MaybeUninit;
@@ -15,6 +15,9 @@ use std::time::{Duration, Instant};
 
 /// Time that a field process waits for the run's services.
 const OPENING: Duration = Duration::from_secs(30);
+
+/// Time for which the last message stays where the DEM process can read it: with its sender it is gone.
+const FAREWELL: Duration = Duration::from_millis(500);
 
 /// Answer of a rank to the question for the far field.
 #[derive(Clone, Copy, Debug)]
@@ -37,14 +40,13 @@ pub struct FieldSide {
     link: Link,
     rank: u32,
     pub(super) ranks: u32,
-    /// The rank's cells, for mapping, once they were sent.
-    pub(super) mesh: Option<FarMesh>,
+    /// The rank's cells, once they were sent.
+    pub(super) cells_of_rank: Option<OwnCells>,
     first_cell: usize,
     first_boundary: usize,
     pub(super) density: Option<(SourceCloud, SmoothDensity)>,
     pub(super) asked: Option<Message>,
     pub(super) cells: Vec<u64>,
-    pub(super) last_cells: Vec<u32>,
     pub(super) charge: f64,
     pub(super) outside: u64,
     pub(super) positions: Vec<Vector3<f64>>,
@@ -66,13 +68,12 @@ impl FieldSide {
             link,
             rank,
             ranks,
-            mesh: None,
+            cells_of_rank: None,
             first_cell: 0,
             first_boundary: 0,
             density: None,
             asked: None,
             cells: Vec::new(),
-            last_cells: Vec::new(),
             charge: 0.0,
             outside: 0,
             positions: Vec::new(),
@@ -85,7 +86,7 @@ impl FieldSide {
     /// # Errors
     /// A mesh that makes no sense, a DEM process that is gone.
     pub fn send_mesh(&mut self, part: &MeshPart<'_>, first_boundary: usize) -> Result<(), CouplingError> {
-        self.mesh = Some(own_cells(part)?);
+        self.cells_of_rank = Some(OwnCells::new(part)?);
         self.first_cell = part.outline.first_cell as usize;
         self.first_boundary = first_boundary;
         let layout = part.layout(mesh_header(self.link.run(), self.rank, self.ranks));
@@ -197,7 +198,8 @@ impl FieldSide {
 
     /// Numbers of this rank's cells among all.
     pub(super) fn own_cells(&self) -> Range<usize> {
-        self.first_cell..self.first_cell + self.mesh.as_ref().map_or(0, FarMesh::cell_count)
+        let count = self.cells_of_rank.as_ref().map_or(0, |own| own.centres.len());
+        self.first_cell..self.first_cell + count
     }
 
     /// Tells the DEM process why this one ends.
@@ -205,7 +207,9 @@ impl FieldSide {
         let header = Header::new(MessageKind::End, self.link.run(), 0);
         let header = Header { rank: self.rank, ranks: self.ranks, ..header };
         // Whoever is not there to hear it needs no reason.
-        let _ = self.link.end(header, 1, reason);
+        if self.link.end(header, 1, reason).is_ok() {
+            std::thread::sleep(FAREWELL);
+        }
     }
 
     /// A section of what was asked.

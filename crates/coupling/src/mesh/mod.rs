@@ -5,4 +5,4 @@ mod part;
 
 pub use arrays::MeshArrays;
 pub use part::{MeshPart, assemble};
-pub(crate) use part::{mesh_header, own_cells};
+pub(crate) use part::{OwnCells, mesh_header};

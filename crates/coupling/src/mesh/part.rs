@@ -8,9 +8,6 @@ use amberfield_wire::payloads::{self, MeshOutline};
 use amberfield_wire::{Block64, Header, Layout, MessageKind, Section, Sections, WireError};
 use std::mem::MaybeUninit;
 
-/// Patch that ends one rank's cells where another's begin, in the form of [`MeshPart`].
-const END_OF_PART: &[u8] = b"anotherRank processor\n";
-
 /// One rank's part of a mesh, in arrays as the wire has them: see [`Section`].
 #[derive(Clone, Copy, Debug)]
 pub struct MeshPart<'a> {
@@ -200,61 +197,33 @@ fn boundary_face(face: &payloads::BoundaryFace, first: usize) -> Result<Boundary
     })
 }
 
-/// One rank's own cells and what lies beyond them, for mapping charges: neighbours of other ranks are the
-/// mesh's end.
-pub(crate) fn own_cells(part: &MeshPart<'_>) -> Result<FarMesh, CouplingError> {
-    let first = part.outline.first_cell;
-    let own = first..first + part.centres.len() as u64;
-    let mut boundary = part.boundary_faces.to_vec();
-    let (mut first_corner, mut corners) = (part.first_corner.to_vec(), part.corners.to_vec());
-    let patches = [part.patches, END_OF_PART].concat();
-    let patch = patches_of(part).len() as u64;
-    let mut neighbours = part.face_neighbours.to_vec();
-    for (cell, ends) in part.first_face.windows(2).enumerate() {
-        let faces = ends[0] as usize..ends[1] as usize;
-        for (neighbour, normal) in neighbours[faces.clone()].iter_mut().zip(&part.face_normals[faces]) {
-            if *neighbour < 0 {
-                continue;
-            }
-            if own.contains(&(*neighbour as u64)) {
-                *neighbour -= first as i64;
-            } else {
-                *neighbour = -1 - boundary.len() as i64;
-                let centre = part.centres[cell];
-                boundary.push(end_of_part(centre, *normal, cell as u64, patch));
-                corners.extend([centre; 3]);
-                first_corner.push(corners.len() as u64);
-            }
-        }
-    }
-    let alone = MeshPart {
-        outline: MeshOutline { first_cell: 0, all_cells: part.centres.len() as u64, ..part.outline },
-        face_neighbours: &neighbours,
-        boundary_faces: &boundary,
-        first_corner: &first_corner,
-        corners: &corners,
-        patches: &patches,
-        ..*part
-    };
-    assemble(&[alone])
+/// One rank's own cells, as far as the density of charges in them needs them.
+#[derive(Debug)]
+pub(crate) struct OwnCells {
+    /// Box of all ranks' cells.
+    pub(crate) whole: Domain,
+    /// Cell centres [m].
+    pub(crate) centres: Vec<Vector3<f64>>,
+    /// Cell volumes [m³].
+    pub(crate) volumes: Vec<f64>,
 }
 
-/// A face between a cell of this rank and one of another: only where it is and that it ends the part counts.
-fn end_of_part(centre_m: [f64; 3], normal: [f64; 3], cell: u64, patch: u64) -> payloads::BoundaryFace {
-    payloads::BoundaryFace {
-        centre_m,
-        normal,
-        area_m2: 1.0,
-        cell,
-        patch,
-        is_conductor: 0,
-        prescribed: 0.0,
-        spread_xx_m2: 0.0,
-        spread_xy_m2: 0.0,
-        spread_xz_m2: 0.0,
-        spread_yy_m2: 0.0,
-        spread_yz_m2: 0.0,
-        spread_zz_m2: 0.0,
+impl OwnCells {
+    /// Takes them from a rank's part; the DEM side checks it.
+    ///
+    /// # Errors
+    /// A box that is none.
+    pub(crate) fn new(part: &MeshPart<'_>) -> Result<Self, CouplingError> {
+        Ok(Self {
+            whole: domain_of(part)?,
+            centres: part.centres.iter().map(|&centre| Vector3::from(centre)).collect(),
+            volumes: part.volumes.to_vec(),
+        })
+    }
+
+    /// Largest cell size, the cube root of the volume [m].
+    pub(crate) fn largest(&self) -> f64 {
+        self.volumes.iter().fold(0.0, |largest: f64, volume| largest.max(volume.cbrt()))
     }
 }
 
