@@ -48,7 +48,7 @@ int main(int argc, char *argv[])
             dimensionedScalar(dimless, Zero),
             zeroGradientFvPatchScalarField::typeName
         );
-        demProcess.sendMesh(meshDescription(noPotential));
+        demProcess.sendMesh(meshDescription(noPotential, demProcess));
     }
     gasFlow gas(runTime, mesh, demProcess);
 

@@ -55,7 +55,10 @@ Foam::electricField::electricField(const fvMesh& mesh, fieldSide& demProcess)
         ),
         mesh
     ),
-    description_(phiE_),
+    description_(phiE_, demProcess),
+    parts_(mesh, true),
+    floating_(floating(parts_, parts_.nRegions(), phiE_)),
+    references_(references(parts_, floating_)),
     V_
     (
         own("V", mesh),
@@ -118,10 +121,7 @@ void Foam::electricField::answer()
     demProcess_.density(rho_.primitiveFieldRef());
     demProcess_.guess(V_.primitiveFieldRef());
     takeBoundary();
-    if (V_.needReference())
-    {
-        removeMean(epsilon.value());
-    }
+    removeMeans(epsilon.value());
 
     // OpenFOAM's residual is relative to what V starts from: from a much larger one it
     // ends too early
@@ -151,9 +151,11 @@ Foam::solverPerformance Foam::electricField::solve(const dimensionedScalar& epsi
     {
         fvScalarMatrix VEqn(fvm::laplacian(V_) == -rho_/epsilon);
 
-        VEqn.setReference(Pstream::master() ? 0 : -1, 0);
+        VEqn.setReferences(references_, 0, true);
 
+        // The scene's tolerance counts, and nothing else ends a solve
         controls_.set("tolerance", demProcess_.request().far.tolerance);
+        controls_.set("relTol", 0);
         performance = VEqn.solve(controls_);
     }
     // OpenFOAM keeps a record of every solve until the time changes, which here it may not
@@ -185,25 +187,110 @@ void Foam::electricField::takeBoundary()
 }
 
 
-void Foam::electricField::removeMean(const scalar epsilon)
+void Foam::electricField::removeMeans(const scalar epsilon)
 {
+    if (!floating_.found(true))
+    {
+        return;
+    }
     // The DEM process has refused a net charge; finite volumes miss it by a little
-    scalar flux = 0;
+    scalarField net(floating_.size(), Zero);
+    scalarField volume(floating_.size(), Zero);
+    forAll(parts_, celli)
+    {
+        net[parts_[celli]] += rho_[celli]*mesh_.V()[celli];
+        volume[parts_[celli]] += mesh_.V()[celli];
+    }
     for (const label patchi : description_.patches())
     {
         const fvPatchScalarField& pV = V_.boundaryField()[patchi];
-        flux += sum(pV.snGrad()*pV.patch().magSf());
+        const scalarField flux(epsilon*pV.snGrad()*pV.patch().magSf());
+        forAll(flux, i)
+        {
+            net[parts_[pV.patch().faceCells()[i]]] += flux[i];
+        }
     }
-    reduce(flux, sumOp<scalar>());
-    const scalar net = gSum(rho_.primitiveField()*mesh_.V()) + epsilon*flux;
+    Pstream::listCombineGather(net, plusEqOp<scalar>());
+    Pstream::listCombineScatter(net);
+    Pstream::listCombineGather(volume, plusEqOp<scalar>());
+    Pstream::listCombineScatter(volume);
+
     const scalar all = gSum(mag(rho_.primitiveField())*mesh_.V());
-    if (!demProcess_.request().far.neutralising_background && mag(net) > mostMismatch*all)
+    forAll(floating_, parti)
     {
-        demProcess_.fail
+        if
         (
-            "net charge " + std::to_string(net) + " C of " + std::to_string(all)
-          + " C on a mesh no face of which takes it; set neutralising_background = true"
-        );
+            floating_[parti]
+         && !demProcess_.request().far.neutralising_background
+         && mag(net[parti]) > mostMismatch*all
+        )
+        {
+            demProcess_.fail
+            (
+                "net charge " + Foam::name(net[parti]) + " C of " + Foam::name(all)
+              + " C on a mesh no face of which takes it; set neutralising_background = true"
+            );
+        }
     }
-    rho_.primitiveFieldRef() -= net/gSum(mesh_.V());
+    forAll(parts_, celli)
+    {
+        if (floating_[parts_[celli]])
+        {
+            rho_[celli] -= net[parts_[celli]]/volume[parts_[celli]];
+        }
+    }
+}
+
+
+Foam::boolList Foam::electricField::floating
+(
+    const labelList& parts,
+    const label nParts,
+    const volScalarField& V
+)
+{
+    boolList floating(nParts, true);
+    for (const fvPatchScalarField& pV : V.boundaryField())
+    {
+        if (pV.fixesValue())
+        {
+            for (const label celli : pV.patch().faceCells())
+            {
+                floating[parts[celli]] = false;
+            }
+        }
+    }
+    Pstream::listCombineGather(floating, andEqOp<bool>());
+    Pstream::listCombineScatter(floating);
+    return floating;
+}
+
+
+Foam::labelList Foam::electricField::references
+(
+    const labelList& parts,
+    const boolList& floating
+)
+{
+    // In the first rank that has cells of the part
+    labelList rank(floating.size(), labelMax);
+    for (const label parti : parts)
+    {
+        rank[parti] = Pstream::myProcNo();
+    }
+    Pstream::listCombineGather(rank, minEqOp<label>());
+    Pstream::listCombineScatter(rank);
+
+    DynamicList<label> cells;
+    boolList wanted(floating);
+    forAll(parts, celli)
+    {
+        const label parti = parts[celli];
+        if (wanted[parti] && rank[parti] == Pstream::myProcNo())
+        {
+            cells.append(celli);
+            wanted[parti] = false;
+        }
+    }
+    return labelList(cells);
 }

@@ -4,6 +4,8 @@
 \*---------------------------------------------------------------------------*/
 
 #include "meshDescription.H"
+#include "cyclicShifts.H"
+#include "fieldSide.H"
 #include "fixedGradientFvPatchFields.H"
 #include "fixedValueFvPatchFields.H"
 #include "globalIndex.H"
@@ -15,9 +17,6 @@
 
 namespace
 {
-
-//- Shifts that are shorter, over the face's size, are no shifts
-const Foam::scalar smallShift = 1e-6;
 
 //- Whether a patch prescribes the potential
 bool isConductor(const Foam::fvPatchScalarField& V)
@@ -79,6 +78,21 @@ Foam::string describe(const Foam::polyBoundaryMesh& patches)
     return lines;
 }
 
+//- Why a patch that is neither conductor nor insulator is not possible, and
+//  what to do
+std::string whyNot(const Foam::fvPatchScalarField& V)
+{
+    const Foam::word& name = V.patch().name();
+    const Foam::word& type = V.patch().patch().type();
+    if (type == "empty" || type == "wedge")
+    {
+        return "patch " + name + " is of type " + type + ": a mesh of one cell's thickness has no"
+            " room for grains; make it thicker, and the patch and its condition symmetryPlane";
+    }
+    return "patch " + name + " of field " + V.internalField().name() + " has the condition "
+        + V.type() + "; give it fixedValue, fixedGradient, zeroGradient, symmetry or cyclic";
+}
+
 } // End anonymous namespace
 
 
@@ -96,7 +110,7 @@ Foam::wordList Foam::meshDescription::farTypes(const volScalarField& V)
 }
 
 
-Foam::meshDescription::meshDescription(const volScalarField& V)
+Foam::meshDescription::meshDescription(const volScalarField& V, fieldSide& demProcess)
 :
     view_(),
     firstCorner_(1, 0),
@@ -108,10 +122,11 @@ Foam::meshDescription::meshDescription(const volScalarField& V)
     const label nInternal = mesh.nInternalFaces();
     const label nBoundary = mesh.nFaces() - nInternal;
     const globalIndex globalCells(mesh.nCells());
+    const cyclicShifts shifts(V, demProcess);
 
-    // Beyond coupled faces: the other side's cell and face centre
+    // Beyond coupled faces: the other side's cell
     labelList otherCell(nBoundary, -1);
-    pointField otherCentre(nBoundary, Zero);
+    vectorField shiftOf(nBoundary, Zero);
     forAll(mesh.boundaryMesh(), patchi)
     {
         const polyPatch& patch = mesh.boundaryMesh()[patchi];
@@ -119,22 +134,14 @@ Foam::meshDescription::meshDescription(const volScalarField& V)
         {
             continue;
         }
-        if (!refCast<const coupledPolyPatch>(patch).parallel())
-        {
-            FatalErrorInFunction
-                << "patch " << patch.name() << " turns what crosses it; only"
-                << " cyclic patches that move it along an axis are possible"
-                << exit(FatalError);
-        }
         forAll(patch, i)
         {
             const label b = patch.start() + i - nInternal;
             otherCell[b] = globalCells.toGlobal(patch.faceCells()[i]);
-            otherCentre[b] = patch.faceCentres()[i];
+            shiftOf[b] = shifts[patchi];
         }
     }
     syncTools::swapBoundaryFaceList(mesh, otherCell);
-    syncTools::swapBoundaryFaceList(mesh, otherCentre);
 
     // Boundary faces, patch by patch
     labelList boundaryIndex(nBoundary, -1);
@@ -148,11 +155,12 @@ Foam::meshDescription::meshDescription(const volScalarField& V)
         }
         if (!isConductor(pV) && !isInsulator(pV))
         {
-            FatalErrorInFunction
-                << "patch " << patch.name() << " of field " << V.name()
-                << " has the condition " << pV.type()
-                << "; give it fixedValue, fixedGradient, zeroGradient, symmetry or cyclic"
-                << exit(FatalError);
+            // No face of the patch, on no rank: nobody sees its condition
+            if (returnReduce(mesh.boundaryMesh()[patchi].size(), sumOp<label>()) == 0)
+            {
+                continue;
+            }
+            demProcess.fail(whyNot(pV));
         }
         patches_.append(patchi);
         const scalarField values(prescribed(pV));
@@ -203,7 +211,6 @@ Foam::meshDescription::meshDescription(const volScalarField& V)
     shifts_.resize(count);
     neighbours_.resize(count);
     firstFace_.assign(1, 0);
-    Vector<bool> periodic(false, false, false);
     label entry = 0;
     forAll(mesh.cells(), celli)
     {
@@ -222,19 +229,8 @@ Foam::meshDescription::meshDescription(const volScalarField& V)
             }
             else if (otherCell[facei - nInternal] >= 0)
             {
-                const vector shift(mesh.faceCentres()[facei] - otherCentre[facei - nInternal]);
                 neighbours_[entry] = otherCell[facei - nInternal];
-                if (mag(shift) > smallShift*sqrt(mag(area)))
-                {
-                    shifts_[entry] = shift;
-                    for (direction axis = 0; axis < 3; ++axis)
-                    {
-                        if (mag(shift[axis]) > 0.999*mag(shift))
-                        {
-                            periodic[axis] = true;
-                        }
-                    }
-                }
+                shifts_[entry] = shiftOf[facei - nInternal];
             }
             else
             {
@@ -246,11 +242,13 @@ Foam::meshDescription::meshDescription(const volScalarField& V)
     }
 
     const boundBox box(mesh.points(), true);
+    const vector periods(shifts.periods());
     for (direction axis = 0; axis < 3; ++axis)
     {
+        const bool periodic = periods[axis] > 0;
         view_.outline.low_m[axis] = box.min()[axis];
-        view_.outline.high_m[axis] = box.max()[axis];
-        view_.outline.periodic[axis] = returnReduce(periodic[axis], orOp<bool>()) ? 1 : 0;
+        view_.outline.high_m[axis] = periodic ? box.min()[axis] + periods[axis] : box.max()[axis];
+        view_.outline.periodic[axis] = periodic ? 1 : 0;
     }
     view_.outline.first_cell = uint64_t(globalCells.toGlobal(0));
     view_.outline.all_cells = uint64_t(globalCells.size());

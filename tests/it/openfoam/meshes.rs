@@ -22,13 +22,13 @@ const CHARGE: f64 = 1e-12;
 const EDGE: f64 = 12.0;
 
 /// Case with a recipe of a mesh, which the solver makes.
-fn case(mesh: &str, gradient: &str) -> Workbench {
+pub(super) fn case(mesh: &str, gradient: &str) -> Workbench {
     let bench = Workbench::new("");
     write_case(&bench, mesh, GROUNDED, gradient);
     bench
 }
 
-fn solver(bench: &Workbench) -> RemoteSolver {
+pub(super) fn solver(bench: &Workbench) -> RemoteSolver {
     let settings = SolverSettings {
         case: bench.path("foam"),
         application: None,
@@ -199,7 +199,7 @@ fn reference_boxes_come_out_on_cubes() {
 }
 
 /// Mesh of the cube with one kind of cells.
-fn mesh_of(kind: &str, cells: usize) -> Workbench {
+pub(super) fn mesh_of(kind: &str, cells: usize) -> Workbench {
     let grading = if kind == "graded" { 2.0 } else { 1.0 };
     let gradient = if kind == "hexahedra" { "Gauss linear" } else { "leastSquares" };
     let bench = case(&cube(EDGE, cells, grading), gradient);
