@@ -44,7 +44,7 @@ pub enum WallCharging {
 /// A wall of the scene.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Wall {
-    /// Name for messages: the STL file's name, or `walls[k]`.
+    /// Name for messages: the name of the STL file or of the mesh's patch, or `walls[k]`.
     pub name: String,
     /// Geometry.
     pub shape: WallShape,

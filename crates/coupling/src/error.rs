@@ -78,6 +78,9 @@ pub enum CouplingError {
         /// Reason.
         why: String,
     },
+    /// A case has no mesh, and it cannot be made.
+    #[error("the field solver has no mesh: {0}")]
+    NoMesh(String),
     /// The flow makes no sense.
     #[error("{0}")]
     Flow(String),

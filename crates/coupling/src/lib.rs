@@ -12,8 +12,8 @@ mod mesh;
 mod stand_in;
 
 pub use dem_side::{
-    Announced, PatientSolver, RemoteFlow, RemoteSolver, SolverSettings, foam_command, program_name,
-    solver_program,
+    Announced, PatientSolver, RemoteFlow, RemoteSolver, SolverSettings, foam_command, make_mesh,
+    program_name, solver_program,
 };
 pub use error::CouplingError;
 pub use field_side::{FieldSide, FlowReply, GrainsInCells, Question, Reply};

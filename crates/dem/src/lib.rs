@@ -12,6 +12,7 @@ mod gas_stage;
 mod motion;
 mod setup;
 mod simulation;
+mod wall_cover;
 
 pub use charging::{Facet, Ledger};
 pub use error::DemError;
@@ -21,3 +22,4 @@ pub use simulation::energy::{ElectricEnergy, Energies};
 pub use simulation::guards::Guard;
 pub use simulation::state::State;
 pub use simulation::{Deepest, Simulation};
+pub use wall_cover::WallCover;

@@ -2,8 +2,8 @@
 
 mod common;
 
-use amberfield_core::{Boundary, Domain, TriangleMesh, Vector3, WallShape};
-use amberfield_dem::Simulation;
+use amberfield_core::{Boundary, Domain, MaterialId, TriangleMesh, Vector3, Wall, WallShape};
+use amberfield_dem::{Simulation, WallCover};
 use common::{RADIUS, floor, grain, material, mesh_floor, run, setup, wall};
 
 #[test]
@@ -95,4 +95,93 @@ fn collision_across_periodic_faces_is_the_one_inside() {
         assert!((inside.velocity[k] - across.velocity[k]).norm() < 1e-9);
         assert!((inside.angular_velocity[k] - across.angular_velocity[k]).norm() < 1e-6);
     }
+}
+
+/// Triangles of a surface that turn the other side.
+fn turned(mut surface: TriangleMesh) -> TriangleMesh {
+    surface.triangles.iter_mut().for_each(|triangle| triangle.swap(1, 2));
+    surface
+}
+
+fn surface_of(wall: Wall) -> TriangleMesh {
+    match wall.shape {
+        WallShape::Mesh(surface) => surface,
+        WallShape::Plane { .. } => panic!("a plane has no triangles"),
+    }
+}
+
+/// Changes that physics does not see: into how many walls a surface is cut, in which order they come, and
+/// whether a wall is there twice.
+#[test]
+fn a_surface_cut_into_several_walls_is_the_surface() {
+    let whole = surface_of(mesh_floor(10e-3, 20));
+    let motion = |surfaces: Vec<TriangleMesh>| {
+        let mut scene = setup(
+            vec![grain(1, [-4.3e-3, -2.15e-3, RADIUS * 1.01], [0.4, 0.2, -0.05])],
+            material(0.3, 0.4, 0.02),
+            2e-6,
+        );
+        scene.walls = surfaces.into_iter().map(|surface| wall(WallShape::Mesh(surface))).collect();
+        scene.time.gravity_m_s2 = Vector3::new(0.0, 0.0, -9.81);
+        let mut simulation = Simulation::new(scene).unwrap();
+        run(&mut simulation, 10_000);
+        simulation.particles().grain(0)
+    };
+    let part = |wanted: &dyn Fn(usize) -> bool| {
+        let numbered = whole.triangles.iter().enumerate();
+        let triangles =
+            numbered.filter(|(number, _)| wanted(*number)).map(|(_, triangle)| *triangle).collect();
+        TriangleMesh { vertices: whole.vertices.clone(), triangles }
+    };
+    let alone = motion(vec![whole.clone()]);
+    let third = |which: usize| part(&|number| number % 3 == which);
+    for surfaces in [
+        vec![third(0), third(1), third(2)],
+        vec![third(2), third(0), third(1)],
+        vec![part(&|number| number < 411), part(&|number| number >= 411)],
+        vec![whole.clone(), whole.clone()],
+        vec![turned(whole.clone()), whole.clone()],
+    ] {
+        let cut = motion(surfaces);
+        // Round-off of closest points, amplified over 10 000 steps.
+        assert!((alone.position - cut.position).norm() < 1e-12, "{alone:?} {cut:?}");
+        assert!((alone.velocity - cut.velocity).norm() < 1e-9);
+        assert!((alone.angular_velocity - cut.angular_velocity).norm() < 1e-6);
+    }
+}
+
+/// A baffle of two walls in one place: each of two grains rebounds from the side that faces it.
+#[test]
+fn the_sides_of_a_baffle_may_be_of_different_materials() {
+    const STIFF: f64 = 0.9;
+    const SOFT: f64 = 0.3;
+    let front = surface_of(mesh_floor(10e-3, 20));
+    let mut scene = setup(
+        vec![
+            grain(1, [1.3e-3, 0.4e-3, 1.5 * RADIUS], [0.0, 0.0, -0.1]),
+            grain(2, [1.0e-3, 5.0e-3, -1.5 * RADIUS], [0.0, 0.0, 0.1]),
+        ],
+        material(STIFF, 0.0, 0.0),
+        2e-6,
+    );
+    scene.materials.push(material(SOFT, 0.0, 0.0));
+    scene.walls = vec![wall(WallShape::Mesh(front.clone())), wall(WallShape::Mesh(turned(front)))];
+    scene.walls[1].material = MaterialId(1);
+    let mut simulation = Simulation::new(scene).unwrap();
+    run(&mut simulation, 20_000);
+    let rebound = simulation.particles().velocity.iter().map(|v| (v.z / 0.1).abs()).collect::<Vec<f64>>();
+    // A pair's restitution is the geometric mean of those of its materials.
+    for (rebound, expected) in rebound.iter().zip([STIFF, (STIFF * SOFT).sqrt()]) {
+        assert!((rebound - expected).abs() < 0.02, "{rebound} {expected}");
+    }
+}
+
+#[test]
+fn walls_cover_what_is_at_them_and_what_planes_hide() {
+    let cover = WallCover::new(&[mesh_floor(10e-3, 4), floor()]).unwrap();
+    assert!(cover.covers(Vector3::new(1e-3, 2e-3, 1e-5), 1e-4));
+    assert!(cover.covers(Vector3::new(1e-3, 2e-3, -1.0), 1e-4));
+    assert!(!cover.covers(Vector3::new(1e-3, 2e-3, 1e-3), 1e-4));
+    let alone = WallCover::new(&[mesh_floor(10e-3, 4)]).unwrap();
+    assert!(!alone.covers(Vector3::new(1e-3, 2e-3, -1.0), 1e-4));
 }

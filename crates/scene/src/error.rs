@@ -83,6 +83,16 @@ pub enum SceneError {
         /// Problem and what to do.
         problem: String,
     },
+    /// Case without a mesh, of which a wall is a patch.
+    #[error(
+        "{}: a wall of the scene is a patch of this case's mesh, and there is no constant/polyMesh yet; make \
+         the mesh, with blockMesh for example",
+        case.display()
+    )]
+    NoMesh {
+        /// Folder of the case.
+        case: PathBuf,
+    },
     /// Generated fill that cannot be reached.
     #[error("{place}: particles.generate: {problem}")]
     Fill {

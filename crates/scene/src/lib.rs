@@ -9,6 +9,7 @@ mod generate;
 mod limits;
 mod materials;
 mod particles;
+mod poly_mesh;
 mod scene;
 mod source;
 mod stl;

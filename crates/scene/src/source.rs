@@ -72,7 +72,7 @@ impl SceneSource {
 /// Reads a file or pipe that is not empty.
 ///
 /// Devices are refused, since some of them never end.
-fn read_bytes(path: &Path) -> Result<Vec<u8>, String> {
+pub(crate) fn read_bytes(path: &Path) -> Result<Vec<u8>, String> {
     if path.is_dir() {
         return Err(format!("{} is a directory; name a file", path.display()));
     }

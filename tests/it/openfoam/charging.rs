@@ -5,8 +5,8 @@ use amberfield_tests::{CsvTable, FoamBox};
 
 /// Scene in which a floor of steel takes charge from grains of glass.
 ///
-/// The floor is a mesh with the surface of a patch of the solver, or a plane.
-fn floor_of(mesh: bool) -> FoamBox {
+/// The floor is given by keys of a wall.
+fn floor_of(floor: &str) -> FoamBox {
     let (cyclic, wall) = (("cyclic", "type cyclic;"), ("wall", "type fixedValue; value uniform 0;"));
     let faces = "x = 'periodic'\ny = 'periodic'\nz = 'grounded'";
     let scene = FoamBox::new(&[cyclic, cyclic, cyclic, cyclic, wall, wall], faces, "bipolar = 1e-13");
@@ -17,11 +17,6 @@ fn floor_of(mesh: bool) -> FoamBox {
          endloop\nendfacet\n\
          endsolid floor\n";
     scene.bench.write("floor.stl", corners);
-    let floor = if mesh {
-        "stl = 'floor.stl'\npatch = 'z0'\n"
-    } else {
-        "plane = { point_m = [0, 0, 0], normal = [0, 0, 1] }\ncharging = 'grounded'\n"
-    };
     let solids = format!(
         "work_function_eV = 4.5\n[[materials]]\nname = 'steel'\ndensity_kg_m3 = 7800.0\nyoung_Pa = 5e5\n\
          poisson = 0.3\nrestitution = 0.6\nfriction = 0.3\n\
@@ -48,13 +43,14 @@ fn history(scene: &FoamBox, out: &str) -> CsvTable {
 #[test]
 fn a_floor_takes_as_much_over_openfoam_as_on_the_internal_grid() {
     const AGREEMENT: f64 = 0.02;
-    let mesh = history(&floor_of(true), "mesh");
-    let scene = floor_of(false);
+    let mesh = history(&floor_of("stl = 'floor.stl'\npatch = 'z0'\n"), "mesh");
+    let patch = history(&floor_of("patch = 'z0'\n"), "patch");
+    let scene = floor_of("plane = { point_m = [0, 0, 0], normal = [0, 0, 1] }\ncharging = 'grounded'\n");
     let coupled = history(&scene, "coupled");
     scene.alone();
     let alone = history(&scene, "alone");
     let taken = |table: &CsvTable| *table.numbers("wall_charge_C").last().expect("a row");
-    for table in [&mesh, &coupled, &alone] {
+    for table in [&mesh, &patch, &coupled, &alone] {
         let [grains, walls] = ["net_charge_C", "wall_charge_C"].map(|column| table.numbers(column));
         let moved = *table.numbers("contact_charge_C").last().expect("a row");
         assert!(taken(table).abs() > 0.1 * moved && moved > 0.0, "{:e} {moved:e}", taken(table));

@@ -4,14 +4,15 @@ use crate::arguments::ExplainOptions;
 use crate::failure::Failure;
 use crate::print::line;
 use crate::run::{
-    Charges, SolverConnections, charges_of, connect_solver, domain_of, field_of, scene_name, setup_of,
+    Charges, SolverConnections, charges_of, connect_solver, domain_of, field_of, read_scene, scene_name,
+    setup_of,
 };
 use crate::{machine, plan_text};
 use amberfield_core::{Axis, Boundary, Domain, Side};
 use amberfield_dem::Simulation;
 use amberfield_field::ElectricField;
 use amberfield_field::far::Connect;
-use amberfield_scene::{ElectricFieldSettings, Purpose, Scene, read_scene};
+use amberfield_scene::{ElectricFieldSettings, Purpose, Scene};
 use std::mem::size_of;
 
 /// Memory for the motion of a grain [bytes]: state, forces, and neighbour lists with the usual 8 to 12
@@ -29,6 +30,9 @@ pub(crate) fn explain(options: &ExplainOptions) -> Result<(), Failure> {
         line(format_args!("warning: {warning}"));
     }
     let solver = connect_solver(&mut scene)?;
+    for warning in &solver.warnings {
+        line(format_args!("warning: {warning}"));
+    }
     if scene.time.is_some() { explain_run(&scene, solver) } else { explain_field(&scene, solver.field) }
 }
 

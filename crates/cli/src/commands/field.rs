@@ -3,12 +3,14 @@
 use crate::arguments::FieldOptions;
 use crate::failure::Failure;
 use crate::print;
-use crate::run::{Charges, charges_of, connect_solver, domain_of, field_of, parameters, scene_name};
+use crate::run::{
+    Charges, charges_of, connect_solver, domain_of, field_of, parameters, read_scene, scene_name,
+};
 use amberfield_core::{Method, Vector3};
 use amberfield_field::{ElectricField, FieldValues, Wanted};
 use amberfield_scene::{
     ElectricFieldSettings, FieldColumns, FieldComponents, FieldReport, FieldReportSeconds, Purpose, Scene,
-    read_scene, write_field_csv, write_json,
+    write_field_csv, write_json,
 };
 use std::collections::BTreeMap;
 use std::path::{Path, PathBuf};

@@ -6,11 +6,11 @@ use crate::logging::Log;
 use crate::progress::Progress;
 use crate::run::{
     Clock, EarlierPart, Ending, Existing, RunFolder, Saved, Session, SolverConnections, checkpoints,
-    connect_solver, draw, histogram, scene_name, setup_of,
+    connect_solver, draw, histogram, read_scene, scene_name, setup_of,
 };
 use crate::{interrupt, plan_text, print};
 use amberfield_dem::Simulation;
-use amberfield_scene::{Purpose, read_checkpoint, read_scene, write_json, write_text};
+use amberfield_scene::{Purpose, read_checkpoint, write_json, write_text};
 use std::path::{Path, PathBuf};
 
 /// Share of the steps with limited grains above which a run ends with a warning.
@@ -42,6 +42,9 @@ pub(crate) fn run(options: &RunOptions, common: &Common, log: &Log) -> Result<()
         }
         _ => connect_solver(&mut scene)?,
     };
+    for warning in &solver.warnings {
+        tracing::warn!("{warning}");
+    }
     let setup = setup_of(&scene, None, solver)?;
 
     let (simulation, earlier) = match saved {

@@ -3,11 +3,11 @@
 use crate::arguments::TuneOptions;
 use crate::failure::Failure;
 use crate::print::line;
-use crate::run::{Charges, charges_of, domain_of, scene_name};
+use crate::run::{Charges, charges_of, domain_of, read_scene, scene_name};
 use amberfield_core::{Domain, FieldSettings, Method, Tuning, Vector3};
 use amberfield_field::{Candidate, Choice, ElectricField, FieldError, FieldValues, Wanted};
 use amberfield_oracle::{ErrorNorms, field_scale};
-use amberfield_scene::{Purpose, read_scene, write_table};
+use amberfield_scene::{Purpose, write_table};
 use serde::Serialize;
 use std::path::PathBuf;
 use std::time::Instant;

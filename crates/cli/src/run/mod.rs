@@ -1,5 +1,7 @@
 //! Parts of a run: its folder, its schedule, its records.
 
+#[cfg(feature = "coupling")]
+mod bare_patches;
 mod folder;
 mod health;
 pub(crate) mod histogram;
@@ -19,5 +21,5 @@ pub(crate) use picture::draw;
 pub(crate) use record::Clock;
 pub(crate) use session::{EarlierPart, Saved, Session};
 pub(crate) use setup::{Charges, SolverConnections, charges_of, domain_of, field_of, parameters, setup_of};
-pub(crate) use solver::connect_solver;
+pub(crate) use solver::{connect_solver, read_scene};
 pub(crate) use summary::Ending;

@@ -70,6 +70,8 @@ pub(crate) struct SolverConnections {
     pub(crate) field: Option<Connect>,
     /// Connection for the flow of the gas.
     pub(crate) flow: Option<ConnectFlow>,
+    /// Warnings about the scene on the solver's mesh.
+    pub(crate) warnings: Vec<String>,
 }
 
 /// Set-up of the simulation of a scene, with its solver; `choice` are field parameters that were chosen

@@ -1,20 +1,36 @@
 //! Connection to the scene's solver, which is started first because its mesh may give the box.
 
+use super::bare_patches::warning_of_bare_patches;
 use super::setup::SolverConnections;
 use crate::failure::Failure;
 use amberfield_core::{Axis, Domain, Method};
 use amberfield_coupling::{
-    Announced, CouplingError, PatientSolver, RemoteSolver, SolverSettings, program_name,
+    Announced, CouplingError, PatientSolver, RemoteSolver, SolverSettings, make_mesh, program_name,
 };
 use amberfield_field::far::{Connect, FarField};
 use amberfield_gas::ConnectFlow;
-use amberfield_scene::{ElectricFieldSettings, OpenFoamSettings, Scene, SolverLoss};
+use amberfield_scene::{ElectricFieldSettings, OpenFoamSettings, Purpose, Scene, SceneError, SolverLoss};
+use std::path::Path;
 use std::sync::{Mutex, PoisonError};
 use std::time::Duration;
 
 /// Ratio of the linear solver's relative tolerance to that of the field, unless the scene gives the
 /// tolerance.
 const FAR_TOLERANCE: f64 = 1e-4;
+
+/// Reads a scene. Where one of its walls is a patch of a mesh that is not made yet, the mesh is made first.
+pub(crate) fn read_scene(path: &Path, overrides: &[String], purpose: Purpose) -> Result<Scene, SceneError> {
+    let read = || amberfield_scene::read_scene(path, overrides, purpose);
+    match read() {
+        Err(SceneError::NoMesh { case }) => {
+            tracing::info!("making the mesh of {}", case.display());
+            let file = case.display().to_string();
+            make_mesh(&case).map_err(|error| SceneError::File { file, problem: error.to_string() })?;
+            read()
+        }
+        result => result,
+    }
+}
 
 /// Connects to the scene's solver, if it has one.
 ///
@@ -44,6 +60,7 @@ pub(crate) fn connect_solver(scene: &mut Scene) -> Result<SolverConnections, Fai
     let connected = connect(&settings).map_err(|error| Failure::of_field(&error.into()))?;
     let mesh = connected.mesh();
     tracing::info!("field solver: {} cells, {} boundary faces", mesh.cell_count(), mesh.boundary().len());
+    let warnings = warning_of_bare_patches(scene, mesh).into_iter().collect();
     match &scene.domain {
         None => scene.domain = Some(mesh.domain().clone()),
         Some(domain) => agree(domain, mesh.domain())?,
@@ -65,7 +82,7 @@ pub(crate) fn connect_solver(scene: &mut Scene) -> Result<SolverConnections, Fai
             })
         })
     });
-    Ok(SolverConnections { field, flow })
+    Ok(SolverConnections { field, flow, warnings })
 }
 
 /// Settings of the connection to a solver; `flows` says that it computes the flow of a gas.

@@ -3,6 +3,7 @@
 use super::setup::SolverConnections;
 use crate::failure::Failure;
 use amberfield_scene::Scene;
+pub(crate) use amberfield_scene::read_scene;
 
 /// Refuses a scene with a field solver.
 pub(crate) fn connect_solver(scene: &mut Scene) -> Result<SolverConnections, Failure> {

@@ -157,7 +157,14 @@ pub fn foam_command(program: impl AsRef<OsStr>) -> Command {
     command
 }
 
-/// Makes the mesh of a case that has only a recipe for it.
+/// Makes the mesh of a case that has only a recipe for it, `system/blockMeshDict`.
+///
+/// # Errors
+/// A case without mesh and recipe, a recipe that blockMesh refuses.
+pub fn make_mesh(case: &Path) -> Result<(), CouplingError> {
+    provide_mesh(case).map_err(CouplingError::NoMesh)
+}
+
 fn provide_mesh(case: &Path) -> Result<(), String> {
     let has = |path: &str| case.join(path).exists();
     if has("constant/polyMesh/points") || has("constant/polyMesh/points.gz") {

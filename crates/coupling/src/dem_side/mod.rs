@@ -13,6 +13,6 @@ mod shared;
 pub use announced::Announced;
 pub use far::RemoteSolver;
 pub use flow::RemoteFlow;
-pub use launch::{foam_command, program_name, solver_program};
+pub use launch::{foam_command, make_mesh, program_name, solver_program};
 pub use patient::PatientSolver;
 pub use settings::SolverSettings;

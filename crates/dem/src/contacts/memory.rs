@@ -95,8 +95,8 @@ pub(crate) struct PairHistory {
 pub(crate) struct WallHistory {
     /// Grain.
     pub(crate) grain: Original,
-    /// Wall.
-    pub(crate) wall: u32,
+    /// Solid: a plane, or all surfaces of triangles.
+    pub(crate) solid: u32,
     /// Direction from the grain to the wall.
     pub(crate) normal: [f64; 3],
     /// Overlap [m].

@@ -103,7 +103,7 @@ fn read_sections(
         return Err(problems.finish().expect_err("a section was refused"));
     };
     let materials = Materials { ignored: list.is_empty(), list };
-    let walls = read_walls(document, &materials, source)?;
+    let walls = read_walls(document, &materials, solver.as_ref(), source)?;
     let section = read_section(document, domain.as_ref(), &materials, &walls.walls, !motion, source)?;
     let time = read_time(document, section.on_exit, section.allow_overlap)?;
     let mut scene = Scene {

@@ -4,15 +4,21 @@ use crate::SceneError;
 use crate::error::Problems;
 use crate::limits::COORDINATE;
 use crate::materials::Materials;
+use crate::poly_mesh::{PatchError, PolyMesh};
+use crate::scene::OpenFoamSettings;
 use crate::source::SceneSource;
 use crate::stl::{Surface, read_stl};
 use crate::tree::{Range, SceneTable};
-use amberfield_core::{Wall, WallCharging, WallShape};
+use amberfield_core::{TriangleMesh, Wall, WallCharging, WallShape};
 
 /// Keys of a wall.
 const KEYS: [&str; 6] = ["stl", "scale", "plane", "material", "charging", "patch"];
 /// Length below which a normal has no direction.
 const SHORTEST_NORMAL: f64 = 1e-100;
+
+/// Advice for a wall without a shape.
+const SHAPES: &str = "give stl = \"file.stl\", plane = { point_m = [0, 0, 0], normal = [0, 0, 1] } or, with \
+                      [solver], patch = \"name\"";
 
 /// Walls of a scene.
 pub(super) struct ReadWalls {
@@ -33,13 +39,19 @@ struct ReadWall {
 pub(super) fn read_walls(
     document: &SceneTable<'_>,
     materials: &Materials,
+    solver: Option<&OpenFoamSettings>,
     source: &mut SceneSource,
 ) -> Result<ReadWalls, SceneError> {
     let mut read = ReadWalls { walls: Vec::new(), patches: Vec::new(), warnings: Vec::new() };
+    let mut mesh = solver.map(|solver| PolyMesh::of(&solver.openfoam_case));
     let mut problems = Problems::default();
     for (index, node) in document.items("walls")?.unwrap_or_default().iter().enumerate() {
         let wall = SceneTable::new(node, format!("walls[{index}]"), &KEYS)
-            .and_then(|table| read_wall(&table, materials, source, &mut read.warnings));
+            .and_then(|table| read_wall(&table, materials, mesh.as_mut(), source, &mut read.warnings));
+        // Whoever can make the mesh does so and reads the scene again.
+        if let Err(error @ SceneError::NoMesh { .. }) = wall {
+            return Err(error);
+        }
         if let Some(ReadWall { wall, patch }) = problems.keep(wall) {
             read.walls.push(wall);
             read.patches.push(patch);
@@ -51,6 +63,7 @@ pub(super) fn read_walls(
 fn read_wall(
     table: &SceneTable<'_>,
     materials: &Materials,
+    mut mesh: Option<&mut PolyMesh>,
     source: &mut SceneSource,
     warnings: &mut Vec<String>,
 ) -> Result<ReadWall, SceneError> {
@@ -63,7 +76,10 @@ fn read_wall(
             ("none", WallCharging::None),
         ],
     )?;
-    let patch = table.text("patch")?.map(ToOwned::to_owned);
+    let patch = table.text("patch")?;
+    if let (Some(patch), Some(mesh)) = (patch, mesh.as_mut()) {
+        mesh.check(patch).map_err(|error| refusal(table, error))?;
+    }
     let (name, shape) = match (table.text("stl")?, table.has("plane")) {
         (Some(stl), false) => {
             let scale = table.number("scale", Range::positive(1e6))?.unwrap_or(1.0);
@@ -82,17 +98,53 @@ fn read_wall(
             return Err(table.bad("plane", "the wall has an stl already; give one of stl, plane"));
         }
         (None, false) => {
-            return Err(table.missing(
-                "stl",
-                "give stl = \"file.stl\" or plane = { point_m = [0, 0, 0], normal = [0, 0, 1] }",
-            ));
+            let patch = table.need(patch, "stl", SHAPES)?;
+            let surface = read_patch(table, patch, mesh, source)?;
+            (patch.to_owned(), WallShape::Mesh(surface))
         }
     };
     // Unless the scene says otherwise, surfaces are grounded conductors and planes take no charge.
     let usual = if matches!(shape, WallShape::Mesh(_)) { WallCharging::Grounded } else { WallCharging::None };
     let bounds_field = patch.is_some();
+    let patch = patch.map(ToOwned::to_owned);
     let charging = charging.unwrap_or(usual);
     Ok(ReadWall { wall: Wall { name, shape, material, charging, bounds_field }, patch })
+}
+
+/// Surface of a patch of the solver's mesh.
+fn read_patch(
+    table: &SceneTable<'_>,
+    patch: &str,
+    mesh: Option<&mut PolyMesh>,
+    source: &mut SceneSource,
+) -> Result<TriangleMesh, SceneError> {
+    if table.has("scale") {
+        return Err(table.bad("scale", "a patch has no scale, its mesh is in metres; remove it"));
+    }
+    let Some(mesh) = mesh else {
+        return Err(table.bad(
+            "patch",
+            "there is no mesh whose patch the wall could be; add [solver] with openfoam_case, or give the \
+             wall an stl or a plane",
+        ));
+    };
+    let surface = mesh.surface(patch).map_err(|error| refusal(table, error))?;
+    // How the mesh's files are written does not matter, only what they say.
+    for vertex in &surface.vertices {
+        vertex.iter().for_each(|x| source.add(&x.to_le_bytes()));
+    }
+    for vertex in surface.triangles.iter().flatten() {
+        source.add(&vertex.to_le_bytes());
+    }
+    Ok(surface)
+}
+
+/// Error about a wall's patch.
+fn refusal(table: &SceneTable<'_>, error: PatchError) -> SceneError {
+    match error {
+        PatchError::Patch(problem) => table.bad("patch", problem),
+        PatchError::Mesh(error) => error,
+    }
 }
 
 fn read_plane(table: &SceneTable<'_>) -> Result<WallShape, SceneError> {

@@ -59,6 +59,9 @@ const SCENE_CHANGES: &[(&str, &str)] = &[
     #[cfg(unix)]
     ("stl = \"plate.stl\"", "stl = \"/dev/zero\""),
     ("charging = \"grounded\"", "charging = \"ground\""),
+    ("stl = \"plate.stl\"\nscale = 1e-3", ""),
+    ("stl = \"plate.stl\"", "patch = \"plate\""),
+    ("stl = \"plate.stl\"\nscale = 1e-3", "patch = \"plate\""),
     ("file = \"grains.csv\"", ""),
     ("file = \"grains.csv\"", "file = \"grains.csv\"\ngenerate = { count = 1 }"),
     ("file = \"grains.csv\"", "generate = { count = 0 }"),

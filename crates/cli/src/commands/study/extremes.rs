@@ -1,8 +1,9 @@
 //! A scene sent through a command of its own process, as a user would: it may fail in any way.
 
+use crate::run::read_scene;
 use amberfield_core::{Permittivity, Vector3};
 use amberfield_oracle::{ErrorNorms, field_scale};
-use amberfield_scene::{Purpose, read_scene, read_table};
+use amberfield_scene::{Purpose, read_table};
 use amberfield_study::sweep::{Endured, Extreme, Look};
 use serde::Deserialize;
 use std::fs::File;

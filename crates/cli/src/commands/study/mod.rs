@@ -7,11 +7,11 @@ use crate::arguments::StudyOptions;
 use crate::failure::Failure;
 use crate::machine;
 use crate::print::line;
-use crate::run::{Charges, charges_of, connect_solver, domain_of, field_of, parameters};
+use crate::run::{Charges, charges_of, connect_solver, domain_of, field_of, parameters, read_scene};
 use amberfield_core::{FieldSettings, Method, Tuning, Vector3};
 use amberfield_field::{ElectricField, FieldValues, Wanted};
 use amberfield_oracle::field_scale;
-use amberfield_scene::{Purpose, Scene, read_scene};
+use amberfield_scene::{Purpose, Scene};
 use amberfield_study::peers::{PeerProblem, measure_field};
 use amberfield_study::sweep::{
     self, Endured, Evaluation, Exact, Extreme, Laboratory, Moved, Peer, Provenance, Results, Row, Study,

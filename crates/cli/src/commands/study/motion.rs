@@ -1,9 +1,9 @@
 //! A run of a study.
 
-use crate::run::{connect_solver, setup_of};
+use crate::run::{connect_solver, read_scene, setup_of};
 use amberfield_core::Vector3;
 use amberfield_dem::{ElectricEnergy, Simulation};
-use amberfield_scene::{Purpose, read_scene};
+use amberfield_scene::Purpose;
 use amberfield_study::sweep::Moved;
 use std::path::Path;
 use std::time::Instant;

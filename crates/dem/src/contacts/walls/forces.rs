@@ -31,7 +31,7 @@ impl ChunkWalls {
             let local = entry.local as usize;
             let i = k * CHUNK + local;
             let (centre, radius) = (grains.position(i), grains.centre[i][3]);
-            let solid = &solids[entry.wall as usize];
+            let solid = &solids[entry.solid as usize];
             let mut found = [Found::default(); MOST_CONTACTS];
             let count = match &solid.shape {
                 Shape::Plane { point, normal } => {
@@ -53,8 +53,8 @@ impl ChunkWalls {
                 touches::renew(&mut memory[entry.contacts as usize..], &from[..count]);
             }
             entry.count = count as u32;
-            let pair = table.get(grains.material[i], solid.material);
             for wall_contact in &mut kept[..count] {
+                let pair = table.get(grains.material[i], solid.part(wall_contact.triangle).material);
                 let (contact, arm) = contact_of::<FRICTION, ROLLING>(grains, i, wall_contact);
                 let mut history = History::stored(wall_contact.spring, wall_contact.rolling);
                 let response = respond::<_, FRICTION, ROLLING, DAMPING>(&contact, pair, step, &mut history);

@@ -5,6 +5,10 @@
 //! plane (the next triangle of a flat surface, a shared edge or vertex), or its direction differs by less
 //! than 15° (facets of a curved surface). A concave corner keeps both faces. So a ball that rolls over a
 //! triangulated plane feels the plane's force, once, whatever it rolls over.
+//!
+//! All surfaces of a scene are searched together, so that it does not matter how a surface is cut into files
+//! or patches. Where two lie in one place, as the sides of a baffle do, the grain touches the one that turns
+//! its front to it.
 
 use amberfield_core::{TriangleMesh, Vector3};
 use parry3d_f64::bounding_volume::Aabb;
@@ -21,6 +25,8 @@ const SAME_DIRECTION: f64 = 0.965_925_826_289_068_3;
 const PLANE_SLACK: f64 = 1e-6;
 /// Squared lateral distance over r² below which the closest point is taken as the foot on the face.
 const FACE_SLACK: f64 = 1e-10;
+/// Least cosine of the angle between two directions to one place: round-off.
+const SAME_PLACE: f64 = 1.0 - 1e-9;
 
 /// Triangles whose height is below this fraction of their longest edge have no direction beyond round-off.
 const SLIVER: f64 = 1e-10;
@@ -40,6 +46,8 @@ pub(crate) struct ClosestPoint {
     distance: f64,
     triangle: u32,
     direction: Vector3<f64>,
+    /// Whether the triangle turns its front to the grain's centre.
+    is_front: bool,
 }
 
 /// Triangles with what a contact search needs.
@@ -48,6 +56,8 @@ pub(crate) struct MeshWall {
     triangles: Vec<Triangle>,
     normals: Vec<Vector3<f64>>,
     tree: Bvh,
+    /// First triangle of each surface.
+    first: Vec<u32>,
 }
 
 fn parry(v: Vector3<f64>) -> ParryVector {
@@ -59,28 +69,37 @@ fn plain(v: ParryVector) -> Vector3<f64> {
 }
 
 impl MeshWall {
-    /// Triangles without area, and slivers whose plane is round-off, are dropped: their neighbours' edges
-    /// cover them.
-    pub(crate) fn new(mesh: &TriangleMesh) -> Self {
-        let (mut triangles, mut normals) = (Vec::new(), Vec::new());
-        for indices in &mesh.triangles {
-            let [a, b, c] = indices.map(|k| mesh.vertices[k as usize]);
-            let across = (b - a).cross(&(c - a));
-            let normal = across / across.norm();
-            let longest2 = [b - a, c - b, a - c].iter().map(Vector3::norm_squared).fold(0.0, f64::max);
-            if across.norm() > SLIVER * longest2 && normal.iter().all(|x| x.is_finite()) {
-                triangles.push(Triangle::new(parry(a), parry(b), parry(c)));
-                normals.push(normal);
+    /// Joins surfaces. Triangles without area, and slivers whose plane is round-off, are dropped: their
+    /// neighbours' edges cover them.
+    pub(crate) fn new<'a>(surfaces: impl IntoIterator<Item = &'a TriangleMesh>) -> Self {
+        let (mut triangles, mut normals, mut first) = (Vec::new(), Vec::new(), Vec::new());
+        for surface in surfaces {
+            first.push(triangles.len() as u32);
+            for indices in &surface.triangles {
+                let [a, b, c] = indices.map(|k| surface.vertices[k as usize]);
+                let across = (b - a).cross(&(c - a));
+                let normal = across / across.norm();
+                let longest2 = [b - a, c - b, a - c].iter().map(Vector3::norm_squared).fold(0.0, f64::max);
+                if across.norm() > SLIVER * longest2 && normal.iter().all(|x| x.is_finite()) {
+                    triangles.push(Triangle::new(parry(a), parry(b), parry(c)));
+                    normals.push(normal);
+                }
             }
         }
         let boxes: Vec<Aabb> = triangles.iter().map(Triangle::local_aabb).collect();
         let tree = Bvh::from_leaves(BvhBuildStrategy::Binned, &boxes);
-        Self { triangles, normals, tree }
+        Self { triangles, normals, tree, first }
     }
 
-    /// Whether no triangle is left.
-    pub(crate) fn is_empty(&self) -> bool {
-        self.triangles.is_empty()
+    /// First of the surfaces of which no triangle is left.
+    pub(crate) fn empty_surface(&self) -> Option<usize> {
+        let ends = self.first.iter().skip(1).copied().chain([self.triangles.len() as u32]);
+        self.first.iter().zip(ends).position(|(first, end)| *first == end)
+    }
+
+    /// Surface that a triangle belongs to.
+    pub(crate) fn surface_of(&self, triangle: u32) -> usize {
+        self.first.partition_point(|first| *first <= triangle) - 1
     }
 
     /// Corners of a triangle [m].
@@ -95,25 +114,27 @@ impl MeshWall {
         let half = Vector3::repeat(reach);
         let region = Aabb::new(parry(centre - half), parry(centre + half));
         for triangle in self.tree.intersect_aabb(&region) {
-            if self.closest(triangle, centre, reach).0 <= reach {
+            if self.closest(triangle, centre, reach).distance <= reach {
                 found.push(triangle);
             }
         }
         found[first..].sort_unstable();
     }
 
-    /// Distance [m] to a triangle and unit direction to its closest point.
-    fn closest(&self, triangle: u32, centre: Vector3<f64>, radius: f64) -> (f64, Vector3<f64>) {
+    /// Closest point of a triangle to the centre of a sphere with a radius [m].
+    fn closest(&self, triangle: u32, centre: Vector3<f64>, radius: f64) -> ClosestPoint {
         let (shape, normal) = (&self.triangles[triangle as usize], self.normals[triangle as usize]);
         let height = (centre - plain(shape.a)).dot(&normal);
         let offset = plain(shape.project_local_point(parry(centre), false).point) - centre;
         let square = offset.norm_squared();
         // Both ways: beside a thin triangle, whose normal is inexact, the height may exceed the distance.
+        let is_front = height >= 0.0;
         if (square - height * height).abs() <= FACE_SLACK * radius * radius {
-            (height.abs(), if height < 0.0 { normal } else { -normal })
+            let direction = if is_front { -normal } else { normal };
+            ClosestPoint { distance: height.abs(), triangle, direction, is_front }
         } else {
             let distance = square.sqrt();
-            (distance, offset / distance)
+            ClosestPoint { distance, triangle, direction: offset / distance, is_front }
         }
     }
 
@@ -128,26 +149,37 @@ impl MeshWall {
     ) -> usize {
         scratch.clear();
         for (triangle, centre) in triangles {
-            let (distance, direction) = self.closest(triangle, centre, radius);
-            if distance < radius {
-                scratch.push(ClosestPoint { distance, triangle, direction });
+            let point = self.closest(triangle, centre, radius);
+            if point.distance < radius {
+                scratch.push(point);
             }
         }
         scratch.sort_unstable_by(|a, b| a.distance.total_cmp(&b.distance).then(a.triangle.cmp(&b.triangle)));
         let mut count = 0;
+        let mut is_front = [false; MOST_CONTACTS];
         for candidate in &*scratch {
-            let covered = found[..count].iter().any(|contact| {
+            let overlap = radius - candidate.distance;
+            let covering = found[..count].iter().position(|contact| {
                 let cosine = contact.normal.dot(&candidate.direction);
                 let beyond = cosine * candidate.distance - (radius - contact.overlap);
                 cosine > SAME_DIRECTION || beyond >= -PLANE_SLACK * radius
             });
-            if !covered && count < MOST_CONTACTS {
-                found[count] = Found {
-                    normal: candidate.direction,
-                    overlap: radius - candidate.distance,
-                    triangle: candidate.triangle,
-                };
-                count += 1;
+            match covering {
+                None if count < MOST_CONTACTS => {
+                    let triangle = candidate.triangle;
+                    found[count] = Found { normal: candidate.direction, overlap, triangle };
+                    is_front[count] = candidate.is_front;
+                    count += 1;
+                }
+                Some(k) if candidate.is_front && !is_front[k] => {
+                    let is_same = found[k].normal.dot(&candidate.direction) > SAME_PLACE
+                        && found[k].overlap - overlap < PLANE_SLACK * radius;
+                    if is_same {
+                        found[k].triangle = candidate.triangle;
+                        is_front[k] = true;
+                    }
+                }
+                _ => {}
             }
         }
         count
@@ -159,7 +191,7 @@ mod tests {
     use super::*;
 
     fn contacts(mesh: &TriangleMesh, centre: Vector3<f64>, radius: f64) -> Vec<Found> {
-        let wall = MeshWall::new(mesh);
+        let wall = MeshWall::new([mesh]);
         let mut near = Vec::new();
         wall.within(centre, radius * 1.1, &mut near);
         let mut found = [Found::default(); MOST_CONTACTS];

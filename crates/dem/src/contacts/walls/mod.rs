@@ -3,6 +3,7 @@
 mod forces;
 pub(crate) mod mesh;
 mod near;
+mod solids;
 mod touches;
 
 pub(crate) use touches::{Surface, Touch, WallSlot};
@@ -10,9 +11,10 @@ pub(crate) use touches::{Surface, Touch, WallSlot};
 use crate::contacts::material_pairs::{Features, PairTable};
 use crate::contacts::memory::{Memory, Spring, WallHistory};
 use crate::contacts::walls::mesh::{ClosestPoint, Found, MOST_CONTACTS, MeshWall};
+use crate::contacts::walls::solids::solids_of;
 use crate::motion::chunks::{CHUNK, chunk_count, for_each_chunk, is_parallel};
 use crate::motion::grains::Grains;
-use amberfield_core::{Domain, Vector3, Wall, WallCharging, WallShape};
+use amberfield_core::{Domain, Vector3, Wall, WallCharging};
 use std::ops::Range;
 
 /// Shape of a wall.
@@ -22,14 +24,23 @@ enum Shape {
     Mesh(Box<MeshWall>),
 }
 
-/// A wall that grains touch.
+/// A body that grains touch: a plane, or all surfaces of triangles together.
 #[derive(Debug)]
 struct Solid {
+    shape: Shape,
+    /// Walls of the scene that it is made of: the plane, or one for each surface.
+    parts: Vec<Part>,
+}
+
+/// A wall of the scene as part of a solid.
+#[derive(Debug)]
+struct Part {
+    /// Number of the wall in the scene.
+    wall: u32,
     name: String,
     material: u16,
     charging: WallCharging,
     bounds_field: bool,
-    shape: Shape,
 }
 
 /// A grain that overlaps a wall too much.
@@ -75,7 +86,7 @@ struct WallContact {
 struct Entry {
     /// Grain in the chunk.
     local: u32,
-    wall: u32,
+    solid: u32,
     /// Triangles near the grain, with shift codes.
     triangles: Range<u32>,
     /// First of the entry's contacts.
@@ -115,44 +126,7 @@ pub(crate) struct ContactWalls {
 
 impl ContactWalls {
     pub(crate) fn new(walls: &[Wall], shifts: [[f64; 3]; 32], charge: bool) -> Result<Self, String> {
-        let mut solids = Vec::new();
-        for wall in walls {
-            let shape = match &wall.shape {
-                WallShape::Plane { point, normal } => {
-                    let size = normal.norm();
-                    let good = point.iter().all(|x| x.is_finite()) && size.is_finite() && size > 0.0;
-                    if !good {
-                        return Err(format!(
-                            "wall '{}' needs a finite point and a normal that is not zero",
-                            wall.name
-                        ));
-                    }
-                    Shape::Plane { point: *point, normal: normal / size }
-                }
-                WallShape::Mesh(mesh) => {
-                    let known = mesh.triangles.iter().flatten().all(|&v| (v as usize) < mesh.vertices.len());
-                    let finite = mesh.vertices.iter().all(|v| v.iter().all(|x| x.is_finite()));
-                    if !(known && finite) {
-                        return Err(format!(
-                            "wall '{}' has a triangle with an unknown vertex or a vertex that is not finite",
-                            wall.name
-                        ));
-                    }
-                    let mesh = MeshWall::new(mesh);
-                    if mesh.is_empty() {
-                        return Err(format!(
-                            "wall '{}' has no triangle with an area; check its file and scale",
-                            wall.name
-                        ));
-                    }
-                    Shape::Mesh(Box::new(mesh))
-                }
-            };
-            let Wall { charging, bounds_field, .. } = *wall;
-            let (name, material) = (wall.name.clone(), wall.material.0);
-            solids.push(Solid { name, material, charging, bounds_field, shape });
-        }
-        Ok(Self { solids, shifts, charge, chunks: Vec::new() })
+        Ok(Self { solids: solids_of(walls)?, shifts, charge, chunks: Vec::new() })
     }
 
     /// Finds the grains near walls; histories stay with their grain and wall.
@@ -171,7 +145,7 @@ impl ContactWalls {
         });
     }
 
-    /// Histories of touching contacts, sorted by grain and wall.
+    /// Histories of touching contacts, sorted by grain and solid.
     pub(crate) fn histories(&self, grains: &Grains) -> Vec<WallHistory> {
         let mut out = Vec::new();
         for (k, chunk) in self.chunks.iter().enumerate() {
@@ -182,7 +156,7 @@ impl ContactWalls {
                     let contact = &chunk.contacts[number];
                     WallHistory {
                         grain: original,
-                        wall: entry.wall,
+                        solid: entry.solid,
                         normal: contact.normal.into(),
                         overlap: contact.overlap,
                         triangle: contact.triangle,
@@ -193,8 +167,8 @@ impl ContactWalls {
                 }));
             }
         }
-        // Stable: several contacts of one grain with one wall keep their order.
-        out.sort_by_key(|h| (h.grain, h.wall));
+        // Stable: several contacts of one grain with one solid keep their order.
+        out.sort_by_key(|h| (h.grain, h.solid));
         out
     }
 
@@ -264,14 +238,28 @@ impl ContactWalls {
         self.chunks.iter().enumerate().flat_map(move |(k, chunk)| {
             chunk.entries.iter().flat_map(move |entry| {
                 let first = entry.contacts as usize;
+                let solid = &self.solids[entry.solid as usize];
                 chunk.contacts[first..first + entry.count as usize].iter().map(move |contact| TouchingWall {
                     grain: k * CHUNK + entry.local as usize,
-                    material: self.solids[entry.wall as usize].material,
+                    material: solid.part(contact.triangle).material,
                     overlap: contact.overlap,
                     spring: contact.spring,
                     rolling: contact.rolling,
                 })
             })
+        })
+    }
+
+    /// Whether a wall stands within a distance [m] of a place [m], or a plane between the place and the
+    /// grains.
+    pub(crate) fn covers(&self, place: Vector3<f64>, distance: f64) -> bool {
+        let mut near = Vec::new();
+        self.solids.iter().any(|solid| match &solid.shape {
+            Shape::Plane { point, normal } => (place - point).dot(normal) <= distance,
+            Shape::Mesh(mesh) => {
+                mesh.within(place, distance, &mut near);
+                !near.is_empty()
+            }
         })
     }
 
@@ -281,25 +269,37 @@ impl ContactWalls {
             let (centre, radius) = (grains.position(grain), grains.centre[grain][3]);
             let limit = 0.5 * radius;
             self.solids.iter().find_map(|solid| {
-                let overlap = solid.overlap(centre, radius);
-                (overlap > limit).then(|| TooDeep { grain, wall: solid.name.clone(), overlap, limit })
+                let Found { overlap, triangle, .. } = solid.deepest(centre, radius);
+                let wall = || solid.part(triangle).name.clone();
+                (overlap > limit).then(|| TooDeep { grain, wall: wall(), overlap, limit })
             })
         })
     }
 }
 
 impl Solid {
-    /// Largest overlap [m] with a grain at `centre` [m]; zero or negative where it does not touch.
-    fn overlap(&self, centre: Vector3<f64>, radius: f64) -> f64 {
+    /// Wall that a triangle of the solid, or its plane, belongs to.
+    fn part(&self, triangle: u32) -> &Part {
         match &self.shape {
-            Shape::Plane { point, normal } => radius - (centre - point).dot(normal),
+            Shape::Plane { .. } => &self.parts[0],
+            Shape::Mesh(mesh) => &self.parts[mesh.surface_of(triangle)],
+        }
+    }
+
+    /// Deepest contact with a grain at `centre` [m]; its overlap is zero or negative where none touches.
+    fn deepest(&self, centre: Vector3<f64>, radius: f64) -> Found {
+        match &self.shape {
+            Shape::Plane { point, normal } => {
+                Found { normal: -normal, overlap: radius - (centre - point).dot(normal), triangle: 0 }
+            }
             Shape::Mesh(mesh) => {
                 let mut near = Vec::new();
                 mesh.within(centre, radius, &mut near);
                 let mut found = [Found::default(); MOST_CONTACTS];
                 let pairs = near.iter().map(|&t| (t, centre));
-                let count = mesh.contacts(radius, pairs, &mut Vec::new(), &mut found);
-                found[..count].iter().map(|f| f.overlap).fold(0.0, f64::max)
+                // The deepest comes first; without any the overlap stays zero.
+                mesh.contacts(radius, pairs, &mut Vec::new(), &mut found);
+                found[0]
             }
         }
     }

@@ -34,7 +34,8 @@ impl ChunkWalls {
         let mut most = 0;
         for i in k * CHUNK..grains.len().min((k + 1) * CHUNK) {
             let (centre, reach) = (grains.position(i), grains.centre[i][3] + skin);
-            for (wall, solid) in solids.iter().enumerate() {
+            for (number, solid) in solids.iter().enumerate() {
+                let number = number as u32;
                 let first = self.triangles.len();
                 let room = match &solid.shape {
                     Shape::Plane { point, normal } => usize::from((centre - point).dot(normal) < reach),
@@ -54,10 +55,10 @@ impl ChunkWalls {
                     self.contacts.resize(contacts + room, WallContact::default());
                     self.charging.resize(if charge { contacts + room } else { 0 }, Memory::default());
                     let original = grains.original[i];
-                    let from = histories.partition_point(|h| (h.grain, h.wall) < (original, wall as u32));
+                    let from = histories.partition_point(|h| (h.grain, h.solid) < (original, number));
                     let mut count = 0;
                     let same = histories[from..].iter().take_while(|h| h.grain == original);
-                    for h in same.take_while(|h| h.wall == wall as u32).take(room) {
+                    for h in same.take_while(|h| h.solid == number).take(room) {
                         self.contacts[contacts + count] = WallContact {
                             normal: h.normal.into(),
                             overlap: h.overlap,
@@ -72,7 +73,7 @@ impl ChunkWalls {
                     }
                     self.entries.push(Entry {
                         local: (i - k * CHUNK) as u32,
-                        wall: wall as u32,
+                        solid: number,
                         triangles: first as u32..self.triangles.len() as u32,
                         contacts: contacts as u32,
                         count: count as u32,

@@ -23,7 +23,10 @@ pub(crate) struct Touch {
     pub(crate) slot: WallSlot,
     /// Sorted index.
     pub(crate) grain: usize,
+    /// Wall of the scene.
     pub(crate) wall: u32,
+    /// Solid that the wall is a part of.
+    solid: u32,
     pub(crate) material: u16,
     pub(crate) charging: WallCharging,
     pub(crate) bounds_field: bool,
@@ -73,24 +76,24 @@ impl ContactWalls {
     pub(crate) fn touches<'a>(&'a self, grains: &'a Grains) -> impl DoubleEndedIterator<Item = Touch> + 'a {
         self.chunks.iter().enumerate().flat_map(move |(k, chunk)| {
             chunk.entries.iter().flat_map(move |entry| {
-                let solid = &self.solids[entry.wall as usize];
-                let trades = solid.charging != WallCharging::None;
-                let count = if trades { entry.count } else { 0 };
-                (entry.contacts..entry.contacts + count).map(move |number| {
+                let solid = &self.solids[entry.solid as usize];
+                (entry.contacts..entry.contacts + entry.count).filter_map(move |number| {
                     let contact = &chunk.contacts[number as usize];
                     let grain = k * CHUNK + entry.local as usize;
-                    Touch {
+                    let part = solid.part(contact.triangle);
+                    (part.charging != WallCharging::None).then(|| Touch {
                         slot: WallSlot { chunk: k as u32, contact: number },
                         grain,
-                        wall: entry.wall,
-                        material: solid.material,
-                        charging: solid.charging,
-                        bounds_field: solid.bounds_field,
+                        wall: part.wall,
+                        solid: entry.solid,
+                        material: part.material,
+                        charging: part.charging,
+                        bounds_field: part.bounds_field,
                         triangle: contact.triangle,
                         normal: contact.normal,
                         distance: grains.centre[grain][3] - contact.overlap,
                         memory: chunk.charging[number as usize],
-                    }
+                    })
                 })
             })
         })
@@ -103,7 +106,7 @@ impl ContactWalls {
 
     /// Surface that a contact touches.
     pub(crate) fn surface(&self, touch: &Touch) -> Surface {
-        match &self.solids[touch.wall as usize].shape {
+        match &self.solids[touch.solid as usize].shape {
             Shape::Plane { point, normal } => Surface::Plane { point: *point, normal: *normal },
             Shape::Mesh(mesh) => {
                 Surface::Triangle { number: touch.triangle, corners: mesh.corners(touch.triangle) }
