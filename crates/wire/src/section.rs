@@ -22,8 +22,8 @@ pub enum Section {
     Potential = 8,
     /// E at the cells' centres [V/m].
     Field = 9,
-    /// Cell of each charge (`u64`), empty unless charges are spread over their cells: in a question the number
-    /// among all ranks' cells, in an answer that among the rank's, `u64::MAX` where it is another's.
+    /// Cell of each charge (`u64`), empty unless charges are spread over their cells: in a question the
+    /// number among all ranks' cells, in an answer that among the rank's, `u64::MAX` where it is another's.
     Cells = 10,
     /// Scalars of the answer with the far field: one [`crate::payloads::FarAnswer`].
     FarAnswer = 11,
