@@ -4,15 +4,20 @@ use super::meshes::{case, mesh_of, solver};
 use super::{AGREEMENT, difference, good};
 use amberfield_coupling::RemoteSolver;
 use amberfield_field::far::FarField;
-use amberfield_tests::foam_case::{Random, brick, write_case, write_file};
+use amberfield_tests::foam_case::{Random, brick, foam_program, write_case, write_file};
 use amberfield_tests::{Answer, CsvTable, Workbench};
 use std::fmt::Write as _;
+use std::process::Command;
 
 const SCENE: &str = "[particles]\nfile = 'grains.csv'\n[electric_field]\ntuning = 'model'\n\
     [solver]\nopenfoam_case = 'foam'\ntimeout_s = 20.0\n";
 const GROUND: &str = "type fixedValue; value uniform 0;";
 /// Share of a cell's size beside its centre at which the mesh must be found too.
 const BESIDE: f64 = 0.1;
+/// Folder of OpenFOAM's examples in Debian's package.
+const EXAMPLES: &str = "/usr/share/doc/openfoam-examples/examples";
+/// Difference of the same field on other ranks, over its RMS: the linear solver's tolerance.
+const SAME: f64 = 1e-6;
 /// Difference of mirrored fields over the largest field: the solver's tolerance and round-off.
 const MIRRORED: f64 = 1e-6;
 
@@ -62,12 +67,17 @@ fn blocks(blocks: &[Block], patches: &str) -> String {
 fn with_grains(mesh: &str, conditions: &str, grains: &[([f64; 3], f64)]) -> Workbench {
     let bench = Workbench::new(SCENE);
     write_case(&bench, mesh, conditions, "Gauss linear");
+    write_grains(&bench, grains);
+    bench
+}
+
+/// Writes grains with their places \[m\] and charges [C].
+fn write_grains(bench: &Workbench, grains: &[([f64; 3], f64)]) {
     let mut text = "id,x_m,y_m,z_m,radius_m,charge_C\n".to_owned();
     for (id, ([x, y, z], charge)) in grains.iter().enumerate() {
         writeln!(text, "{id},{x},{y},{z},1e-5,{charge}").unwrap();
     }
     bench.write("grains.csv", text);
-    bench
 }
 
 fn field(bench: &Workbench, options: &[&str]) -> Answer {
@@ -120,6 +130,63 @@ fn every_place_inside_a_mesh_is_found_whatever_dividers_stand_there() {
     is_found("rooms", &solver(&bench));
     for (kind, cells) in [("perturbed", 8), ("tetrahedra", 4), ("polyhedra", 5)] {
         is_found(kind, &solver(&mesh_of(kind, cells)));
+    }
+}
+
+/// Case of OpenFOAM's own example of walls that meet at sharp angles.
+#[test]
+fn in_openfoams_example_of_opposite_walls_every_centre_is_found_and_the_field_is_computed() {
+    let bench = Workbench::new(SCENE);
+    let example = format!("{EXAMPLES}/mesh/snappyHexMesh/opposite_walls");
+    let copied = Command::new("cp").args(["-r", &example]).arg(bench.path("foam")).status().unwrap();
+    assert!(copied.success(), "{example} is not there; install openfoam-examples");
+    let mesh = bench.read("foam/system/blockMeshDict");
+    write_case(&bench, &mesh, &format!("\".*\" {{ {GROUND} }}"), "leastSquares");
+    foam_program(&bench, "blockMesh", &[]);
+    foam_program(&bench, "snappyHexMesh", &["-overwrite"]);
+    let solver = solver(&bench);
+    let mesh = solver.mesh();
+    let mut grains = Vec::new();
+    for (cell, centre) in mesh.centres().iter().enumerate() {
+        assert_eq!(mesh.locate(centre, None), (cell as u32, true), "the centre of cell {cell}");
+        if cell % 100 == 0 {
+            grains.push(((*centre).into(), if cell % 200 == 0 { 1e-12 } else { -1e-12 }));
+        }
+    }
+    drop(solver);
+    write_grains(&bench, &grains);
+    good(&field(&bench, &[]));
+}
+
+/// Case of a box whose cells are dealt to the ranks at random, so that each cyclic face joins two of them.
+#[test]
+fn cells_dealt_to_ranks_at_random_have_the_same_field() {
+    let (cyclic, ground) = (("cyclic", "type cyclic;"), ("wall", GROUND));
+    let brick = brick([6.0; 3], [6; 3], &[cyclic, cyclic, ground, ground, cyclic, cyclic]);
+    let mut random = Random(9);
+    let grains: Vec<([f64; 3], f64)> = (0..40)
+        .map(|grain| {
+            let place = [0; 3].map(|_| 6e-3 * (0.02 + 0.96 * random.number()));
+            (place, if grain % 2 == 0 { -1e-12 } else { 1e-12 })
+        })
+        .collect();
+    let bench = with_grains(&brick.mesh, &brick.conditions, &grains);
+    let hybrid = ["--method", "kolehmainen", "--set", "electric_field.field_cutoff_radius=2e-3"];
+    for method in [&[][..], &hybrid] {
+        let of = |ranks: &str| {
+            let ranks = format!("solver.ranks={ranks}");
+            let tight = ["--set", &ranks, "--set", "electric_field.far_tolerance=1e-10"];
+            good(&field(&bench, &[method, &tight].concat()));
+            e(&bench).concat()
+        };
+        let one = of("1");
+        write_file(
+            &bench,
+            "system/decomposeParDict",
+            "dictionary",
+            "numberOfSubdomains 3; method random; coeffs {}\n",
+        );
+        assert!(difference(&of("3"), &one) < SAME, "{method:?}");
     }
 }
 

@@ -41,6 +41,14 @@ impl CellFace {
     pub(super) fn beyond(&self, point: &Vector3<f64>) -> f64 {
         self.normal.dot(point) - self.offset
     }
+
+    /// The cell behind the face; `None` where the mesh ends or repeats.
+    pub(super) fn leads_to(&self) -> Option<u32> {
+        match self.neighbour {
+            Neighbour::Cell { cell, shift } if shift == Vector3::zeros() => Some(cell),
+            _ => None,
+        }
+    }
 }
 
 /// Condition that is prescribed on a boundary face.

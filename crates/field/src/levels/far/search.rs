@@ -5,7 +5,8 @@
 //! planes the point is least beyond. It is asked wherever the walk's word could depend on its way, so that a
 //! grain's cell follows from its place alone.
 
-use super::mesh::{FarMesh, Neighbour};
+use super::mesh::{CellFace, FarMesh, Neighbour};
+use super::tree::BestCell;
 use crate::error::FieldError;
 use nalgebra::Vector3;
 use rayon::prelude::*;
@@ -61,7 +62,7 @@ impl FarMesh {
     }
 
     /// Goes from cell to cell through the face that the point is farthest beyond. `None` where a wall stands
-    /// in the way, or another cell might hold the point as well.
+    /// in the way, or many other cells might hold the point as well.
     fn walk(&self, point: &Vector3<f64>, from: u32) -> Option<u32> {
         let mut cell = from;
         for _ in 0..LONGEST_WALK {
@@ -69,24 +70,41 @@ impl FarMesh {
                 return None;
             }
             let size = self.sizes[cell as usize];
-            let (mut next, mut farthest, mut near) = (None, ON_FACE * size, 0);
+            let (on_face, margin) = (ON_FACE * size, NEAR_EDGE * size);
+            let (mut next, mut farthest, mut near) = (None, on_face, 0);
             for face in self.faces_of(cell as usize) {
                 let beyond = face.beyond(point);
-                if beyond <= -NEAR_EDGE * size {
-                    continue;
-                }
-                near += if beyond < -ON_FACE * size { 1 } else { 2 };
+                // A point on a face is as if near an edge: the cell behind may hold it too.
+                near += u32::from(beyond > -margin) + u32::from(beyond >= -on_face);
                 if beyond > farthest {
                     (next, farthest) = (Some(face.neighbour), beyond);
                 }
             }
             match next {
-                None => return (near < 2).then_some(cell),
+                None if near < 2 => return Some(cell),
+                None if near == 2 => return Some(self.best_around_edge(point, cell)),
                 Some(Neighbour::Cell { cell: other, shift }) if shift == Vector3::zeros() => cell = other,
-                Some(_) => return None,
+                _ => return None,
             }
         }
         None
+    }
+
+    /// The best of a cell and those beyond its faces near a point, and beyond theirs there: all that meet in
+    /// an edge.
+    fn best_around_edge(&self, point: &Vector3<f64>, cell: u32) -> u32 {
+        let here = |cell: u32| BestCell { cell, beyond: self.standing(point, cell).beyond };
+        let beyond_near_faces = |cell: u32| {
+            let margin = NEAR_EDGE * self.sizes[cell as usize];
+            let near = move |face: &&CellFace| face.beyond(point) > -margin;
+            self.faces_of(cell as usize).iter().filter(near).filter_map(CellFace::leads_to)
+        };
+        let mut best = here(cell);
+        for beside in beyond_near_faces(cell) {
+            best =
+                beyond_near_faces(beside).fold(best.or(here(beside)), |best, across| best.or(here(across)));
+        }
+        best.cell
     }
 
     fn standing(&self, point: &Vector3<f64>, cell: u32) -> Standing {
@@ -109,7 +127,7 @@ impl FarMesh {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::levels::far::mesh::{CellFace, Condition, FarMeshParts};
+    use crate::levels::far::mesh::{Condition, FarMeshParts};
     use amberfield_core::{Boundary, Domain};
 
     fn parts(counts: [usize; 3]) -> FarMeshParts {

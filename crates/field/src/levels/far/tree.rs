@@ -63,7 +63,7 @@ pub(super) struct BestCell {
 
 impl BestCell {
     /// The better one; of two that are as good, that with the smaller number.
-    fn or(self, other: Self) -> Self {
+    pub(super) fn or(self, other: Self) -> Self {
         let better = other.beyond < self.beyond || other.beyond == self.beyond && other.cell < self.cell;
         if better { other } else { self }
     }
