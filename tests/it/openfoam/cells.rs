@@ -28,6 +28,15 @@ struct Block {
     cells: [usize; 3],
 }
 
+/// Charged grain.
+#[derive(Clone, Copy)]
+struct Grain {
+    /// Place [m].
+    place: [f64; 3],
+    /// Charge [C].
+    charge: f64,
+}
+
 /// Recipe of blocks that are joined where they share corners, with patches as `blockMesh` takes them.
 fn blocks(blocks: &[Block], patches: &str) -> String {
     let mut vertices: Vec<[f64; 3]> = Vec::new();
@@ -63,18 +72,18 @@ fn blocks(blocks: &[Block], patches: &str) -> String {
     )
 }
 
-/// Case with a mesh, conditions, and two grains near its middle, whose charges [C] are given.
-fn with_grains(mesh: &str, conditions: &str, grains: &[([f64; 3], f64)]) -> Workbench {
+/// Scene of grains, with a case of a mesh and its conditions.
+fn with_grains(mesh: &str, conditions: &str, grains: &[Grain]) -> Workbench {
     let bench = Workbench::new(SCENE);
     write_case(&bench, mesh, conditions, "Gauss linear");
     write_grains(&bench, grains);
     bench
 }
 
-/// Writes grains with their places \[m\] and charges [C].
-fn write_grains(bench: &Workbench, grains: &[([f64; 3], f64)]) {
+/// Writes the grains of a scene.
+fn write_grains(bench: &Workbench, grains: &[Grain]) {
     let mut text = "id,x_m,y_m,z_m,radius_m,charge_C\n".to_owned();
-    for (id, ([x, y, z], charge)) in grains.iter().enumerate() {
+    for (id, Grain { place: [x, y, z], charge }) in grains.iter().enumerate() {
         writeln!(text, "{id},{x},{y},{z},1e-5,{charge}").unwrap();
     }
     bench.write("grains.csv", text);
@@ -150,7 +159,8 @@ fn in_openfoams_example_of_opposite_walls_every_centre_is_found_and_the_field_is
     for (cell, centre) in mesh.centres().iter().enumerate() {
         assert_eq!(mesh.locate(centre, None), (cell as u32, true), "the centre of cell {cell}");
         if cell % 100 == 0 {
-            grains.push(((*centre).into(), if cell % 200 == 0 { 1e-12 } else { -1e-12 }));
+            let charge = if cell % 200 == 0 { 1e-12 } else { -1e-12 };
+            grains.push(Grain { place: (*centre).into(), charge });
         }
     }
     drop(solver);
@@ -164,10 +174,10 @@ fn cells_dealt_to_ranks_at_random_have_the_same_field() {
     let (cyclic, ground) = (("cyclic", "type cyclic;"), ("wall", GROUND));
     let brick = brick([6.0; 3], [6; 3], &[cyclic, cyclic, ground, ground, cyclic, cyclic]);
     let mut random = Random(9);
-    let grains: Vec<([f64; 3], f64)> = (0..40)
+    let grains: Vec<Grain> = (0..40)
         .map(|grain| {
             let place = [0; 3].map(|_| 6e-3 * (0.02 + 0.96 * random.number()));
-            (place, if grain % 2 == 0 { -1e-12 } else { 1e-12 })
+            Grain { place, charge: if grain % 2 == 0 { -1e-12 } else { 1e-12 } }
         })
         .collect();
     let bench = with_grains(&brick.mesh, &brick.conditions, &grains);
@@ -195,7 +205,8 @@ fn along_x(kind: &str, condition: &str) -> Answer {
     let ground = ("wall", GROUND);
     let sides = [(kind, condition), (kind, condition), ground, ground, ground, ground];
     let brick = brick([6.0; 3], [6; 3], &sides);
-    let grains = [([2e-3, 3e-3, 3e-3], 1e-12), ([4e-3, 3e-3, 3e-3], -1e-12)];
+    let grain = |x: f64, charge: f64| Grain { place: [x, 3e-3, 3e-3], charge };
+    let grains = [grain(2e-3, 1e-12), grain(4e-3, -1e-12)];
     field(&with_grains(&brick.mesh, &brick.conditions, &grains), &[])
 }
 
@@ -220,8 +231,9 @@ fn cyclic_patches_that_cannot_be_joined_are_refused_by_name() {
         )
     };
     let conditions = format!("left {{ type cyclic; }} right {{ type cyclic; }} walls {{ {GROUND} }}");
-    let answer =
-        |mesh: &str, inside: [f64; 3]| field(&with_grains(mesh, &conditions, &[(inside, 1e-12)]), &[]);
+    let answer = |mesh: &str, inside: [f64; 3]| {
+        field(&with_grains(mesh, &conditions, &[Grain { place: inside, charge: 1e-12 }]), &[])
+    };
     let hexahedron = |vertices: &str, patches: &str| {
         format!(
             "scale 1e-3;\nvertices ({vertices});\n\
@@ -237,7 +249,8 @@ fn cyclic_patches_that_cannot_be_joined_are_refused_by_name() {
     let loose = sides.replacen("type cyclic; neighbourPatch", &moved, 1);
     let loose = loose.replace("type cyclic; neighbourPatch", &back);
     let conditions = conditions.replace("type cyclic;", "type cyclicAMI;");
-    let bench = with_grains(&hexahedron(cube, &loose), &conditions, &[([3e-3; 3], 1e-12)]);
+    let bench =
+        with_grains(&hexahedron(cube, &loose), &conditions, &[Grain { place: [3e-3; 3], charge: 1e-12 }]);
     refuses(&field(&bench, &[]), &["patch left is of type cyclicAMI"]);
 
     let skewed = "(0 0 0) (6 1 0) (6 7 0) (0 6 0) (0 0 6) (6 1 6) (6 7 6) (0 6 6)";
@@ -273,7 +286,10 @@ fn each_closed_room_must_be_neutral_and_has_a_field_of_its_own() {
     let rooms = [0.0, 12.0].map(|x| Block { low: [x, 0.0, 0.0], high: [x + 6.0, 6.0, 6.0], cells: [6; 3] });
     let mesh = blocks(&rooms, "");
     let insulated = "walls { type zeroGradient; }";
-    let pair = |x: f64| [([x - 1e-3, 3e-3, 2e-3], 1e-12), ([x + 1e-3, 3e-3, 4e-3], -1e-12)];
+    let pair = |x: f64| {
+        [([x - 1e-3, 3e-3, 2e-3], 1e-12), ([x + 1e-3, 3e-3, 4e-3], -1e-12)]
+            .map(|(place, charge)| Grain { place, charge })
+    };
     let both = with_grains(&mesh, insulated, &[pair(3e-3), pair(15e-3)].concat());
     for ranks in ["1", "2"] {
         good(&field(&both, &["--set", &format!("solver.ranks={ranks}")]));
@@ -292,7 +308,8 @@ fn each_closed_room_must_be_neutral_and_has_a_field_of_its_own() {
 #[test]
 fn a_linear_solver_that_gives_up_is_an_error_with_its_residual() {
     let brick = brick([6.0; 3], [6; 3], &[("wall", GROUND); 6]);
-    let bench = with_grains(&brick.mesh, &brick.conditions, &[([2e-3, 3e-3, 3e-3], 1e-12)]);
+    let bench =
+        with_grains(&brick.mesh, &brick.conditions, &[Grain { place: [2e-3, 3e-3, 3e-3], charge: 1e-12 }]);
     let with = |entry: &str| {
         let text = format!("solvers {{ V {{ solver PCG; preconditioner DIC; tolerance 1e-2; {entry} }} }}\n");
         write_file(&bench, "system/fvSolution", "dictionary", &text);
@@ -315,14 +332,14 @@ fn a_mirrored_scene_has_a_mirrored_field() {
     let (ground, lid) = (("wall", GROUND), ("wall", "type zeroGradient;"));
     let brick = brick([6.0, 6.0, 8.0], [6, 6, 8], &[ground, ground, lid, lid, ground, ground]);
     let mut random = Random(5);
-    let grains: Vec<([f64; 3], f64)> = (0..60)
+    let grains: Vec<Grain> = (0..60)
         .map(|grain| {
             let place = [6e-3, 6e-3, 8e-3].map(|edge| edge * (0.02 + 0.96 * random.number()));
-            (place, if grain % 3 == 0 { -1e-12 } else { 1e-12 })
+            Grain { place, charge: if grain % 3 == 0 { -1e-12 } else { 1e-12 } }
         })
         .collect();
     let tight = ["--set", "electric_field.far_tolerance=1e-11"];
-    let of = |grains: &[([f64; 3], f64)]| {
+    let of = |grains: &[Grain]| {
         let bench = with_grains(&brick.mesh, &brick.conditions, grains);
         good(&field(&bench, &tight));
         e(&bench)
@@ -331,7 +348,7 @@ fn a_mirrored_scene_has_a_mirrored_field() {
     let largest = here.iter().flatten().fold(0.0, |most: f64, e| most.max(e.abs()));
     for (axis, edge) in [6e-3, 6e-3, 8e-3].into_iter().enumerate() {
         let mut mirrored = grains.clone();
-        for (place, _) in &mut mirrored {
+        for Grain { place, .. } in &mut mirrored {
             place[axis] = edge - place[axis];
         }
         let there = of(&mirrored);
