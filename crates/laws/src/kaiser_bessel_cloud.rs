@@ -69,6 +69,15 @@ impl Cloud {
         if t.abs() > 1.0 { 0.0 } else { self.unit() * bessel_i0(self.shape * (1.0 - t * t).sqrt()) }
     }
 
+    /// Second derivative Φ''(t) at t = r/R.
+    #[must_use]
+    pub fn bend(self, t: f64) -> f64 {
+        if t.abs() > 1.0 {
+            return 0.0;
+        }
+        -self.unit() * self.shape.powi(2) * t * bessel_i1_over(self.shape * (1.0 - t * t).sqrt())
+    }
+
     /// Field over distance, E_cloud/r [1/m³], at a distance r ≥ 0 [m].
     #[must_use]
     pub fn field_over_r(self, distance: f64) -> f64 {

@@ -13,6 +13,7 @@ pub mod dielectric_breakdown;
 pub mod drag;
 pub mod force_limit;
 pub mod gidaspow_drag;
+pub mod half_plane;
 pub mod hertz_mindlin;
 pub mod image_in_plane;
 pub mod kaiser_bessel_cloud;

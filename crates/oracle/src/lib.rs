@@ -8,6 +8,7 @@ mod collision;
 mod grounded_cylinder;
 mod grounded_plane;
 mod grounded_sphere;
+mod half_plane;
 mod madelung;
 mod manufactured;
 mod norms;
@@ -22,6 +23,7 @@ pub use collision::{
 pub use grounded_cylinder::GroundedCylinder;
 pub use grounded_plane::GroundedPlane;
 pub use grounded_sphere::{GroundedSphere, grounded_cavity};
+pub use half_plane::GroundedHalfPlane;
 pub use madelung::{Lattice, MADELUNG_NACL, rock_salt};
 pub use manufactured::Manufactured;
 pub use norms::{ErrorNorms, field_scale, observed_order, rms, rms_difference, rms_scalar};
