@@ -32,7 +32,7 @@ static COUNTING: Counting = Counting;
 
 /// Question whose answer does not matter here.
 const QUESTION: FarQuestion = FarQuestion {
-    cloud: SourceCloud::nearest_cell(),
+    cloud: SourceCloud { radius_m: 1e-3, shape: 10.0 },
     permittivity_f_m: 1.0,
     neutralising_background: 0,
     time_s: 0.0,
@@ -93,7 +93,7 @@ fn payloads_lie_in_shared_memory_and_exchanges_allocate_nothing_of_their_size() 
     });
     let mut remote = announced.connect().expect("the field side comes");
     let positions: Vec<Vector3<f64>> =
-        (0..CHARGES).map(|i| Vector3::repeat(1e-3 + 1e-7 * i as f64)).collect();
+        (0..CHARGES).map(|i| Vector3::repeat(1e-3 + 8e-3 * i as f64 / CHARGES as f64)).collect();
     let charges = vec![1e-12; CHARGES];
     let boundary = vec![0.0; remote.mesh().boundary().len()];
     let request = FarRequest {
@@ -102,6 +102,7 @@ fn payloads_lie_in_shared_memory_and_exchanges_allocate_nothing_of_their_size() 
         charges: &charges,
         image_positions: &[],
         image_charges: &[],
+        density: &[],
         boundary: &boundary,
         guess: &[],
     };

@@ -67,6 +67,7 @@ fn request<'a>(
         charges,
         image_positions: &[],
         image_charges: &[],
+        density: &[],
         boundary,
         guess: &[],
     }

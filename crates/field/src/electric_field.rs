@@ -3,6 +3,7 @@
 mod building;
 
 use crate::choosing::choice::{Choice, Measured};
+use crate::choosing::over_mesh;
 use crate::choosing::tuner::Tuner;
 use crate::error::FieldError;
 use crate::geometry::inputs::{check_result, check_scene};
@@ -100,6 +101,12 @@ impl ElectricField {
         charges: &[f64],
     ) -> Result<Option<Measured>, FieldError> {
         let Choice::P3m(parameters) = self.choice else { return Ok(None) };
+        if self.mesh_cells.is_some() {
+            let measured = over_mesh::measure(self.method.as_mut(), parameters, positions, charges)?;
+            let measured = measured.map(|error| error.relative(positions.len()));
+            self.error_measured = measured.or(self.error_measured);
+            return Ok(measured);
+        }
         check_scene(&self.domain, &self.settings, positions, charges)?;
         if charges.iter().all(|charge| *charge == 0.0) {
             return Ok(None);

@@ -77,4 +77,7 @@ pub enum Section {
     Corners = 34,
     /// Patches of the mesh, UTF-8: lines of a name, a blank and a type; the same for all ranks.
     Patches = 35,
+    /// Density of the far field's source by cell of all ranks, besides the charges' clouds [C/m³]; absent:
+    /// none.
+    SourceDensity = 36,
 }

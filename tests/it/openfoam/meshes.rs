@@ -309,6 +309,7 @@ fn a_manufactured_potential_converges_with_the_cells() {
                 charges: &[],
                 image_positions: &[],
                 image_charges: &[],
+                density: &[],
                 boundary: &boundary,
                 guess: &[],
             };

@@ -52,9 +52,13 @@ pub(crate) fn field(options: &FieldOptions) -> Result<(), Failure> {
     summarise(&out, &report, scene.particles.len());
     match measured {
         Some(error) if settings.field.method == Method::P3m && error > settings.field.tolerance => {
+            let advice = match field.far_solver() {
+                Some(_) => "make the field solver's cells smaller or raise electric_field.tolerance",
+                None => "ask for a smaller tolerance or set electric_field.tuning = \"timed\"",
+            };
             Err(Failure::outside_tolerance(format!(
-                "measured error {error:.2e} is above the tolerance {:e}; the results are written, but ask \
-                 for a smaller tolerance or set electric_field.tuning = \"timed\"",
+                "measured error {error:.2e} is above the tolerance {:e}; the results are written, but \
+                 {advice}",
                 settings.field.tolerance
             )))
         }

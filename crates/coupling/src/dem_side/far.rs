@@ -74,10 +74,12 @@ impl Shared {
                 .with::<[f64; 3]>(Section::ImagePositions, request.image_positions.len())
                 .with::<f64>(Section::ImageCharges, request.image_charges.len())
                 .with::<f64>(Section::Boundary, request.boundary.len());
-            match request.guess.len() {
+            let with_some = |layout: Layout, section, values: &[f64]| match values.len() {
                 0 => layout,
-                cells => layout.with::<f64>(Section::Guess, cells),
-            }
+                count => layout.with::<f64>(section, count),
+            };
+            let layout = with_some(layout, Section::SourceDensity, request.density);
+            with_some(layout, Section::Guess, request.guess)
         };
         self.remote.ask(MessageKind::Charges, layout, |layout, payload| {
             layout.section_mut::<FarQuestion>(payload, Section::FarQuestion)?.fill(question);
@@ -87,8 +89,12 @@ impl Shared {
             write_vectors(layout.section_mut(payload, Section::ImagePositions)?, request.image_positions);
             layout.section_mut::<f64>(payload, Section::ImageCharges)?.copy_from_slice(request.image_charges);
             layout.section_mut::<f64>(payload, Section::Boundary)?.copy_from_slice(request.boundary);
-            if !request.guess.is_empty() {
-                layout.section_mut::<f64>(payload, Section::Guess)?.copy_from_slice(request.guess);
+            for (section, values) in
+                [(Section::SourceDensity, request.density), (Section::Guess, request.guess)]
+            {
+                if !values.is_empty() {
+                    layout.section_mut::<f64>(payload, section)?.copy_from_slice(values);
+                }
             }
             Ok(())
         })?;

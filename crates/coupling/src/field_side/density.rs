@@ -48,6 +48,11 @@ impl FieldSide {
             smooth.add(&self.positions, charges);
         }
         smooth.at(centres, density);
+        if let Some(more) = self.of_own_cells(Section::SourceDensity)? {
+            for (density, more) in density.iter_mut().zip(more) {
+                *density += more;
+            }
+        }
         Ok(())
     }
 

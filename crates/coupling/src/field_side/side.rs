@@ -131,10 +131,16 @@ impl FieldSide {
     /// # Errors
     /// Fewer of them than there are cells.
     pub fn guess(&self) -> Result<Option<&[f64]>, CouplingError> {
-        let Ok(all) = self.section::<f64>(Section::Guess) else { return Ok(None) };
+        self.of_own_cells(Section::Guess)
+    }
+
+    /// Numbers by cell that are this rank's, of a section with those of all ranks; `None` where the message
+    /// has none.
+    pub(super) fn of_own_cells(&self, section: Section) -> Result<Option<&[f64]>, CouplingError> {
+        let Ok(all) = self.section::<f64>(section) else { return Ok(None) };
         let cells = self.own_cells();
         let ours = cells.end;
-        let error = || of_dem(WireError::Count { section: Section::Guess, theirs: all.len(), ours });
+        let error = || of_dem(WireError::Count { section, theirs: all.len(), ours });
         all.get(cells).map(Some).ok_or_else(error)
     }
 

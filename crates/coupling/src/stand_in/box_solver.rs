@@ -28,7 +28,15 @@ impl BoxSolver {
     /// # Errors
     /// Open faces.
     pub fn new(domain: &Domain, counts: [usize; 3]) -> Result<Self, FieldError> {
-        Ok(Self { mesh: FarMesh::new(FarMeshParts::of_box(domain, counts)?)?, density: None })
+        Self::over(FarMeshParts::of_box(domain, counts)?)
+    }
+
+    /// Cells as [`FarMeshParts::of_box`] makes them, with sheets between them or without.
+    ///
+    /// # Errors
+    /// Parts that make no sense.
+    pub fn over(parts: FarMeshParts) -> Result<Self, FieldError> {
+        Ok(Self { mesh: FarMesh::new(parts)?, density: None })
     }
 
     /// Charge of each cell [C].
@@ -51,6 +59,9 @@ impl BoxSolver {
         density.add(request.positions, request.charges);
         density.add(request.image_positions, request.image_charges);
         density.at(self.mesh.centres(), &mut charge);
+        for (charge, more) in charge.iter_mut().zip(request.density) {
+            *charge += more;
+        }
         for (charge, volume) in charge.iter_mut().zip(self.mesh.volumes()) {
             *charge *= volume;
         }

@@ -1,6 +1,6 @@
 //! Parameters that were chosen for a scene, and how good they were found to be.
 
-use crate::methods::p3m::P3mParameters;
+use crate::methods::p3m_parameters::P3mParameters;
 use serde::{Deserialize, Serialize};
 
 /// Parameters chosen for a scene. They are written to the run folder and reused on resume, so that results

@@ -6,4 +6,6 @@ pub(crate) mod charge_statistics;
 pub(crate) mod choice;
 mod cost;
 pub(crate) mod error_model;
+pub(crate) mod over_mesh;
+mod splittings;
 pub(crate) mod tuner;

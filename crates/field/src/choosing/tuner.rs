@@ -6,11 +6,13 @@ use crate::choosing::charge_statistics::ChargeStatistics;
 use crate::choosing::choice::{Choice, Measured};
 use crate::choosing::cost;
 use crate::choosing::error_model::{error_squared, smooth_error_squared};
+use crate::choosing::splittings::{sample_of, second_splitting, with_best_shapes};
 use crate::error::FieldError;
 use crate::levels::grid::level::{grid_sizes, widest_spacing};
-use crate::levels::grid::shapes::{self, ORDERS, Shapes, cutoff_over_spacing_for};
+use crate::levels::grid::shapes::{ORDERS, Shapes, cutoff_over_spacing_for};
 use crate::methods::method::FieldMethod;
-use crate::methods::p3m::{P3m, P3mParameters};
+use crate::methods::p3m::P3m;
+use crate::methods::p3m_parameters::P3mParameters;
 use crate::values::{FieldValues, Wanted};
 use amberfield_core::{Domain, FieldSettings, Tuning};
 use nalgebra::Vector3;
@@ -23,10 +25,6 @@ const AIM: f64 = 0.75;
 const AIM_OVER_MESH: f64 = 0.69;
 /// Share of the tolerance that a measured error may reach.
 const ACCEPT: f64 = 0.9;
-/// Grains in the sample on which the error is measured.
-const SAMPLE: usize = 600;
-/// The second splitting's cut-off over the first: some ten times more exact on the same nodes.
-const SECOND_CUTOFF: f64 = 1.5;
 /// Rounds of tightening before a tolerance counts as out of reach.
 const ROUNDS: usize = 6;
 /// Nodes of the largest grid considered: 5 GiB.
@@ -39,12 +37,6 @@ const TIMED: usize = 4;
 /// Tolerance of the first look at E_rms.
 const FIRST_LOOK: f64 = 0.05;
 
-/// Parameters with the shapes that suit them.
-fn with_best_shapes(order: usize, cutoff_m: f64, spacing_m: f64, kernel_accuracy: f64) -> P3mParameters {
-    let Shapes { cloud, window } = shapes::best(order, cutoff_m / spacing_m);
-    P3mParameters { cutoff_m, cloud_shape: cloud, spacing_m, order, window_shape: window, kernel_accuracy }
-}
-
 /// Choice of the tuner.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Chosen {
@@ -53,6 +45,8 @@ pub(crate) struct Chosen {
     pub(crate) estimated: Option<f64>,
     /// Error on a sample; `None` while no grain is charged.
     pub(crate) measured: Option<Measured>,
+    /// Error on the sample as a field [V/m].
+    pub(crate) error_v_m: Option<f64>,
 }
 
 /// Fields that errors are compared with [V/m].
@@ -103,7 +97,7 @@ impl<'a> Tuner<'a> {
             let scale = self.settings.permittivity.coulomb() * cloud.density.powf(2.0 / 3.0);
             let bound = self.aim() * self.settings.tolerance * scale;
             let parameters = self.best_by_model(&cloud, bound, 0.0)?;
-            return Ok(Chosen { parameters, estimated: None, measured: None });
+            return Ok(Chosen { parameters, estimated: None, measured: None, error_v_m: None });
         }
         let scale = self.scale()?;
         let asked = self.settings.tolerance;
@@ -118,8 +112,12 @@ impl<'a> Tuner<'a> {
             let measured = self.measure(timed, scale);
             tracing::debug!(?timed, aim, measured = measured.relative_rms, "p3m candidate");
             if measured.relative_rms <= ACCEPT * asked {
-                let estimated = Some(self.estimate(&timed, scale));
-                return Ok(Chosen { parameters: timed, estimated, measured: Some(measured) });
+                return Ok(Chosen {
+                    parameters: timed,
+                    estimated: Some(self.estimate(&timed, scale)),
+                    measured: Some(measured),
+                    error_v_m: Some(measured.relative_rms * scale.all),
+                });
             }
             best = Some(best.unwrap_or(f64::INFINITY).min(measured.relative_rms));
             aim *= (self.aim() * asked / measured.relative_rms).clamp(0.05, 0.8);
@@ -169,18 +167,11 @@ impl<'a> Tuner<'a> {
 
     /// Measures the error of parameters against a second, wider and more exact splitting.
     pub(crate) fn measure(&self, parameters: P3mParameters, scale: Scale) -> Measured {
-        let step = self.positions.len().div_ceil(SAMPLE).max(1);
-        let sample: Vec<usize> = (0..self.positions.len()).step_by(step).collect();
-        let second = with_best_shapes(
-            (parameters.order + 1).min(*ORDERS.end()),
-            SECOND_CUTOFF * parameters.cutoff_m,
-            parameters.spacing_m,
-            0.1 * parameters.kernel_accuracy,
-        );
+        let sample = sample_of(self.positions.len());
         let field = |parameters| {
             P3m::new(self.domain, self.settings, parameters).sample(self.positions, self.charges, &sample)
         };
-        let (first, second) = (field(parameters), field(second));
+        let (first, second) = (field(parameters), field(second_splitting(parameters)));
         let sum: f64 = first.iter().zip(&second).map(|(a, b)| (a - b).norm_squared()).sum();
         let relative_rms = (sum / sample.len().max(1) as f64).sqrt() / scale.all;
         Measured { relative_rms, sample: sample.len() }

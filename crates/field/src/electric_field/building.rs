@@ -3,6 +3,7 @@
 use super::ElectricField;
 use crate::choosing::candidates::Candidate;
 use crate::choosing::choice::Choice;
+use crate::choosing::over_mesh::{self, OverMesh};
 use crate::choosing::tuner::Tuner;
 use crate::error::FieldError;
 use crate::geometry::images::{Geometry, images_per_charge};
@@ -14,7 +15,8 @@ use crate::methods::cutoff::Cutoff;
 use crate::methods::direct::Direct;
 use crate::methods::kolehmainen::Kolehmainen;
 use crate::methods::method::FieldMethod;
-use crate::methods::p3m::{P3m, P3mParameters};
+use crate::methods::p3m::P3m;
+use crate::methods::p3m_parameters::P3mParameters;
 use crate::numerics::stopwatch::Stopwatch;
 use crate::values::{FieldValues, Wanted};
 use amberfield_core::{Domain, FieldSettings, Method};
@@ -76,23 +78,11 @@ impl ElectricField {
             let choice = Choice::Kolehmainen { cutoff_m: cutoff_radius(settings)? };
             return Self::over_mesh_with_choice(solver, settings, &choice);
         }
-        let far = far_level(solver, settings);
-        // Near level and middle grid are those of a periodic box as large as the middle grid's; no face of
-        // it takes charge.
-        let domain = far.domain_of_grid();
-        let alone = FieldSettings { neutralising_background: true, ..settings.clone() };
-        let wrapped: Vec<_> = positions.iter().map(|position| far.mesh().domain().wrap(*position)).collect();
-        // Beyond the far level's clouds there is nothing for pairs to do.
-        let longest = far.cloud_as_returned().radius;
-        if let Some(cutoff) = settings.cutoff_radius_m.filter(|cutoff| *cutoff > longest) {
-            return Err(FieldError::Settings(format!(
-                "field_cutoff_radius {cutoff:e} m is larger than the {longest:e} m from which on the field \
-                 solver's mesh takes over; make it smaller or leave it out"
-            )));
-        }
-        let chosen = Tuner::new(&domain, &alone, &wrapped, charges).up_to(longest).choose()?;
-        let field = Self::over_far(far, settings, chosen.parameters)?;
-        Ok(Self { error_estimated: chosen.estimated, error_measured: chosen.measured, ..field })
+        check_method_over_mesh(settings)?;
+        let OverMesh { p3m, parameters, estimated, measured } =
+            over_mesh::choose(solver, settings, positions, charges)?;
+        let field = Self::of_p3m_over_mesh(p3m, settings, parameters)?;
+        Ok(Self { error_estimated: estimated, error_measured: measured, ..field })
     }
 
     /// Builds a field as [`Self::over_mesh`] does, with parameters chosen earlier.
@@ -105,7 +95,14 @@ impl ElectricField {
         choice: &Choice,
     ) -> Result<Self, FieldError> {
         match choice {
-            Choice::P3m(parameters) => Self::over_far(far_level(solver, settings), settings, *parameters),
+            Choice::P3m(parameters) => {
+                check_method_over_mesh(settings)?;
+                let mut far = FarLevel::new(solver, settings);
+                if let Some(radius) = parameters.far_radius_m {
+                    far.set_radius(radius);
+                }
+                Self::of_p3m_over_mesh(P3m::over(far, settings, *parameters), settings, *parameters)
+            }
             Choice::Kolehmainen { cutoff_m } => {
                 let (permittivity, background) = (settings.permittivity, settings.neutralising_background);
                 let (domain, cells) = (solver.mesh().domain().clone(), solver.mesh().cell_count());
@@ -129,29 +126,22 @@ impl ElectricField {
         }
     }
 
-    fn over_far(
-        far: FarLevel,
+    fn of_p3m_over_mesh(
+        p3m: P3m,
         settings: &FieldSettings,
         parameters: P3mParameters,
     ) -> Result<Self, FieldError> {
-        if settings.method != Method::P3m {
-            return Err(FieldError::Settings(format!(
-                "method {} has no far level on a solver's mesh; choose method p3m or kolehmainen",
-                settings.method
-            )));
-        }
-        // What is measured later is measured as it was tuned.
-        let domain = far.domain_of_grid();
-        let alone = FieldSettings { neutralising_background: true, ..settings.clone() };
+        let mesh = p3m.mesh().expect("it is over a mesh");
+        let (domain, cells) = (mesh.domain().clone(), mesh.cell_count());
         Ok(Self {
-            faces: FacesLevel::new(far.mesh().domain(), settings)?,
-            external: ExternalField::new(far.mesh().domain(), settings),
+            faces: FacesLevel::new(&domain, settings)?,
+            external: ExternalField::new(&domain, settings),
             stopwatch: Stopwatch::default(),
             domain,
-            mesh_cells: Some(far.mesh().cell_count()),
-            settings: alone,
+            mesh_cells: Some(cells),
+            settings: settings.clone(),
             choice: Choice::P3m(parameters),
-            method: Box::new(P3m::over(far, settings, parameters)),
+            method: Box::new(p3m),
             error_estimated: None,
             error_measured: None,
         })
@@ -229,8 +219,15 @@ impl ElectricField {
     }
 }
 
-fn far_level(solver: Box<dyn FarField>, settings: &FieldSettings) -> FarLevel {
-    FarLevel::new(solver, settings)
+/// Refuses methods that have no far level.
+fn check_method_over_mesh(settings: &FieldSettings) -> Result<(), FieldError> {
+    if settings.method == Method::P3m {
+        return Ok(());
+    }
+    Err(FieldError::Settings(format!(
+        "method {} has no far level on a solver's mesh; choose method p3m or kolehmainen",
+        settings.method
+    )))
 }
 
 /// The cut-off radius of a method that cannot do without.

@@ -3,10 +3,24 @@
 use crate::error::FieldError;
 use crate::geometry::inputs::check_result;
 use crate::levels::far::FarSolver;
+use crate::methods::p3m_parameters::P3mParameters;
 use crate::sum::{Levels, Sum};
 use crate::values::{FieldValues, Wanted};
 use nalgebra::Vector3;
 use std::fmt;
+
+/// E at a sample of the particles, by two splittings.
+#[derive(Clone, Debug, PartialEq)]
+pub struct TwoSplittings {
+    /// E by the method's own parameters [V/m].
+    pub first: Vec<Vector3<f64>>,
+    /// E by others that err less [V/m].
+    pub second: Vec<Vector3<f64>>,
+    /// Differences of the cells' part of E on both sides of the faces nearest to the particles [V/m].
+    pub jumps: Vec<Vector3<f64>>,
+    /// Scale of errors: the larger of E_rms and q_rms n^{2/3}/(4πε) [V/m].
+    pub scale: f64,
+}
 
 /// A way to compute the field of charges and their images. Potentials and normal fields of the faces and an
 /// external field are not its business, except where a method has them in its own boundary conditions.
@@ -39,6 +53,22 @@ pub trait FieldMethod: fmt::Debug + Send + Sync {
         let levels = self.levels(0.0, positions, charges, wanted)?;
         Sum::of_charges(levels, positions).write(wanted, out);
         check_result(&out.e)
+    }
+
+    /// Computes E at a sample of the particles twice, by the method's own parameters and by others that err
+    /// less on every level, cells of a mesh included; `None` for methods without such cells, and while a
+    /// field solver works beside the motion.
+    ///
+    /// # Errors
+    /// The errors of [`Self::levels`].
+    fn by_two_splittings(
+        &mut self,
+        _second: P3mParameters,
+        _positions: &[Vector3<f64>],
+        _charges: &[f64],
+        _sample: &[usize],
+    ) -> Result<Option<TwoSplittings>, FieldError> {
+        Ok(None)
     }
 
     /// The field solver of another process that has a part in it, and its state.

@@ -5,3 +5,4 @@ pub(crate) mod direct;
 pub(crate) mod kolehmainen;
 pub(crate) mod method;
 pub(crate) mod p3m;
+pub(crate) mod p3m_parameters;

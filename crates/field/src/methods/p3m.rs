@@ -11,58 +11,17 @@
 
 use crate::error::FieldError;
 use crate::geometry::inputs::{check_charges_in_box, check_finite};
-use crate::levels::far::{FarLevel, FarSolver};
-use crate::levels::grid::level::{GridLevel, GridParameters};
-use crate::levels::near::{NearLevel, NearParameters};
-use crate::methods::method::FieldMethod;
+use crate::levels::far::{FarLevel, FarMesh, FarSolver};
+use crate::levels::grid::level::GridLevel;
+use crate::levels::near::NearLevel;
+use crate::methods::method::{FieldMethod, TwoSplittings};
+use crate::methods::p3m_parameters::P3mParameters;
 use crate::numerics::stopwatch::Stopwatch;
 use crate::sum::{Levels, OwnClouds, Part, Sum};
-use crate::values::{FieldAt, Wanted};
+use crate::values::{FieldAt, FieldValues, Wanted};
 use amberfield_core::{Domain, FieldSettings, Permittivity};
-use amberfield_laws::kaiser_bessel_cloud::Cloud;
 use nalgebra::Vector3;
-use serde::{Deserialize, Serialize};
 use std::f64::consts::PI;
-
-/// Parameters of the splitting.
-#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
-pub struct P3mParameters {
-    /// Near cut-off radius r_c, where the clouds end [m].
-    pub cutoff_m: f64,
-    /// Shape β of the clouds.
-    pub cloud_shape: f64,
-    /// Largest node spacing of the grid [m].
-    pub spacing_m: f64,
-    /// Order of the window between charges and nodes, 4 to 8.
-    pub order: usize,
-    /// Shape β of the window.
-    pub window_shape: f64,
-    /// Error of the near kernel's polynomials over the cloud's value at its centre.
-    pub kernel_accuracy: f64,
-}
-
-impl P3mParameters {
-    pub(crate) fn near(&self) -> NearParameters {
-        NearParameters {
-            cutoff_m: self.cutoff_m,
-            cloud_shape: self.cloud_shape,
-            kernel_accuracy: self.kernel_accuracy,
-        }
-    }
-
-    pub(crate) fn grid(&self) -> GridParameters {
-        GridParameters {
-            spacing_m: self.spacing_m,
-            order: self.order,
-            window_shape: self.window_shape,
-            cloud: self.cloud(),
-        }
-    }
-
-    pub(crate) fn cloud(&self) -> Cloud {
-        Cloud { radius: self.cutoff_m, shape: self.cloud_shape }
-    }
-}
 
 /// The levels and their buffers.
 #[derive(Debug)]
@@ -100,6 +59,16 @@ impl P3m {
         Self { far: Some(far), ..Self::with_levels(&domain, settings, parameters, near, grid) }
     }
 
+    /// Cells of a far level.
+    pub(crate) fn mesh(&self) -> Option<&FarMesh> {
+        self.far.as_ref().map(FarLevel::mesh)
+    }
+
+    /// The far level, for other parameters of the rest.
+    pub(crate) fn into_far(self) -> Option<FarLevel> {
+        self.far
+    }
+
     fn with_levels(
         domain: &Domain,
         settings: &FieldSettings,
@@ -115,6 +84,25 @@ impl P3m {
             near,
             grid,
             far: None,
+            positions: Vec::new(),
+            charges: Vec::new(),
+            near_field: Vec::new(),
+            grid_field: Vec::new(),
+            far_field: Vec::new(),
+            stopwatch: Stopwatch::default(),
+        }
+    }
+
+    /// Builds the method anew below another far level, or one whose clouds have changed.
+    fn below(&self, far: FarLevel, parameters: P3mParameters) -> Self {
+        Self {
+            domain: self.domain.clone(),
+            near: NearLevel::new(&far.domain_of_pairs(), parameters.near()),
+            grid: GridLevel::between(&far.domain_of_grid(), parameters.grid(), far.cloud_as_returned()),
+            far: Some(far),
+            parameters,
+            permittivity: self.permittivity,
+            neutralising_background: self.neutralising_background,
             positions: Vec::new(),
             charges: Vec::new(),
             near_field: Vec::new(),
@@ -203,6 +191,9 @@ impl FieldMethod for P3m {
         self.stopwatch.lap("sort");
         let potential = wanted.potential || self.far.is_some();
         self.near.add_all(potential, &mut self.near_field);
+        if let Some(far) = &self.far {
+            far.add_ghosts(&self.positions[..positions.len()], &mut self.near_field);
+        }
         self.stopwatch.lap("near");
         self.grid.solve(&self.positions, &self.charges);
         self.stopwatch.lap("grid");
@@ -234,6 +225,37 @@ impl FieldMethod for P3m {
             background: self.background_potential(charges),
             ..Levels::default()
         })
+    }
+
+    fn by_two_splittings(
+        &mut self,
+        second: P3mParameters,
+        positions: &[Vector3<f64>],
+        charges: &[f64],
+        sample: &[usize],
+    ) -> Result<Option<TwoSplittings>, FieldError> {
+        let Some(far) = self.far.as_ref().filter(|far| !far.solver().is_at_work()) else { return Ok(None) };
+        let state = far.solver().state();
+        let mut field = FieldValues::default();
+        let pick = |e: &[Vector3<f64>]| sample.iter().map(|&particle| e[particle]).collect::<Vec<_>>();
+        self.evaluate(positions, charges, Wanted::default(), &mut field)?;
+        let squares: f64 = field.e.iter().map(Vector3::norm_squared).sum();
+        let first = pick(&field.e);
+        let jumps = self.far.as_ref().map_or_else(Vec::new, |far| far.jumps(&self.positions, sample));
+
+        let mut far = self.far.take().expect("there is one");
+        let before = far.change_for_a_check();
+        let mut other = self.below(far, second);
+        let outcome = other.evaluate(positions, charges, Wanted::default(), &mut field);
+        let mut far = other.far.take().expect("given");
+        far.change_back(before);
+        let started = far.solver_mut().start_from(&state);
+        let floor = self.permittivity.coulomb() * far.field_of_spacing(charges);
+        self.far = Some(far);
+        outcome?;
+        started?;
+        let scale = (squares / positions.len() as f64).sqrt().max(floor);
+        Ok(Some(TwoSplittings { first, second: pick(&field.e), jumps, scale }))
     }
 
     fn far_solver(&self) -> Option<&FarSolver> {

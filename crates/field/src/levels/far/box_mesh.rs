@@ -81,6 +81,46 @@ impl FarMeshParts {
         let patches = PATCHES.map(wall).to_vec();
         Ok(Self { domain, centres, volumes, first_face, faces, boundary, first_corner, corners, patches })
     }
+
+    /// Puts a sheet without thickness into a box of equal cells: at every face between cells whose centre [m]
+    /// `is_sheet`, both sides end with a condition.
+    #[must_use]
+    pub fn with_sheet(mut self, is_sheet: impl Fn(&Vector3<f64>) -> bool, condition: Condition) -> Self {
+        let name = "sheet".to_owned();
+        self.patches.push(MeshPatch { name, kind: "wall".to_owned() });
+        for cell in 0..self.centres.len() {
+            let faces = self.first_face[cell] as usize..self.first_face[cell + 1] as usize;
+            let here = self.centres[cell];
+            // Faces come in pairs, one pair an axis.
+            let half = Vector3::from_fn(|axis, _| {
+                let upper = &self.faces[faces.start + 2 * axis + 1];
+                upper.offset - upper.normal.dot(&here)
+            });
+            for face in faces {
+                let CellFace { normal, offset, neighbour } = self.faces[face];
+                let centre = here + normal * (offset - normal.dot(&here));
+                if !matches!(neighbour, Neighbour::Cell { .. }) || !is_sheet(&centre) {
+                    continue;
+                }
+                let axis = normal.iamax();
+                let mut along = half;
+                along[axis] = 0.0;
+                self.faces[face].neighbour = Neighbour::Boundary(self.boundary.len() as u32);
+                self.boundary.push(BoundaryFace {
+                    centre,
+                    normal,
+                    area: 4.0 * half.product() / half[axis],
+                    spread: Matrix3::from_diagonal(&along.component_mul(&along)),
+                    cell: cell as u32,
+                    patch: self.patches.len() as u32 - 1,
+                    condition,
+                });
+                self.corners.extend(corners_of(centre, along, axis, normal[axis].signum()));
+                self.first_corner.push(self.corners.len() as u32);
+            }
+        }
+        self
+    }
 }
 
 /// Corners of a rectangle across an axis, right-handed about its normal, which points along the axis or, with

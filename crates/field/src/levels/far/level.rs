@@ -9,7 +9,7 @@
 
 use super::local_fit::LocalFits;
 use super::mesh::{Condition, FarMesh};
-use super::walls::Walls;
+use super::walls::{Ghosts, Images, Place, Walls};
 use super::{FarField, FarRequest, FarSolver, check_net_charge};
 use crate::error::FieldError;
 use crate::values::FieldAt;
@@ -22,21 +22,32 @@ use rayon::prelude::*;
 /// cells.
 const RADIUS_OF_CELL: f64 = 9.0;
 const SHAPE: f64 = 10.0;
-/// Depth up to which walls mirror charges, over the cell size.
-const DEPTH_OF_CELL: f64 = 4.0;
+
+/// Factors of the clouds' radius and of the walls' depth in a second splitting, by which errors are measured.
+const WIDER_FOR_A_CHECK: f64 = 1.5;
+const DEEPER_FOR_A_CHECK: f64 = 1.4;
+
+/// State of a far level before a check.
+#[derive(Debug)]
+pub(crate) struct Before {
+    radius: f64,
+    overlap: bool,
+}
 
 /// The far level's share of the field.
 #[derive(Debug)]
 pub(crate) struct FarLevel {
     solver: FarSolver,
     walls: Walls,
-    depth: f64,
     fits: LocalFits,
     cloud: Cloud,
     permittivity: Permittivity,
     neutralising_background: bool,
     image_positions: Vec<Vector3<f64>>,
     image_charges: Vec<f64>,
+    ghosts: Ghosts,
+    /// Density of the ghosts' source in each cell [C/m³]; empty without ghosts.
+    ghost_density: Vec<f64>,
     boundary: Vec<f64>,
     cells: Vec<u32>,
 }
@@ -45,11 +56,12 @@ impl FarLevel {
     pub(crate) fn new(solver: Box<dyn FarField>, settings: &FieldSettings) -> Self {
         let mesh = solver.mesh();
         let size = mesh.largest_cell();
-        let depth = DEPTH_OF_CELL * size;
+        let fits = LocalFits::new(mesh);
         Self {
-            walls: Walls::new(mesh, depth),
-            depth,
-            fits: LocalFits::new(mesh),
+            walls: Walls::new(mesh, 1.0),
+            ghosts: Ghosts::new(fits.smoothing_over_size(), 1.0),
+            ghost_density: Vec::new(),
+            fits,
             cloud: Cloud { radius: RADIUS_OF_CELL * size, shape: SHAPE },
             permittivity: settings.permittivity,
             neutralising_background: settings.neutralising_background,
@@ -65,6 +77,43 @@ impl FarLevel {
         self.solver.mesh()
     }
 
+    /// Radius of the clouds [m].
+    pub(crate) fn radius(&self) -> f64 {
+        self.cloud.radius
+    }
+
+    /// Gives the clouds another radius [m], and those of ghosts one in proportion.
+    pub(crate) fn set_radius(&mut self, radius: f64) {
+        let mesh = self.solver.mesh();
+        let scale = radius / (RADIUS_OF_CELL * mesh.largest_cell());
+        self.walls = Walls::new(mesh, scale);
+        self.ghosts = Ghosts::new(self.fits.smoothing_over_size(), scale);
+        self.cloud.radius = radius;
+    }
+
+    /// Changes what the sum must not depend on, and what the field solver knows of the motion.
+    pub(crate) fn change_for_a_check(&mut self) -> Before {
+        let before = Before { radius: self.cloud.radius, overlap: self.solver.without_overlap() };
+        self.set_radius(WIDER_FOR_A_CHECK * self.cloud.radius);
+        self.walls.scale_depth(DEEPER_FOR_A_CHECK);
+        before
+    }
+
+    /// Takes the changes for a check back.
+    pub(crate) fn change_back(&mut self, before: Before) {
+        self.set_radius(before.radius);
+        self.solver.with_overlap(before.overlap);
+    }
+
+    /// Field q_rms n^{2/3} of charges [C] that are spread over the mesh evenly, over Coulomb's constant
+    /// [C/m²].
+    pub(crate) fn field_of_spacing(&self, charges: &[f64]) -> f64 {
+        let count = charges.len() as f64;
+        let square = charges.iter().map(|charge| charge * charge).sum::<f64>() / count.max(1.0);
+        let volume: f64 = self.mesh().volumes().iter().sum();
+        square.sqrt() * (count / volume).powf(2.0 / 3.0)
+    }
+
     /// The clouds as they come back: finite volumes and the fit widen them.
     pub(crate) fn cloud_as_returned(&self) -> Cloud {
         let widened = (1.0 + self.fits.smoothing() / self.cloud.mean_square()).max(0.0).sqrt();
@@ -73,13 +122,13 @@ impl FarLevel {
 
     /// Domain in which grains and images lie, open where the mesh ends.
     pub(crate) fn domain_of_pairs(&self) -> Domain {
-        self.around(self.depth, Boundary::Open)
+        self.around(self.walls.deepest(), Boundary::Open)
     }
 
     /// The middle grid's periodic box: so large that no copy of a charge is felt along axes that are not
     /// periodic.
     pub(crate) fn domain_of_grid(&self) -> Domain {
-        self.around(self.depth + 0.5 * self.cloud_as_returned().radius, Boundary::Periodic)
+        self.around(self.walls.deepest() + 0.5 * self.cloud_as_returned().radius, Boundary::Periodic)
     }
 
     /// Refuses a net charge that no face of its part of the mesh takes, after [`Self::locate`].
@@ -101,18 +150,36 @@ impl FarLevel {
     pub(crate) fn extend(&mut self, positions: &mut Vec<Vector3<f64>>, charges: &mut Vec<f64>) -> usize {
         self.image_positions.clear();
         self.image_charges.clear();
+        let mut images = Images::default();
+        let mut ghosts = Vec::new();
         for (position, charge) in positions.iter().zip(&*charges).filter(|(_, charge)| **charge != 0.0) {
-            self.walls.for_each(position, |image, factor| {
-                self.image_positions.push(image);
-                self.image_charges.push(factor * charge);
-            });
+            self.walls.reflect(position, &mut images);
+            self.image_positions.extend(images.plain.iter().map(|image| image.at));
+            self.image_charges.extend(images.plain.iter().map(|image| image.factor * charge));
+            ghosts.extend(images.ghosts.iter().map(|ghost| ghost.with_charge(*charge)));
         }
-        positions.extend(self.walls.places());
+        self.ghosts.replace(ghosts.into_iter(), self.solver.mesh().domain());
+        positions.extend(self.walls.places().iter().map(|place| place.at));
         charges.resize(positions.len(), 0.0);
         let targets = positions.len();
         positions.extend(&self.image_positions);
         charges.extend(&self.image_charges);
         targets
+    }
+
+    /// Adds the ghosts' field, over Coulomb's constant, to the near field of the grains and, behind them, of
+    /// the places at the walls.
+    pub(crate) fn add_ghosts(&self, positions: &[Vector3<f64>], field: &mut [FieldAt]) {
+        if self.ghosts.is_empty() {
+            return;
+        }
+        let (at_grains, at_walls) = field.split_at_mut(positions.len());
+        at_grains.par_iter_mut().zip(positions).for_each(|(field, position)| {
+            *field += self.ghosts.field_at(&Place { at: *position, seen_from: *position });
+        });
+        at_walls.par_iter_mut().zip(self.walls.places()).for_each(|(field, place)| {
+            *field += self.ghosts.field_at(place);
+        });
     }
 
     /// Solves for the far potential of the grains at a time [s], with the short-ranged E [V/m] and
@@ -124,6 +191,12 @@ impl FarLevel {
         charges: &[f64],
         short: impl Iterator<Item = FieldAt>,
     ) -> Result<(), FieldError> {
+        self.ghost_density.clear();
+        if !self.ghosts.is_empty() {
+            let of_cell =
+                |centre: &Vector3<f64>| self.ghosts.density_at(&Place { at: *centre, seen_from: *centre });
+            self.ghost_density.par_extend(self.solver.mesh().centres().par_iter().map(of_cell));
+        }
         self.boundary.clear();
         self.boundary.extend(self.solver.mesh().boundary().iter().zip(short).map(|(face, short)| {
             match face.condition {
@@ -144,6 +217,7 @@ impl FarLevel {
             charges,
             image_positions: &self.image_positions,
             image_charges: &self.image_charges,
+            density: &self.ghost_density,
             boundary: &self.boundary,
             guess: &[],
         };
@@ -167,8 +241,16 @@ impl FarLevel {
     pub(crate) fn gather(&self, positions: &[Vector3<f64>], field: &mut [FieldAt]) {
         let mesh = self.solver.mesh();
         field.par_iter_mut().zip(positions).zip(&self.cells).for_each(|((field, position), &cell)| {
-            *field = self.fits.at(mesh, cell, position);
+            *field = self.fits.across_faces_at(mesh, cell, position);
         });
+    }
+
+    /// Jumps of E between cells, which tell what the cells are too coarse for, at some of the grains, after
+    /// [`Self::solve`] [V/m].
+    pub(crate) fn jumps(&self, positions: &[Vector3<f64>], sample: &[usize]) -> Vec<Vector3<f64>> {
+        let mesh = self.solver.mesh();
+        let jump = |&grain: &usize| self.fits.jump_at(mesh, self.cells[grain], &positions[grain]);
+        sample.iter().map(jump).collect()
     }
 
     /// Each grain's cell, by a walk from its last one; refuses grains outside the mesh.
@@ -183,6 +265,6 @@ impl FarLevel {
     }
 
     pub(crate) fn memory_bytes(&self) -> usize {
-        self.fits.memory_bytes() + 32 * self.image_charges.capacity()
+        self.fits.memory_bytes() + self.ghosts.memory_bytes() + 32 * self.image_charges.capacity()
     }
 }

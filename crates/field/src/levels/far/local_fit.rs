@@ -4,7 +4,8 @@
 //! the weights exp(−d²/(2 s²)) over the neighbours, their neighbours, the potentials of boundary faces and
 //! the slopes of others. Exact for quadratic potentials on any mesh.
 
-use super::mesh::{Condition, FarMesh, Neighbour};
+use super::mesh::{BoundaryFace, Condition, FarMesh, Neighbour};
+use super::polygon;
 use crate::values::FieldAt;
 use nalgebra::{SMatrix, SVector, Vector3};
 use rayon::prelude::*;
@@ -16,9 +17,13 @@ const WEIGHT_WIDTH: f64 = 0.75;
 const LEAST_RINGS: usize = 2;
 const MOST_RINGS: usize = 4;
 const ENOUGH: usize = 20;
+/// Distance from a face up to which both its cells have a say, over the cell's size.
+const BLENDED: f64 = 0.25;
 /// Weight that keeps terms of which no neighbour tells anything (a mesh one cell thick) at zero, over the
 /// largest of its kind.
 const RIDGE: f64 = 1e-9;
+/// Share of a line, or of a face's size, within which a place lies on a face.
+const ON_FACE: f64 = 1e-6;
 /// Numbers of a fit: g and H.
 const TERMS: usize = 9;
 
@@ -49,6 +54,7 @@ pub(crate) struct LocalFits {
     fits: Vec<Fit>,
     potential: Vec<f64>,
     smoothing: f64,
+    smoothing_over_size: f64,
 }
 
 impl LocalFits {
@@ -60,8 +66,11 @@ impl LocalFits {
             *count += rows.len();
             Some(*count)
         }));
+        let size: Vec<f64> = mesh.volumes().iter().map(|volume| volume.cbrt()).collect();
+        let over_size = cells.iter().zip(&size).map(|((_, smoothing), size)| smoothing / (size * size));
         Self {
-            size: mesh.volumes().iter().map(|volume| volume.cbrt()).collect(),
+            smoothing_over_size: over_size.sum::<f64>() / cells.len() as f64,
+            size,
             first_row,
             smoothing: cells.iter().map(|(_, smoothing)| smoothing).sum::<f64>() / cells.len() as f64,
             rows: cells.into_iter().flat_map(|(rows, _)| rows).collect(),
@@ -74,6 +83,11 @@ impl LocalFits {
     /// in (kh)²: what is isotropic of their error.
     pub(crate) fn smoothing(&self) -> f64 {
         self.smoothing
+    }
+
+    /// Variance of [`Self::smoothing`] over the square of the cells' size, in the mean.
+    pub(crate) fn smoothing_over_size(&self) -> f64 {
+        self.smoothing_over_size
     }
 
     pub(crate) fn memory_bytes(&self) -> usize {
@@ -99,6 +113,36 @@ impl LocalFits {
                 }
             }
         });
+    }
+
+    /// E [V/m] and φ [V] at a point of a cell; near a face the mean of what both its cells say, so that the
+    /// field goes on across it.
+    pub(crate) fn across_faces_at(&self, mesh: &FarMesh, cell: u32, point: &Vector3<f64>) -> FieldAt {
+        let reach = BLENDED * self.size[cell as usize];
+        let mut sum = self.at(mesh, cell, point);
+        let mut weights = 1.0;
+        for face in mesh.faces_of(cell as usize) {
+            let Neighbour::Cell { cell: other, shift } = face.neighbour else { continue };
+            let weight = 1.0 - (face.offset - face.normal.dot(point)).max(0.0) / reach;
+            if weight > 0.0 {
+                sum += weight * self.at(mesh, other, &(point - shift));
+                weights += weight;
+            }
+        }
+        (1.0 / weights) * sum
+    }
+
+    /// Difference of E at a point of a cell from what the cell beyond the nearest face says of it [V/m]: what
+    /// the cells are too coarse for.
+    pub(crate) fn jump_at(&self, mesh: &FarMesh, cell: u32, point: &Vector3<f64>) -> Vector3<f64> {
+        let beyond = mesh.faces_of(cell as usize).iter().filter_map(|face| match face.neighbour {
+            Neighbour::Cell { cell, shift } => Some((face.offset - face.normal.dot(point), cell, shift)),
+            Neighbour::Boundary(_) => None,
+        });
+        let nearest = beyond.min_by(|a, b| a.0.total_cmp(&b.0));
+        nearest.map_or(Vector3::zeros(), |(_, other, shift)| {
+            self.at(mesh, cell, point).e - self.at(mesh, other, &(point - shift)).e
+        })
     }
 
     /// E [V/m] and φ [V] at a point of a cell.
@@ -149,7 +193,7 @@ fn rows_of(mesh: &FarMesh, cell: usize) -> (Vec<Row>, f64) {
 }
 
 /// Sources around a cell, with their places from its centre [m]: its neighbours, theirs, and so on until
-/// there are enough; boundary faces of all of them.
+/// there are enough; boundary faces of all of them. What a wall hides from the cell is left out.
 fn sources_around(mesh: &FarMesh, cell: usize, size: f64) -> Vec<(Source, Vector3<f64>)> {
     let here = mesh.centres()[cell];
     let mut around: Vec<(Source, Vector3<f64>)> = Vec::new();
@@ -187,7 +231,33 @@ fn sources_around(mesh: &FarMesh, cell: usize, size: f64) -> Vec<(Source, Vector
         }
         ring = beyond;
     }
+    let faces: Vec<(u32, Vector3<f64>)> = around
+        .iter()
+        .filter_map(|(source, offset)| match source {
+            Source::Face(face) => {
+                let place = mesh.place_of_condition(&mesh.boundary()[*face as usize]);
+                Some((*face, here + offset - place))
+            }
+            Source::Cell(_) => None,
+        })
+        .collect();
+    around.retain(|(source, offset)| {
+        let hides = |(face, shift): &(u32, Vector3<f64>)| {
+            *source != Source::Face(*face) && is_between(mesh, *face, &(here - shift), offset)
+        };
+        !faces.iter().any(hides)
+    });
     around
+}
+
+/// Whether a boundary face lies between a point and the place at an offset from it [m].
+fn is_between(mesh: &FarMesh, face: u32, from: &Vector3<f64>, offset: &Vector3<f64>) -> bool {
+    let BoundaryFace { centre, normal, area, .. } = mesh.boundary()[face as usize];
+    let towards = normal.dot(offset);
+    let share = normal.dot(&(centre - from)) / towards;
+    let is_crossed = towards > 0.0 && (0.0..1.0 - ON_FACE).contains(&share);
+    let at = from + offset * share;
+    is_crossed && polygon::holds(mesh.corners_of(face as usize), &normal, &at, ON_FACE * area.sqrt())
 }
 
 /// Part that finite volumes on cubes (−h²/10) and the quadratic's ends (−h²/12) take off again [m²].

@@ -10,6 +10,7 @@ mod density;
 mod level;
 mod local_fit;
 mod mesh;
+mod polygon;
 mod reentrant;
 mod search;
 mod solver;
@@ -42,6 +43,8 @@ pub struct FarRequest<'a> {
     pub image_positions: &'a [Vector3<f64>],
     /// Image charges [C]; their clouds may reach inside.
     pub image_charges: &'a [f64],
+    /// Density of the source by cell, besides the clouds of the charges above [C/m³]; empty: none.
+    pub density: &'a [f64],
     /// Values by boundary face: φ [V] where the potential is prescribed, ∂φ/∂n outwards [V/m] where the
     /// normal field is.
     pub boundary: &'a [f64],

@@ -80,6 +80,7 @@ struct OpenQuestion {
     charges: Vec<f64>,
     image_positions: Vec<Vector3<f64>>,
     image_charges: Vec<f64>,
+    density: Vec<f64>,
     boundary: Vec<f64>,
     /// Absolute permittivity [F/m].
     permittivity: f64,
@@ -96,6 +97,7 @@ impl OpenQuestion {
             charges: request.charges.to_vec(),
             image_positions: request.image_positions.to_vec(),
             image_charges: request.image_charges.to_vec(),
+            density: request.density.to_vec(),
             boundary: request.boundary.to_vec(),
             permittivity: permittivity_f_m,
             neutralising_background: neutralising_background != 0,
@@ -117,6 +119,7 @@ impl OpenQuestion {
             charges: &self.charges,
             image_positions: &self.image_positions,
             image_charges: &self.image_charges,
+            density: &self.density,
             boundary: &self.boundary,
             guess,
         }
@@ -202,6 +205,21 @@ impl FarSolver {
     #[must_use]
     pub fn overlaps(&self) -> bool {
         self.overlap.is_some()
+    }
+
+    /// Whether the solver works beside the motion, or has begun to.
+    pub(crate) fn is_at_work(&self) -> bool {
+        self.overlap.as_ref().is_some_and(|overlap| overlap.begun)
+    }
+
+    /// Waits for answers from now on; whether it did not.
+    pub(crate) fn without_overlap(&mut self) -> bool {
+        self.overlap.take().is_some()
+    }
+
+    /// Works beside the motion from now on, if it is to.
+    pub(crate) fn with_overlap(&mut self, overlap: bool) {
+        self.overlap = overlap.then(Box::default);
     }
 
     /// Goes on from a state of an earlier run.

@@ -126,6 +126,7 @@ impl ChargeCells for SolverCells {
             charges,
             image_positions: &[],
             image_charges: &[],
+            density: &[],
             boundary: &self.boundary,
             guess: &[],
         };

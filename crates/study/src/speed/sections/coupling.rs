@@ -128,6 +128,7 @@ fn exchange(domain: &Domain, cells_along: usize, cloud: &ChargedBed) -> Result<(
             charges,
             image_positions: &[],
             image_charges: &[],
+            density: &[],
             boundary: &boundary,
             guess: &[],
         };
@@ -174,6 +175,7 @@ fn round_trip() -> Result<f64> {
         charges: &[],
         image_positions: &[],
         image_charges: &[],
+        density: &[],
         boundary: &[0.0; 6],
         guess: &[],
     };

@@ -1,11 +1,15 @@
 //! A flat wall.
 
-use super::patch::{Patch, half_diagonal};
-use super::{FLAT, Mirror};
-use crate::levels::far::mesh::{BoundaryFace, FarMesh};
+use super::mirror::{Ground, Mirror, Side};
+use super::patch::Patch;
+use super::rims::Rims;
+use super::screen::Screen;
+use super::{FLAT, Surface};
+use crate::levels::far::mesh::BoundaryFace;
+use crate::levels::far::polygon;
 use nalgebra::Vector3;
 
-/// Share of its extent from which on a wall fills it.
+/// Share of a wall's rectangle that its faces fill, if they fill it.
 const FILLED: f64 = 0.999;
 
 /// A flat piece of the boundary.
@@ -16,16 +20,20 @@ pub(super) struct FlatWall {
     /// Corners of its extent [m].
     low: Vector3<f64>,
     high: Vector3<f64>,
-    /// Faces of the wall, where they do not fill their extent.
-    patch: Option<Patch>,
-    /// Deepest charge that it mirrors [m].
-    depth: f64,
+    /// Ground below all of it, where that is one and the faces fill the extent.
+    even: Option<Ground>,
+    patch: Patch,
+    /// Corners of each face; empty where the ground is even.
+    polygons: Vec<Vec<Vector3<f64>>>,
+    ground: Vec<Ground>,
+    deepest: f64,
+    rims: Rims,
 }
 
 impl FlatWall {
     /// A wall of faces, if they are flat.
-    pub(super) fn new(mesh: &FarMesh, faces: &[u32], depth: f64) -> Option<Self> {
-        let all = mesh.boundary();
+    pub(super) fn new(surface: &Surface<'_>, faces: &[u32]) -> Option<Self> {
+        let all = surface.mesh.boundary();
         let first = &all[faces[0] as usize];
         let (normal, offset, size) = (first.normal, first.normal.dot(&first.centre), first.area.sqrt());
         let members = || faces.iter().map(|&face| &all[face as usize]);
@@ -35,20 +43,21 @@ impl FlatWall {
         if !members().all(in_plane) {
             return None;
         }
+        let polygon = |&face: &u32| surface.mesh.corners_of(face as usize).to_vec();
+        let polygons: Vec<Vec<Vector3<f64>>> = faces.iter().map(polygon).collect();
         let (mut low, mut high) = (first.centre, first.centre);
-        for face in members() {
-            let reach = Vector3::repeat(half_diagonal(face));
-            low = low.inf(&(face.centre - reach));
-            high = high.sup(&(face.centre + reach));
+        for corner in polygons.iter().flatten() {
+            (low, high) = (low.inf(corner), high.sup(corner));
         }
-        let domain = mesh.domain();
-        (low, high) = (low.sup(&domain.min()), high.inf(&domain.max()));
         let extent = high - low;
         let across = normal.iamax();
         let rectangle: f64 = (0..3).filter(|axis| *axis != across).map(|axis| extent[axis]).product();
         let area: f64 = members().map(|face| face.area).sum();
         let filled = (normal[across].abs() - 1.0).abs() < FLAT && area > FILLED * rectangle;
-        let along: f64 = (0..3).map(|axis| (normal[axis] * domain.extent()[axis]).abs()).sum();
+        let ground: Vec<Ground> = faces.iter().map(|&face| surface.ground(face)).collect();
+        let deepest = ground.iter().map(|ground| ground.depth).fold(0.0, f64::max);
+        let rims = Rims::new(surface.mesh, surface.edges, Some(faces), surface.reach);
+        let is_even = filled && rims.is_empty() && ground.iter().all(|other| other.is_like(&ground[0]));
         // Feet lie on the plane to rounding only.
         let slack = Vector3::repeat(FLAT * size);
         Some(Self {
@@ -56,22 +65,49 @@ impl FlatWall {
             offset,
             low: low - slack,
             high: high + slack,
-            patch: (!filled).then(|| Patch::new(all, faces, 0.0)),
-            depth: depth.min(super::OF_GAP * along),
+            even: is_even.then_some(ground[0]),
+            patch: Patch::new(all, faces, 0.0),
+            polygons: if is_even { Vec::new() } else { polygons },
+            ground,
+            deepest,
+            rims,
         })
     }
 
-    /// Mirrors a charge at a point.
-    pub(super) fn mirror(&self, point: &Vector3<f64>) -> Option<Mirror> {
+    /// Mirrors a charge at a point, with depths scaled.
+    pub(super) fn mirror(&self, point: &Vector3<f64>, depth_scale: f64) -> Option<Mirror> {
         let distance = self.offset - self.normal.dot(point);
-        if !(0.0..self.depth).contains(&distance) {
+        if !(0.0..depth_scale * self.deepest).contains(&distance) {
             return None;
         }
         let foot = point + self.normal * distance;
-        let beside = (0..3).any(|axis| foot[axis] < self.low[axis] || foot[axis] > self.high[axis]);
-        if beside || self.patch.as_ref().is_some_and(|patch| !patch.covers(&foot)) {
+        if (0..3).any(|axis| foot[axis] < self.low[axis] || foot[axis] > self.high[axis]) {
             return None;
         }
-        Some(Mirror { normal: self.normal, offset: self.offset, distance, curvature: 0.0, depth: self.depth })
+        let ground = match &self.even {
+            Some(ground) => ground,
+            None => &self.ground[self.face_under(&foot)?],
+        };
+        let ground = ground.deeper(depth_scale);
+        if distance >= ground.depth {
+            return None;
+        }
+        let side = Side::of(&ground, &self.rims, &foot, &self.normal, distance, distance)?;
+        let plane = || Screen::Plane { normal: self.normal, offset: self.offset };
+        Some(Mirror {
+            normal: self.normal,
+            offset: self.offset,
+            distance,
+            curvature: 0.0,
+            depth: ground.depth,
+            screened: side.screened(&ground, plane),
+        })
+    }
+
+    /// The face on which a point of the wall's plane lies.
+    fn face_under(&self, foot: &Vector3<f64>) -> Option<usize> {
+        let slack = FLAT * (self.high - self.low).max();
+        let mut near = self.patch.near(foot);
+        near.find(|&face| polygon::holds(&self.polygons[face], &self.normal, foot, slack))
     }
 }

@@ -1,65 +1,75 @@
-//! Image charges outside the mesh, which make the far level's boundary data smooth.
+//! Charges that walls are replaced by, which make the far level's boundary data smooth.
 //!
-//! The field is exact whatever they are, as long as they lie outside. A charge at distance δ from a wall is
-//! mirrored in it with the charge −q f(δ) (potential prescribed) or +q f(δ) (slope prescribed): f is 1 up
-//! to half the depth D and falls to 0 at D as 1 − u³(10 − 15u + 6u²), u = 2δ/D − 1. In a conductor of mean
-//! curvature κ it is the image of the sphere of that curvature, −q/(1 − κδ) at δ/(1 − κδ) (Jackson,
-//! Classical Electrodynamics, 3rd ed., §2.2). Two walls at an angle mirror each other's images.
+//! The field is exact whatever they are. A charge at distance δ from a wall is mirrored in it with the charge
+//! −q f(δ) (potential prescribed) or +q f(δ) (slope prescribed): f is 1 up to half the depth D = 4h, h the
+//! size of the cells there, and falls to 0 at D as 1 − u³(10 − 15u + 6u²), u = 2δ/D − 1. In a conductor of
+//! mean curvature κ it is the image of the sphere of that curvature, −q/(1 − κδ) at δ/(1 − κδ) (Jackson,
+//! Classical Electrodynamics, 3rd ed., §2.2). Walls at an angle mirror each other's images, and so do two
+//! walls that face each other.
+//!
+//! Where the solid behind a wall is thick enough, these are plain image charges, felt by every place. Where
+//! an image would lie in the mesh behind a sheet or a plate, or beside the edge of a body, they are ghosts,
+//! felt only by the places that the wall hides from them ([`ghosts`]).
 
+mod buckets;
 mod curved;
+mod edges;
 mod flat;
+mod ghosts;
+mod images;
+mod mirror;
 mod patch;
+mod rims;
+mod screen;
+mod solid;
+
+pub(super) use ghosts::Ghosts;
+pub(super) use images::Images;
+pub(super) use screen::Place;
 
 use super::mesh::{Condition, FarMesh};
 use curved::CurvedWall;
+use edges::{Edge, edges};
 use flat::FlatWall;
+use images::Reflection;
+use mirror::{Ground, Mirror, RADIUS_AT_RIM_OF_CELL};
 use nalgebra::Vector3;
-use patch::{Patch, half_diagonal};
+use patch::half_diagonal;
+use rims::Rims;
+use solid::{Surroundings, surroundings};
 
 /// Faces whose normals and planes differ by less are flat, over one and over the face's size.
 const FLAT: f64 = 1e-6;
-/// Cosine of the angle between neighbouring faces up to which they are one wall.
-const SMOOTH: f64 = 0.77;
 /// Distance of neighbouring faces' centres over their half diagonals.
 const NEIGHBOURS: f64 = 1.2;
-/// Image charges below this share of their charge are left out.
-const LEAST: f64 = 1e-9;
-/// Depths over the mesh's extent across a wall: opposite walls' images never meet.
-const OF_GAP: f64 = 0.5;
-/// Cosine of walls that count as parallel.
-const PARALLEL: f64 = 0.7;
-/// Walls that mirror one charge at most.
-const MOST: usize = 6;
+/// Distance into the mesh from which a place on a wall is seen, over the cell's size.
+const SEEN_FROM: f64 = 0.1;
 
-/// Mirror that a wall is for a charge: the tangent plane, the charge's distance and the wall's curvature
-/// there.
-#[derive(Clone, Copy, Debug)]
-struct Mirror {
-    normal: Vector3<f64>,
-    offset: f64,
-    distance: f64,
-    /// Mean curvature towards the charge [1/m].
-    curvature: f64,
-    /// Deepest charge that is mirrored [m].
-    depth: f64,
+/// Largest factor of the depth up to which walls mirror charges.
+pub(super) const DEEPEST: f64 = 1.4;
+
+/// The boundary of a mesh, as walls are made of it.
+#[derive(Clone, Copy)]
+struct Surface<'a> {
+    mesh: &'a FarMesh,
+    edges: &'a [Edge],
+    around: &'a [Surroundings],
+    /// Factor of the ghosts' radii.
+    ghost_scale: f64,
+    /// Distance up to which rims matter [m].
+    reach: f64,
 }
 
-impl Mirror {
-    /// Charge of the image over the charge's, but for the sign.
-    fn factor(&self) -> f64 {
-        let u = (2.0 * self.distance / self.depth - 1.0).max(0.0);
-        let fade = 1.0 - u * u * u * (10.0 - 15.0 * u + 6.0 * u * u);
-        fade / (1.0 - self.curvature * self.distance)
+impl Surface<'_> {
+    fn ground(&self, face: u32) -> Ground {
+        Ground::new(&self.around[face as usize], self.ghost_scale)
     }
 
-    /// The image of the charge itself.
-    fn image(&self, point: &Vector3<f64>) -> Vector3<f64> {
-        point + self.normal * (self.distance + self.distance / (1.0 - self.curvature * self.distance))
-    }
-
-    /// The image of another wall's image, in the plane.
-    fn again(&self, point: &Vector3<f64>) -> Vector3<f64> {
-        point + self.normal * (2.0 * (self.offset - self.normal.dot(point)))
+    fn sign(&self, face: u32) -> f64 {
+        match self.mesh.boundary()[face as usize].condition {
+            Condition::Potential(_) => -1.0,
+            Condition::Slope(_) => 1.0,
+        }
     }
 }
 
@@ -78,116 +88,139 @@ struct Wall {
 
 /// The walls of a mesh.
 #[derive(Debug)]
-pub(crate) struct Walls {
+pub(super) struct Walls {
     /// Curved ones first.
     walls: Vec<Wall>,
     /// Point of the wall at which each boundary face's condition holds [m].
-    places: Vec<Vector3<f64>>,
+    places: Vec<Place>,
+    /// All rims, with the ground and the sign of each boundary face.
+    rims: Rims,
+    ground: Vec<Ground>,
+    signs: Vec<f64>,
+    deepest: f64,
+    /// Factor of all depths.
+    depth_scale: f64,
 }
 
 impl Walls {
-    /// Walls that mirror charges up to `depth` [m].
-    pub(crate) fn new(mesh: &FarMesh, depth: f64) -> Self {
+    /// Walls of a mesh, with the radii of ghosts scaled.
+    pub(super) fn new(mesh: &FarMesh, ghost_scale: f64) -> Self {
         let boundary = mesh.boundary();
-        let mut places: Vec<_> = boundary.iter().map(|face| mesh.place_of_condition(face)).collect();
-        let around = neighbours(mesh);
+        let (edges, around) = (edges(mesh), surroundings(mesh));
+        let largest = around.iter().map(|face| face.cell).fold(0.0, f64::max);
+        let reach = ghost_scale * RADIUS_AT_RIM_OF_CELL * largest;
+        let surface = Surface { mesh, edges: &edges, around: &around, ghost_scale, reach };
+        let mut at: Vec<_> = boundary.iter().map(|face| mesh.place_of_condition(face)).collect();
+        let beside = neighbours(mesh, &edges);
         let mut walls = Vec::new();
-        for faces in connected(&around) {
-            let sign = match boundary[faces[0] as usize].condition {
-                Condition::Potential(_) => -1.0,
-                Condition::Slope(_) => 1.0,
-            };
-            let shape = match FlatWall::new(mesh, &faces, depth) {
+        for faces in connected(&beside) {
+            let shape = match FlatWall::new(&surface, &faces) {
                 Some(wall) => Shape::Flat(wall),
                 None => {
                     let number = |face: &u32| faces.binary_search(face).expect("connected") as u32;
                     let within: Vec<Vec<u32>> = faces
                         .iter()
-                        .map(|&face| around[face as usize].iter().map(number).collect())
+                        .map(|&face| beside[face as usize].iter().map(number).collect())
                         .collect();
-                    let wall = CurvedWall::new(mesh, &faces, &within, depth);
+                    let wall = CurvedWall::new(&surface, &faces, &within);
                     for (index, &face) in faces.iter().enumerate() {
-                        places[face as usize] = wall.place(index, &places[face as usize]);
+                        at[face as usize] = wall.place(index, &at[face as usize]);
                     }
                     Shape::Curved(wall)
                 }
             };
-            walls.push(Wall { shape, sign });
+            walls.push(Wall { shape, sign: surface.sign(faces[0]) });
         }
         walls.sort_by_key(|wall| matches!(wall.shape, Shape::Flat(_)));
-        Self { walls, places }
+        let place = |(at, face): (&Vector3<f64>, usize)| {
+            let into = SEEN_FROM * mesh.volumes()[boundary[face].cell as usize].cbrt();
+            Place { at: *at, seen_from: at - boundary[face].normal * into }
+        };
+        let faces = 0..boundary.len() as u32;
+        let ground: Vec<Ground> = faces.clone().map(|face| surface.ground(face)).collect();
+        Self {
+            walls,
+            places: at.iter().zip(0..).map(place).collect(),
+            rims: Rims::new(mesh, &edges, None, reach),
+            deepest: ground.iter().map(|ground| ground.depth).fold(0.0, f64::max),
+            ground,
+            signs: faces.map(|face| surface.sign(face)).collect(),
+            depth_scale: 1.0,
+        }
     }
 
     /// Point of the wall at which each boundary face's condition holds [m].
-    pub(crate) fn places(&self) -> &[Vector3<f64>] {
+    pub(super) fn places(&self) -> &[Place] {
         &self.places
     }
 
-    /// Calls `visit` with every image of a charge at `point` and its charge over the charge's.
-    pub(crate) fn for_each(&self, point: &Vector3<f64>, mut visit: impl FnMut(Vector3<f64>, f64)) {
-        let mut mirrors = [None; MOST];
-        let found = self.walls.iter().filter_map(|wall| {
+    /// Mirrors charges up to so much of the usual depth, at most [`DEEPEST`].
+    pub(super) fn scale_depth(&mut self, scale: f64) {
+        self.depth_scale = scale;
+    }
+
+    /// Depth up to which some wall mirrors charges [m].
+    pub(super) fn deepest(&self) -> f64 {
+        self.depth_scale * self.deepest
+    }
+
+    /// Finds what the walls make of a unit charge at a point: images and ghosts.
+    pub(super) fn reflect(&self, point: &Vector3<f64>, images: &mut Images) {
+        let of_walls = self.walls.iter().filter_map(|wall| {
             let mirror = match &wall.shape {
-                Shape::Flat(flat) => flat.mirror(point)?,
-                Shape::Curved(curved) => curved.mirror(point)?,
+                Shape::Flat(flat) => flat.mirror(point, self.depth_scale)?,
+                Shape::Curved(curved) => curved.mirror(point, self.depth_scale)?,
             };
-            let factor = wall.sign * mirror.factor();
-            (factor.abs() >= LEAST).then_some((mirror, factor))
+            Some(Reflection { mirror, sign: wall.sign })
         });
-        for (slot, mirror) in mirrors.iter_mut().zip(found) {
-            *slot = Some(mirror);
+        images.take(point, of_walls.chain(self.beyond_rim(point)));
+    }
+
+    /// The half plane that a charge beyond a rim has beside it.
+    fn beyond_rim(&self, point: &Vector3<f64>) -> Option<Reflection> {
+        if self.rims.is_empty() {
+            return None;
         }
-        let mirrors = mirrors.iter().flatten();
-        for (first, (wall, factor)) in mirrors.clone().enumerate() {
-            let image = wall.image(point);
-            visit(image, *factor);
-            for (second, (other, more)) in mirrors.clone().enumerate().skip(first + 1) {
-                let factor = factor * more;
-                if !are_across(wall, other) || factor.abs() < LEAST {
-                    continue;
-                }
-                let image = other.again(&image);
-                visit(image, factor);
-                for (third, more) in mirrors.clone().skip(second + 1) {
-                    let factor = factor * more;
-                    if are_across(wall, third) && are_across(other, third) && factor.abs() >= LEAST {
-                        visit(third.again(&image), factor);
-                    }
-                }
-            }
+        let rim = self.rims.nearest(point)?;
+        let ground = self.ground[rim.face() as usize].deeper(self.depth_scale);
+        if rim.distance >= ground.depth {
+            return None;
         }
+        let half = rim.between_faces(point)?;
+        let left = mirror::left_beside(self.rims.other(point, &rim), rim.distance);
+        let mirror = Mirror::beyond_rim(half, point, rim.distance, &ground, left);
+        Some(Reflection { mirror, sign: self.signs[rim.face() as usize] })
     }
 }
 
-/// Whether two walls stand at an angle near a right one.
-fn are_across(a: &Mirror, b: &Mirror) -> bool {
-    a.normal.dot(&b.normal).abs() < PARALLEL
-}
-
-/// Each boundary face's neighbours that go on smoothly, with a condition of the same kind.
-fn neighbours(mesh: &FarMesh) -> Vec<Vec<u32>> {
+/// Each boundary face's neighbours that go on smoothly, with a condition of the same kind: those across an
+/// edge, and those across one of theirs that are as near.
+fn neighbours(mesh: &FarMesh, edges: &[Edge]) -> Vec<Vec<u32>> {
     let boundary = mesh.boundary();
-    let all: Vec<u32> = (0..boundary.len() as u32).collect();
-    let patch = Patch::new(boundary, &all, 0.0);
-    let go_on = |a: usize, b: usize| {
-        let (first, second) = (&boundary[a], &boundary[b]);
-        let near = NEIGHBOURS * (half_diagonal(first) + half_diagonal(second));
-        let kind = |condition| matches!(condition, Condition::Potential(_));
-        a != b
-            && (first.centre - second.centre).norm() < near
-            && first.normal.dot(&second.normal) > SMOOTH
-            && kind(first.condition) == kind(second.condition)
+    let kind = |face: u32| matches!(boundary[face as usize].condition, Condition::Potential(_));
+    let mut across = vec![Vec::new(); boundary.len()];
+    for edge in edges.iter().filter(|edge| edge.bend().abs() < rims::LEAST_BEND) {
+        let [first, second] = edge.faces;
+        if first != second && kind(first) == kind(second) {
+            across[first as usize].push(second);
+            across[second as usize].push(first);
+        }
+    }
+    let is_near = |face: u32, other: u32| {
+        let (first, second) = (&boundary[face as usize], &boundary[other as usize]);
+        // Faces that only a period joins are two walls.
+        (first.centre - second.centre).norm() < NEIGHBOURS * (half_diagonal(first) + half_diagonal(second))
     };
-    let of = |face: usize| {
-        let mut found: Vec<u32> = patch
-            .near(&boundary[face].centre)
-            .filter(|&other| go_on(face, other))
-            .map(|other| other as u32)
-            .collect();
+    let of = |face: u32| {
+        let direct = &across[face as usize];
+        let further = direct.iter().flat_map(|&next| across[next as usize].iter().copied());
+        let all = direct.iter().copied().chain(further);
+        let mut found: Vec<u32> = all.filter(|&other| other != face && is_near(face, other)).collect();
         found.sort_unstable();
+        found.dedup();
         found
     };
-    (0..boundary.len()).map(of).collect()
+    (0..boundary.len() as u32).map(of).collect()
 }
 
 /// Sets of faces that are connected, each in ascending order.
@@ -215,27 +248,4 @@ fn connected(around: &[Vec<u32>]) -> Vec<Vec<u32>> {
 }
 
 #[cfg(test)]
-mod tests {
-    use super::*;
-    use crate::levels::far::mesh::FarMeshParts;
-    use amberfield_core::{Boundary, Domain};
-
-    #[test]
-    fn corner_of_a_box_has_seven_images_with_the_walls_signs() {
-        let insulating = Boundary::Insulating { normal_field_v_m: 0.0 };
-        let faces = [[Boundary::Grounded; 2], [insulating; 2], [Boundary::Grounded; 2]];
-        let domain = Domain::new(Vector3::zeros(), Vector3::repeat(1.0), faces).unwrap();
-        let mesh = FarMesh::new(FarMeshParts::of_box(&domain, [8; 3]).unwrap()).unwrap();
-        let images = Walls::new(&mesh, 0.4);
-        let mut found = Vec::new();
-        images.for_each(&Vector3::new(0.1, 0.12, 0.15), |at, factor| found.push((at, factor)));
-        assert_eq!(found.len(), 7);
-        for (at, factor) in found {
-            let conductors = (0..3).filter(|&axis| axis != 1 && at[axis] < 0.0).count();
-            assert!((factor - if conductors == 1 { -1.0 } else { 1.0 }).abs() < 1e-12, "{at} {factor}");
-        }
-        let mut deep = 0;
-        images.for_each(&Vector3::repeat(0.5), |_, _| deep += 1);
-        assert_eq!(deep, 0);
-    }
-}
+mod tests;
