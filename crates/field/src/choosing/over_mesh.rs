@@ -65,7 +65,7 @@ pub(crate) fn choose(
         let aim = FieldSettings { tolerance, ..settings.clone() };
         let chosen = tune(&far, &aim, &wrapped, charges)?;
         let parameters = P3mParameters { far_radius_m: Some(far.radius()), ..chosen.parameters };
-        let mut p3m = P3m::over(far, settings, parameters);
+        let mut p3m = P3m::over(far, parameters);
         let Some(error) = measure(&mut p3m, parameters, positions, charges)? else {
             return Ok(OverMesh { p3m, parameters, estimated: chosen.estimated, measured: None });
         };
@@ -98,7 +98,7 @@ pub(crate) fn choose(
         );
     }
     far.set_radius(far_radius(&parameters));
-    let p3m = P3m::over(far, settings, parameters);
+    let p3m = P3m::over(far, parameters);
     Ok(OverMesh { p3m, parameters, estimated, measured: Some(error.relative(positions.len())) })
 }
 

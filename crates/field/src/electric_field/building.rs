@@ -101,7 +101,7 @@ impl ElectricField {
                 if let Some(radius) = parameters.far_radius_m {
                     far.set_radius(radius);
                 }
-                Self::of_p3m_over_mesh(P3m::over(far, settings, *parameters), settings, *parameters)
+                Self::of_p3m_over_mesh(P3m::over(far, *parameters), settings, *parameters)
             }
             Choice::Kolehmainen { cutoff_m } => {
                 let (permittivity, background) = (settings.permittivity, settings.neutralising_background);

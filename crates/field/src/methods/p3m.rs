@@ -11,7 +11,7 @@
 
 use crate::error::FieldError;
 use crate::geometry::inputs::{check_charges_in_box, check_finite};
-use crate::levels::far::{FarLevel, FarMesh, FarSolver};
+use crate::levels::far::{FarLevel, FarMesh, FarSolver, Medium};
 use crate::levels::grid::level::GridLevel;
 use crate::levels::near::NearLevel;
 use crate::methods::method::{FieldMethod, TwoSplittings};
@@ -47,16 +47,17 @@ impl P3m {
     pub(crate) fn new(domain: &Domain, settings: &FieldSettings, parameters: P3mParameters) -> Self {
         let near = NearLevel::new(domain, parameters.near());
         let grid = GridLevel::new(domain, parameters.grid());
-        Self::with_levels(domain, settings, parameters, near, grid)
+        Self::with_levels(domain, Medium::of(settings), parameters, near, grid)
     }
 
     /// Makes p3m of three levels, the last one a field solver's.
-    pub(crate) fn over(far: FarLevel, settings: &FieldSettings, parameters: P3mParameters) -> Self {
+    pub(crate) fn over(far: FarLevel, parameters: P3mParameters) -> Self {
         let near = NearLevel::new(&far.domain_of_pairs(), parameters.near());
         let wider = far.cloud_as_returned();
         let grid = GridLevel::between(&far.domain_of_grid(), parameters.grid(), wider);
         let domain = far.mesh().domain().clone();
-        Self { far: Some(far), ..Self::with_levels(&domain, settings, parameters, near, grid) }
+        let medium = far.medium();
+        Self { far: Some(far), ..Self::with_levels(&domain, medium, parameters, near, grid) }
     }
 
     /// Cells of a far level.
@@ -71,7 +72,7 @@ impl P3m {
 
     fn with_levels(
         domain: &Domain,
-        settings: &FieldSettings,
+        medium: Medium,
         parameters: P3mParameters,
         near: NearLevel,
         grid: GridLevel,
@@ -79,30 +80,11 @@ impl P3m {
         Self {
             domain: domain.clone(),
             parameters,
-            permittivity: settings.permittivity,
-            neutralising_background: settings.neutralising_background,
+            permittivity: medium.permittivity,
+            neutralising_background: medium.neutralising_background,
             near,
             grid,
             far: None,
-            positions: Vec::new(),
-            charges: Vec::new(),
-            near_field: Vec::new(),
-            grid_field: Vec::new(),
-            far_field: Vec::new(),
-            stopwatch: Stopwatch::default(),
-        }
-    }
-
-    /// Builds the method anew below another far level, or one whose clouds have changed.
-    fn below(&self, far: FarLevel, parameters: P3mParameters) -> Self {
-        Self {
-            domain: self.domain.clone(),
-            near: NearLevel::new(&far.domain_of_pairs(), parameters.near()),
-            grid: GridLevel::between(&far.domain_of_grid(), parameters.grid(), far.cloud_as_returned()),
-            far: Some(far),
-            parameters,
-            permittivity: self.permittivity,
-            neutralising_background: self.neutralising_background,
             positions: Vec::new(),
             charges: Vec::new(),
             near_field: Vec::new(),
@@ -245,7 +227,7 @@ impl FieldMethod for P3m {
 
         let mut far = self.far.take().expect("there is one");
         let before = far.change_for_a_check();
-        let mut other = self.below(far, second);
+        let mut other = Self::over(far, second);
         let outcome = other.evaluate(positions, charges, Wanted::default(), &mut field);
         let mut far = other.far.take().expect("given");
         far.change_back(before);

@@ -1,6 +1,7 @@
 //! The smooth density of charges' clouds at any places of a box, by the grid's own code: spread with the
 //! window, multiply by the clouds' spectrum, gather.
 
+use super::copies::shifts;
 use crate::levels::grid::level::{GridLevel, GridParameters};
 use crate::levels::grid::shapes;
 use amberfield_core::{Axis, Boundary, Domain};
@@ -20,8 +21,8 @@ pub struct SmoothDensity {
     whole: Domain,
     /// Box of the grid, the reach of the clouds included.
     padded: Domain,
-    /// Axes along which periodic copies are put beside the box.
-    copied: [bool; 3],
+    /// Shifts to the copies that are put into the box, none included [m].
+    shifts: Vec<Vector3<f64>>,
     grid: GridLevel,
     positions: Vec<Vector3<f64>>,
     charges: Vec<f64>,
@@ -50,7 +51,7 @@ impl SmoothDensity {
             cloud: Cloud { radius: radius_m, shape },
         };
         Self {
-            copied: Axis::ALL.map(|axis| whole.is_periodic(axis) && !spans[axis.index()]),
+            shifts: shifts(whole, Axis::ALL.map(|axis| whole.is_periodic(axis) && !spans[axis.index()])),
             whole: whole.clone(),
             grid: GridLevel::density(&padded, parameters),
             padded,
@@ -67,20 +68,12 @@ impl SmoothDensity {
 
     /// Adds charges [C] at positions [m]; those whose clouds do not reach the box count for nothing.
     pub fn add(&mut self, positions: &[Vector3<f64>], charges: &[f64]) {
-        let extent = self.whole.extent();
-        let copies = |axis: usize| if self.copied[axis] { -1..=1 } else { 0..=0 };
         for (position, &charge) in positions.iter().zip(charges).filter(|(_, charge)| **charge != 0.0) {
             let position = self.whole.wrap(*position);
-            for x in copies(0) {
-                for y in copies(1) {
-                    for z in copies(2) {
-                        let moved = position
-                            + Vector3::new(f64::from(x), f64::from(y), f64::from(z)).component_mul(&extent);
-                        if self.padded.contains(&moved) {
-                            self.positions.push(moved);
-                            self.charges.push(charge);
-                        }
-                    }
+            for moved in self.shifts.iter().map(|by| position + by) {
+                if self.padded.contains(&moved) {
+                    self.positions.push(moved);
+                    self.charges.push(charge);
                 }
             }
         }

@@ -9,7 +9,7 @@
 
 use super::local_fit::LocalFits;
 use super::mesh::{Condition, FarMesh};
-use super::walls::{Ghosts, Images, Place, Walls};
+use super::walls::{Ghosts, Images, Outline, Place, Walls};
 use super::{FarField, FarRequest, FarSolver, check_net_charge};
 use crate::error::FieldError;
 use crate::values::FieldAt;
@@ -34,15 +34,30 @@ pub(crate) struct Before {
     overlap: bool,
 }
 
+/// Medium in which the charges are.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Medium {
+    pub(crate) permittivity: Permittivity,
+    /// Whether a charge that no face takes has an even background of the opposite sign.
+    pub(crate) neutralising_background: bool,
+}
+
+impl Medium {
+    pub(crate) fn of(settings: &FieldSettings) -> Self {
+        let FieldSettings { permittivity, neutralising_background, .. } = *settings;
+        Self { permittivity, neutralising_background }
+    }
+}
+
 /// The far level's share of the field.
 #[derive(Debug)]
 pub(crate) struct FarLevel {
     solver: FarSolver,
+    outline: Outline,
     walls: Walls,
     fits: LocalFits,
     cloud: Cloud,
-    permittivity: Permittivity,
-    neutralising_background: bool,
+    medium: Medium,
     image_positions: Vec<Vector3<f64>>,
     image_charges: Vec<f64>,
     ghosts: Ghosts,
@@ -56,15 +71,15 @@ impl FarLevel {
     pub(crate) fn new(solver: Box<dyn FarField>, settings: &FieldSettings) -> Self {
         let mesh = solver.mesh();
         let size = mesh.largest_cell();
-        let fits = LocalFits::new(mesh);
+        let (fits, outline) = (LocalFits::new(mesh), Outline::new(mesh));
         Self {
-            walls: Walls::new(mesh, 1.0),
+            walls: Walls::new(mesh, &outline, 1.0),
+            outline,
             ghosts: Ghosts::new(fits.smoothing_over_size(), 1.0),
             ghost_density: Vec::new(),
             fits,
             cloud: Cloud { radius: RADIUS_OF_CELL * size, shape: SHAPE },
-            permittivity: settings.permittivity,
-            neutralising_background: settings.neutralising_background,
+            medium: Medium::of(settings),
             image_positions: Vec::new(),
             image_charges: Vec::new(),
             boundary: Vec::new(),
@@ -77,6 +92,11 @@ impl FarLevel {
         self.solver.mesh()
     }
 
+    /// Medium in which the charges are.
+    pub(crate) fn medium(&self) -> Medium {
+        self.medium
+    }
+
     /// Radius of the clouds [m].
     pub(crate) fn radius(&self) -> f64 {
         self.cloud.radius
@@ -86,7 +106,7 @@ impl FarLevel {
     pub(crate) fn set_radius(&mut self, radius: f64) {
         let mesh = self.solver.mesh();
         let scale = radius / (RADIUS_OF_CELL * mesh.largest_cell());
-        self.walls = Walls::new(mesh, scale);
+        self.walls = Walls::new(mesh, &self.outline, scale);
         self.ghosts = Ghosts::new(self.fits.smoothing_over_size(), scale);
         self.cloud.radius = radius;
     }
@@ -133,8 +153,8 @@ impl FarLevel {
 
     /// Refuses a net charge that no face of its part of the mesh takes, after [`Self::locate`].
     pub(crate) fn check_net_charge(&self, charges: &[f64]) -> Result<(), FieldError> {
-        let background = self.neutralising_background;
-        check_net_charge(self.mesh(), self.permittivity, background, charges, &self.cells)
+        let Medium { permittivity, neutralising_background } = self.medium;
+        check_net_charge(self.mesh(), permittivity, neutralising_background, charges, &self.cells)
     }
 
     fn around(&self, margin: f64, face: Boundary) -> Domain {
@@ -206,8 +226,8 @@ impl FarLevel {
         }));
         let question = FarQuestion {
             cloud: SourceCloud { radius_m: self.cloud.radius, shape: self.cloud.shape },
-            permittivity_f_m: self.permittivity.absolute(),
-            neutralising_background: u64::from(self.neutralising_background),
+            permittivity_f_m: self.medium.permittivity.absolute(),
+            neutralising_background: u64::from(self.medium.neutralising_background),
             time_s,
             tolerance: 0.0,
         };

@@ -6,6 +6,7 @@
 mod boundary;
 mod box_mesh;
 mod connected;
+mod copies;
 mod density;
 mod level;
 mod local_fit;
@@ -20,7 +21,7 @@ mod walls;
 pub use boundary::MeshPatch;
 pub(crate) use connected::check_net_charge;
 pub use density::SmoothDensity;
-pub(crate) use level::FarLevel;
+pub(crate) use level::{FarLevel, Medium};
 pub use mesh::{BoundaryFace, CellFace, Condition, FarMesh, FarMeshParts, Neighbour};
 pub use solver::{FarSolver, FarState};
 

@@ -13,6 +13,7 @@
 use super::buckets::Buckets;
 use super::mirror::{RADIUS_AT_RIM_OF_CELL, RADIUS_OF_CELL};
 use super::screen::{HiddenAt, Place, Screen};
+use crate::levels::far::copies::shifts;
 use crate::values::FieldAt;
 use amberfield_core::{Axis, Domain};
 use amberfield_laws::kaiser_bessel_cloud::Cloud;
@@ -147,7 +148,7 @@ impl Ghosts {
     /// Takes new ghosts in the place of earlier ones, with their copies that are felt inside the domain.
     pub(crate) fn replace(&mut self, ghosts: impl Iterator<Item = Ghost>, domain: &Domain) {
         self.ghosts.clear();
-        let shifts = shifts(domain);
+        let shifts = shifts(domain, Axis::ALL.map(|axis| domain.is_periodic(axis)));
         let mut reach: f64 = 0.0;
         for ghost in ghosts {
             let radius = ghost.radius * self.shares.of(&ghost).widened.max(1.0);
@@ -183,22 +184,6 @@ impl Ghosts {
     pub(crate) fn memory_bytes(&self) -> usize {
         self.ghosts.capacity() * (size_of::<Ghost>() + 4)
     }
-}
-
-/// Shifts to the copies of a place in the periods beside it, none included [m].
-fn shifts(domain: &Domain) -> Vec<Vector3<f64>> {
-    let steps = |axis: Axis| if domain.is_periodic(axis) { -1..=1 } else { 0..=0 };
-    let extent = domain.extent();
-    let mut shifts = Vec::new();
-    for x in steps(Axis::X) {
-        for y in steps(Axis::Y) {
-            for z in steps(Axis::Z) {
-                let step = Vector3::new(f64::from(x), f64::from(y), f64::from(z));
-                shifts.push(step.component_mul(&extent));
-            }
-        }
-    }
-    shifts
 }
 
 /// Share χ(t) of a ghost's potential that pairs carry, t = R/R_g, with its first two derivatives.

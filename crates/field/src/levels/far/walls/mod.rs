@@ -48,6 +48,19 @@ const SEEN_FROM: f64 = 0.1;
 /// Largest factor of the depth up to which walls mirror charges.
 pub(super) const DEEPEST: f64 = 1.4;
 
+/// Edges and surroundings of a mesh's boundary faces: what walls know of the mesh whatever their depth.
+#[derive(Debug)]
+pub(super) struct Outline {
+    edges: Vec<Edge>,
+    around: Vec<Surroundings>,
+}
+
+impl Outline {
+    pub(super) fn new(mesh: &FarMesh) -> Self {
+        Self { edges: edges(mesh), around: surroundings(mesh) }
+    }
+}
+
 /// The boundary of a mesh, as walls are made of it.
 #[derive(Clone, Copy)]
 struct Surface<'a> {
@@ -104,14 +117,14 @@ pub(super) struct Walls {
 
 impl Walls {
     /// Walls of a mesh, with the radii of ghosts scaled.
-    pub(super) fn new(mesh: &FarMesh, ghost_scale: f64) -> Self {
+    pub(super) fn new(mesh: &FarMesh, outline: &Outline, ghost_scale: f64) -> Self {
         let boundary = mesh.boundary();
-        let (edges, around) = (edges(mesh), surroundings(mesh));
+        let Outline { edges, around } = outline;
         let largest = around.iter().map(|face| face.cell).fold(0.0, f64::max);
         let reach = ghost_scale * RADIUS_AT_RIM_OF_CELL * largest;
-        let surface = Surface { mesh, edges: &edges, around: &around, ghost_scale, reach };
+        let surface = Surface { mesh, edges, around, ghost_scale, reach };
         let mut at: Vec<_> = boundary.iter().map(|face| mesh.place_of_condition(face)).collect();
-        let beside = neighbours(mesh, &edges);
+        let beside = neighbours(mesh, edges);
         let mut walls = Vec::new();
         for faces in connected(&beside) {
             let shape = match FlatWall::new(&surface, &faces) {
@@ -141,7 +154,7 @@ impl Walls {
         Self {
             walls,
             places: at.iter().zip(0..).map(place).collect(),
-            rims: Rims::new(mesh, &edges, None, reach),
+            rims: Rims::new(mesh, edges, None, reach),
             deepest: ground.iter().map(|ground| ground.depth).fold(0.0, f64::max),
             ground,
             signs: faces.map(|face| surface.sign(face)).collect(),
