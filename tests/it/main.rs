@@ -13,3 +13,4 @@ mod openfoam;
 mod run;
 mod scenes;
 mod study;
+mod what_must_not_matter;

@@ -3,6 +3,7 @@
 #![expect(clippy::unwrap_used, reason = "helpers of tests fail as tests do")]
 
 use crate::Workbench;
+use amberfield_core::Vector3;
 use amberfield_coupling::foam_command;
 use std::fmt::Write as _;
 
@@ -263,27 +264,31 @@ pub fn cylinder(radius_mm: f64, length_mm: f64, cells: [usize; 2], layers: usize
 /// # Panics
 /// Without a mesh.
 pub fn perturb(bench: &Workbench, edge_mm: f64, cells: usize, share: f64) {
-    let text = bench.read("foam/constant/polyMesh/points");
     let (edge, most) = (1e-3 * edge_mm, 1e-3 * share * edge_mm / cells as f64);
     let mut random = Random(1);
-    let lines = text.lines().map(|line| {
-        let numbers: Vec<f64> =
-            line.trim_matches(['(', ')']).split(' ').filter_map(|word| word.parse().ok()).collect();
-        if numbers.len() != 3 {
-            return line.to_owned();
-        }
-        let moved: Vec<String> = numbers
-            .iter()
-            .map(|x| {
-                let step = most * (2.0 * random.number() - 1.0);
-                let at_end = x.abs() < 1e-9 || (x - edge).abs() < 1e-9;
-                (if at_end { *x } else { x + step }).to_string()
-            })
-            .collect();
-        format!("({})", moved.join(" "))
+    move_points(bench, |point| {
+        point.map(|x| {
+            let step = most * (2.0 * random.number() - 1.0);
+            let at_end = x.abs() < 1e-9 || (x - edge).abs() < 1e-9;
+            if at_end { x } else { x + step }
+        })
     });
-    let lines: Vec<String> = lines.collect();
-    bench.write("foam/constant/polyMesh/points", lines.join("\n"));
+}
+
+/// Moves the points of a mesh in text form; `to` says where to [m].
+///
+/// # Panics
+/// Without a mesh.
+pub fn move_points(bench: &Workbench, mut to: impl FnMut(Vector3<f64>) -> Vector3<f64>) {
+    const POINTS: &str = "foam/constant/polyMesh/points";
+    let text = bench.read(POINTS);
+    let lines = text.lines().map(|line| {
+        let numbers = line.trim_matches(['(', ')']).split(' ').filter_map(|word| word.parse().ok());
+        let [x, y, z] = numbers.collect::<Vec<f64>>()[..] else { return line.to_owned() };
+        let moved = to(Vector3::new(x, y, z));
+        format!("({} {} {})", moved.x, moved.y, moved.z)
+    });
+    bench.write(POINTS, lines.collect::<Vec<_>>().join("\n"));
 }
 
 /// Makes a mesh of tetrahedra, six for each cell of a cube with moved corners; with `dual`, a mesh of the

@@ -8,6 +8,7 @@ mod function_object;
 mod gas;
 mod gas_runs;
 mod meshes;
+mod parts;
 mod patches;
 mod sharing;
 mod thin_walls;

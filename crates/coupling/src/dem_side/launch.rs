@@ -1,19 +1,19 @@
 //! Starting the field process, watching it, ending it.
 
+use super::parts::provide_parts;
 use super::settings::SolverSettings;
+use super::tools::{foam_command, last_words, run_tool};
 use crate::CouplingError;
-use std::ffi::{OsStr, OsString};
+use std::ffi::OsString;
 use std::os::unix::process::CommandExt as _;
 use std::path::{Path, PathBuf};
-use std::process::{Child, Command, ExitStatus, Stdio};
+use std::process::{Child, ExitStatus, Stdio};
 use std::time::{Duration, Instant};
 
 /// Names of the field solver, and of the one that computes the flow of a gas too.
 const PROGRAMS: [&str; 2] = ["electricFieldFoam", "amberPimpleFoam"];
 /// Variable with the path of one of the two programs.
 const VARIABLE: &str = "AMBERFIELD_SOLVER";
-/// Variable that OpenFOAM's libraries need before they start, and its value for Debian's package.
-const PROJECT: (&str, &str) = ("WM_PROJECT_DIR", "/usr/share/openfoam");
 /// Variable in which a function object inside another solver finds the run's name.
 pub(super) const RUN: &str = "AMBERFIELD_RUN";
 /// Variable with the folders of libraries, and the library with our function object.
@@ -41,10 +41,13 @@ impl Process {
         provide_mesh(&case).map_err(failed)?;
         let mut command = foam_command(&program);
         if settings.ranks > 1 {
-            decompose(&case, settings.ranks).map_err(failed)?;
+            let dictionary = provide_parts(&case, settings.ranks).map_err(failed)?;
             command = foam_command("mpirun");
             command.args(["--oversubscribe", "--allow-run-as-root", "-np"]).arg(settings.ranks.to_string());
             command.arg(&program).arg("-parallel");
+            if let Some(dictionary) = dictionary {
+                command.arg("-decomposeParDict").arg(dictionary);
+            }
         }
         command.arg("-case").arg(&case).stdin(Stdio::null());
         match settings.application {
@@ -99,16 +102,6 @@ impl Drop for Process {
     }
 }
 
-/// Text of OpenFOAM's fatal error: the lines before those that say where.
-fn last_words(log: &str) -> String {
-    let lines = log.lines().map(str::trim).skip_while(|line| !line.contains("FOAM FATAL")).skip(1);
-    let lines = lines
-        .map(|line| line.trim_start_matches(|c: char| c == '[' || c == ']' || c.is_ascii_digit()).trim());
-    let words: Vec<&str> =
-        lines.skip_while(|line| line.is_empty()).take_while(|line| !line.is_empty()).collect();
-    words.join(" ")
-}
-
 /// Name of the solver's program, with or without the flow of a gas.
 #[must_use]
 pub fn program_name(flow: bool) -> &'static str {
@@ -147,16 +140,6 @@ fn library_path() -> OsString {
     std::env::join_paths(own.into_iter().chain(std::env::split_paths(&known))).unwrap_or(known)
 }
 
-/// A program linked to OpenFOAM, with what its libraries want to know.
-#[must_use]
-pub fn foam_command(program: impl AsRef<OsStr>) -> Command {
-    let mut command = Command::new(program);
-    if std::env::var_os(PROJECT.0).is_none() {
-        command.env(PROJECT.0, PROJECT.1);
-    }
-    command
-}
-
 /// Makes the mesh of a case that has only a recipe for it, `system/blockMeshDict`.
 ///
 /// # Errors
@@ -176,43 +159,5 @@ fn provide_mesh(case: &Path) -> Result<(), String> {
             case.display()
         ));
     }
-    tool("blockMesh", case, &[])
-}
-
-/// Cuts a case into as many parts as there are ranks, along x unless it says otherwise, anew where its mesh
-/// or potential is newer than the parts.
-fn decompose(case: &Path, ranks: u32) -> Result<(), String> {
-    let time_of = |path: PathBuf| path.metadata().and_then(|data| data.modified()).ok();
-    let part = |rank: u32| time_of(case.join(format!("processor{rank}/constant/polyMesh/points")));
-    let newest = ["constant/polyMesh/points", "0/phiE", "0/U", "0/p", "system/decomposeParDict"];
-    let newest = newest.iter().filter_map(|path| time_of(case.join(path))).max();
-    if part(ranks).is_none() && (0..ranks).all(|rank| part(rank) > newest) {
-        return Ok(());
-    }
-    let dictionary = case.join("system/decomposeParDict");
-    if !dictionary.is_file() {
-        let text = format!(
-            "FoamFile {{ version 2.0; format ascii; class dictionary; object decomposeParDict; }}\n\
-             numberOfSubdomains {ranks};\nmethod hierarchical;\n\
-             hierarchicalCoeffs {{ n ({ranks} 1 1); delta 0.001; order xyz; }}\n"
-        );
-        std::fs::write(&dictionary, text)
-            .map_err(|error| format!("cannot write {}: {error}", dictionary.display()))?;
-    }
-    tool("decomposePar", case, &["-force"])
-}
-
-/// Runs one of OpenFOAM's own programs on a case.
-fn tool(name: &str, case: &Path, options: &[&str]) -> Result<(), String> {
-    let mut command = foam_command(name);
-    command.args(options).arg("-case").arg(case).stdin(Stdio::null());
-    let output = command.output().map_err(|error| format!("{name}: {error}"))?;
-    if output.status.success() {
-        return Ok(());
-    }
-    Err(format!(
-        "{name} failed ({}): {}",
-        output.status,
-        last_words(&String::from_utf8_lossy(&output.stderr))
-    ))
+    run_tool("blockMesh", case, &[])
 }

@@ -1,0 +1,73 @@
+//! Lines of a list: a change each, and what is demanded after it.
+
+#![expect(clippy::print_stdout, reason = "how much the fields differ, for whoever asks with --nocapture")]
+
+use super::scene::{Field, Scene, fields};
+
+/// RMS difference over the field's scale of sums in another order: near pairs and fits in cells are summed in
+/// single precision (3e-6 seen), and the linear solver stops elsewhere at its residual of 1e-10.
+pub(super) const SAME: f64 = 1e-5;
+/// RMS difference over the field's scale where each rank has a grid of its own for the density of the clouds,
+/// which is good to 1e-4 (8e-6 seen).
+const OTHER_DENSITY: f64 = 5e-5;
+/// Ratio of the true error to the stated one that is allowed.
+const OF_STATED: f64 = 2.0;
+
+/// Agreement that is demanded of the fields before and after a change.
+#[derive(Clone, Copy, Debug)]
+pub(super) enum Demand {
+    /// The same sums, in another order.
+    Same,
+    /// The same sums, by other processes.
+    ByOtherRanks,
+    /// The same field by other sums, as other cells or parameters make them: to the errors that both state.
+    /// Those are RMS over all grains, and may be at the grains that both scenes have.
+    WithinStated,
+}
+
+/// Change that physics does not see.
+pub(super) struct Line<S> {
+    pub(super) name: &'static str,
+    pub(super) demand: Demand,
+    pub(super) change: fn(&mut S),
+}
+
+/// Asserts that each change leaves the field of each set of grains as it is; names all that do not.
+pub(super) fn assert_that_nothing_matters<S: Scene>(base: &S, lines: &[Line<S>]) {
+    let seen = what_matters(base, lines);
+    assert!(seen.is_empty(), "{}", seen.join("\n"));
+}
+
+/// Changes after which the field of a set of grains is not what is demanded, with how far it is off.
+pub(super) fn what_matters<S: Scene>(base: &S, lines: &[Line<S>]) -> Vec<String> {
+    let before = fields(base);
+    let mut seen = Vec::new();
+    for Line { name, demand, change } in lines {
+        let mut scene = base.clone();
+        change(&mut scene);
+        for (set, (known, found)) in before.iter().zip(fields(&scene)).enumerate() {
+            let difference = difference(known, &found);
+            let bound = match demand {
+                Demand::Same => SAME,
+                Demand::ByOtherRanks => OTHER_DENSITY,
+                Demand::WithinStated => {
+                    let more = found.e.len() as f64 / known.e.len() as f64;
+                    let theirs = found.stated * found.scale / known.scale * more.sqrt();
+                    OF_STATED * known.stated.hypot(theirs)
+                }
+            };
+            println!("{name}, set {set}: {difference:.1e} of {bound:.1e}");
+            if difference.is_nan() || difference > bound {
+                seen.push(format!("{name}, set {set}: {difference:.2e} is above {bound:.2e}"));
+            }
+        }
+    }
+    seen
+}
+
+/// RMS difference of E at the grains of `known`, over its scale.
+pub(super) fn difference(known: &Field, found: &Field) -> f64 {
+    let of = |name: usize| found.e.iter().find(|(other, _)| *other == name).expect("no grain is lost").1;
+    let square: f64 = known.e.iter().map(|(name, e)| (of(*name) - e).norm_squared()).sum();
+    (square / known.e.len() as f64).sqrt() / known.scale
+}

@@ -1,0 +1,13 @@
+//! Changes of a scene that physics does not see, after which the same answer is demanded.
+//!
+//! One line of a list is one change: another frame, other units, another order, a wall far away. Whoever adds
+//! a feature adds its line. [`field`] has the lines of the electric field over a mesh, by the stand-in for a
+//! field solver, which takes no other process; [`field_over_openfoam`] has those that OpenFOAM's files and
+//! processes make; [`flange`] has OpenFOAM's own example. Contacts, charges and gas get a file each.
+
+mod boxes;
+mod field;
+mod field_over_openfoam;
+mod flange;
+mod lines;
+mod scene;
