@@ -51,7 +51,7 @@ impl Scene for BoxScene {
 
 /// Cells in another frame.
 fn in_frame(mut parts: FarMeshParts, frame: &Frame) -> FarMeshParts {
-    let Frame { turn, scale, .. } = *frame;
+    let Frame { turn, scale, sign, .. } = *frame;
     let moved = |vectors: &mut Vec<Vector3<f64>>| vectors.iter_mut().for_each(|x| *x = frame.place(x));
     parts.domain = domain_in_frame(&parts.domain, frame);
     moved(&mut parts.centres);
@@ -69,9 +69,10 @@ fn in_frame(mut parts: FarMeshParts, frame: &Frame) -> FarMeshParts {
         face.normal = turn * face.normal;
         face.area *= scale * scale;
         face.spread = scale * scale * turn * face.spread * turn.transpose();
-        if let Condition::Potential(volts) = &mut face.condition {
-            *volts *= scale;
-        }
+        face.condition = match face.condition {
+            Condition::Potential(volts) => Condition::Potential(sign * scale * volts),
+            Condition::Slope(slope) => Condition::Slope(sign * slope),
+        };
         if turn.determinant() < 0.0 {
             parts.corners[ends[0] as usize..ends[1] as usize].reverse();
         }

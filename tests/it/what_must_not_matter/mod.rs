@@ -9,5 +9,6 @@ mod boxes;
 mod field;
 mod field_over_openfoam;
 mod flange;
+mod foam_boxes;
 mod lines;
 mod scene;

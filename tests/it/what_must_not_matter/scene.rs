@@ -40,19 +40,24 @@ pub(super) fn cloud(count: usize, low: [f64; 3], high: [f64; 3], apart: f64, see
     grains
 }
 
-/// Frame in which a scene is seen: x ↦ scale·turn·x + shift. Charges go with the square of the scale and
-/// potentials with the scale, so that E is turned and else the same.
+/// Frame in which a scene is seen: x ↦ scale·turn·x + shift. Charges go with the square of the scale, with the
+/// medium and the sign, potentials with the scale and the sign, so that E is turned, has the sign, and is else
+/// the same.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Frame {
     pub(super) turn: Matrix3<f64>,
     /// Shift [m].
     pub(super) shift: Vector3<f64>,
     pub(super) scale: f64,
+    /// Sign of all charges and potentials.
+    pub(super) sign: f64,
+    /// Relative permittivity.
+    pub(super) medium: f64,
 }
 
 impl Frame {
     pub(super) fn identity() -> Self {
-        Self { turn: Matrix3::identity(), shift: Vector3::zeros(), scale: 1.0 }
+        Self { turn: Matrix3::identity(), shift: Vector3::zeros(), scale: 1.0, sign: 1.0, medium: 1.0 }
     }
 
     pub(super) fn shifted(shift: [f64; 3]) -> Self {
@@ -76,6 +81,16 @@ impl Frame {
         Self { turn: Matrix3::from_diagonal(&Vector3::new(-1.0, 1.0, 1.0)), ..Self::identity() }
     }
 
+    /// Seen with the other sign of charge.
+    pub(super) fn of_other_sign() -> Self {
+        Self { sign: -1.0, ..Self::identity() }
+    }
+
+    /// In a medium of a relative permittivity.
+    pub(super) fn in_medium(medium: f64) -> Self {
+        Self { medium, ..Self::identity() }
+    }
+
     pub(super) fn place(&self, place: &Vector3<f64>) -> Vector3<f64> {
         self.scale * (self.turn * place) + self.shift
     }
@@ -90,6 +105,14 @@ pub(super) struct Content {
     pub(super) frame: Frame,
     /// Tolerance of the field.
     pub(super) tolerance: f64,
+    /// Whether the field was computed for other grains before.
+    pub(super) has_history: bool,
+}
+
+impl Content {
+    pub(super) fn new(sets: Vec<Vec<Grain>>) -> Self {
+        Self { sets, frame: Frame::identity(), tolerance: 1e-2, has_history: false }
+    }
 }
 
 /// Scene with cells.
@@ -143,21 +166,33 @@ pub(super) fn fields(scene: &impl Scene) -> Vec<Field> {
 fn field(solver: &Solver, content: &Content, grains: &[Grain]) -> Field {
     let Content { frame, tolerance, .. } = content;
     let positions: Vec<_> = grains.iter().map(|grain| frame.place(&grain.place)).collect();
-    let charges: Vec<f64> = grains.iter().map(|grain| grain.charge * frame.scale * frame.scale).collect();
-    let settings = FieldSettings { tolerance: *tolerance, tuning: Tuning::Model, ..FieldSettings::default() };
+    let factor = frame.scale * frame.scale * frame.sign * frame.medium;
+    let charges: Vec<f64> = grains.iter().map(|grain| grain.charge * factor).collect();
+    let permittivity = Permittivity::from_relative(frame.medium);
+    let settings = FieldSettings {
+        tolerance: *tolerance,
+        tuning: Tuning::Model,
+        permittivity,
+        ..FieldSettings::default()
+    };
     let mut field = ElectricField::over_mesh(Box::new(solver.clone()), &settings, &positions, &charges)
         .expect("a good scene");
     let mut values = FieldValues::default();
+    if content.has_history {
+        let others: Vec<_> = positions.iter().rev().copied().collect();
+        let halved: Vec<f64> = charges.iter().map(|charge| -0.5 * charge).collect();
+        field.evaluate(&others, &halved, Wanted::default(), &mut values).expect("finite values");
+    }
     field.evaluate(&positions, &charges, Wanted::default(), &mut values).expect("finite values");
     let stated = field.error_measured().expect("grains are charged").relative_rms;
 
     let count = grains.len() as f64;
     let volume: f64 = solver.mesh.volumes().iter().sum();
     let charge = (charges.iter().map(|q| q * q).sum::<f64>() / count).sqrt();
-    let spacing = Permittivity::VACUUM.coulomb() * charge * (count / volume).powf(2.0 / 3.0);
+    let spacing = permittivity.coulomb() * charge * (count / volume).powf(2.0 / 3.0);
     let square: f64 = values.e.iter().map(|e| e.norm_squared()).sum();
     let scale = (square / count).sqrt().max(spacing);
-    let back = frame.turn.transpose();
+    let back = frame.sign * frame.turn.transpose();
     Field {
         e: grains.iter().zip(&values.e).map(|(grain, e)| (grain.name, back * e)).collect(),
         stated,
