@@ -37,7 +37,7 @@ int main(int argc, char *argv[])
     autoPtr<electricField> field;
     if (IOobject("phiE", runTime.timeName(), mesh).typeHeaderOk<volScalarField>(true))
     {
-        field.reset(new electricField(mesh, demProcess));
+        field.reset(new electricField(mesh, demProcess, true));
     }
     else
     {
@@ -48,7 +48,7 @@ int main(int argc, char *argv[])
             dimensionedScalar(dimless, Zero),
             zeroGradientFvPatchScalarField::typeName
         );
-        demProcess.sendMesh(meshDescription(noPotential, demProcess));
+        demProcess.sendMesh(meshDescription(noPotential, demProcess, true));
     }
     gasFlow gas(runTime, mesh, demProcess);
 

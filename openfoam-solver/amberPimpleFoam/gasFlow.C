@@ -4,11 +4,12 @@
 \*---------------------------------------------------------------------------*/
 
 #include "gasFlow.H"
-#include "constrainHbyA.H"
 #include "constrainPressure.H"
 #include "findRefCell.H"
 #include "fvc.H"
 #include "fvm.H"
+#include "gaussLaplacianScheme.H"
+#include "linear.H"
 #include "zeroGradientFvPatchFields.H"
 
 #include <algorithm>
@@ -79,6 +80,20 @@ void visitWritten(Foam::fvMesh& mesh, const visitor& visit)
     }
 }
 
+//- Mean of two cells at their face, each weighted by its own distance from it:
+//  that of things in series, one behind the other
+template<class Type>
+Foam::tmp<Foam::GeometricField<Type, Foam::fvsPatchField, Foam::surfaceMesh>> inSeries
+(
+    const Foam::GeometricField<Type, Foam::fvPatchField, Foam::volMesh>& field
+)
+{
+    return Foam::surfaceInterpolationScheme<Type>::interpolate
+    (
+        field, 1 - field.mesh().surfaceInterpolation::weights()
+    );
+}
+
 } // End anonymous namespace
 
 
@@ -104,15 +119,25 @@ Foam::gasFlow::gasFlow(Time& time, fvMesh& mesh, fieldSide& demProcess)
     (
         made("drag", mesh, false),
         mesh,
-        dimensionedScalar("drag", dimDrag, Zero)
+        dimensionedScalar("drag", dimDrag, Zero),
+        zeroGradientFvPatchScalarField::typeName
     ),
     source_
     (
         made("source", mesh, false),
         mesh,
-        dimensionedVector("source", dimAcceleration, Zero)
+        dimensionedVector("source", dimAcceleration, Zero),
+        zeroGradientFvPatchVectorField::typeName
     ),
     pimple_(mesh),
+    slope_(p_, U_),
+    nNonOrthogonalCorrectors_
+    (
+        pimple_.dict().lookupOrDefault<label>
+        (
+            "nNonOrthogonalCorrectors", slope_.isOblique() ? 1 : 0
+        )
+    ),
     pRefCell_(0),
     pRefValue_(0),
     begun_(false),
@@ -140,6 +165,19 @@ void Foam::gasFlow::checkGas() const
 }
 
 
+void Foam::gasFlow::takeGrains(scalarField& voidFraction, const scalar density)
+{
+    demProcess_.grains
+    (
+        voidFraction, drag_.primitiveFieldRef(), source_.primitiveFieldRef()
+    );
+    drag_.primitiveFieldRef() /= density;
+    source_.primitiveFieldRef() /= density;
+    drag_.correctBoundaryConditions();
+    source_.correctBoundaryConditions();
+}
+
+
 void Foam::gasFlow::answer()
 {
     const AmberfieldFlowQuestion question = demProcess_.request().flow;
@@ -149,19 +187,14 @@ void Foam::gasFlow::answer()
     checkGas();
 
     scalarField voidFraction(mesh_.nCells());
-    demProcess_.grains
-    (
-        voidFraction, drag_.primitiveFieldRef(), source_.primitiveFieldRef()
-    );
-    drag_.primitiveFieldRef() /= question.density_kg_m3;
-    source_.primitiveFieldRef() /= question.density_kg_m3;
+    takeGrains(voidFraction, question.density_kg_m3);
 
     if (!begun_)
     {
         // Grains that were there before: no gas flows because of them
         alpha_.primitiveFieldRef() = voidFraction;
         alpha_.correctBoundaryConditions();
-        alphaPhi_ = fvc::interpolate(alpha_)*phi_;
+        alphaPhi_ = linearInterpolate(alpha_)*phi_;
         begun_ = true;
     }
     if (question.interval_s > 0)
@@ -178,6 +211,7 @@ void Foam::gasFlow::answer()
             ++time_;
             // Kept before alpha changes
             alpha_.oldTime();
+            alphaPhi_.oldTime();
             const scalar share = scalar(i)/steps;
             alpha_.primitiveFieldRef() = (1 - share)*before + share*voidFraction;
             alpha_.correctBoundaryConditions();
@@ -211,11 +245,11 @@ void Foam::gasFlow::step(const bool modelB)
         {
             if (modelB)
             {
-                solve(UEqn == -fvc::grad(p_));
+                solve(UEqn == -slope_());
             }
             else
             {
-                solve(UEqn == -alpha_*fvc::grad(p_));
+                solve(UEqn == -alpha_*slope_());
             }
         }
         while (pimple_.correct())
@@ -231,43 +265,100 @@ void Foam::gasFlow::step(const bool modelB)
 }
 
 
+Foam::tmp<Foam::surfaceScalarField> Foam::gasFlow::kept() const
+{
+    // The flux that was there before goes on, not the mean of the cells' velocities
+    const dimensionedScalar perTime("perTime", dimless/dimTime, 1/time_.deltaTValue());
+    tmp<surfaceScalarField> kept
+    (
+        perTime
+       *(
+            alphaPhi_.oldTime()
+          - (
+                linearInterpolate(volVectorField(alpha_.oldTime()*U_.oldTime()))
+              & mesh_.Sf()
+            )
+        )
+    );
+    surfaceScalarField::Boundary& patches = kept.ref().boundaryFieldRef();
+    forAll(patches, patchi)
+    {
+        if (!patches[patchi].coupled())
+        {
+            patches[patchi] = Zero;
+        }
+    }
+    return kept;
+}
+
+
 void Foam::gasFlow::correctPressure(const fvVectorMatrix& UEqn, const bool modelB)
 {
-    const surfaceScalarField alphaf("alphaf", fvc::interpolate(alpha_));
-    const volScalarField rAU("rAU", 1/UEqn.A());
-    // What the pressure's gradient does to the velocity, at cells and faces
-    volScalarField rAUp("rAUp", rAU);
-    if (!modelB)
-    {
-        rAUp *= alpha_;
-    }
-    const surfaceScalarField rAUpf("rAUpf", fvc::interpolate(rAUp));
+    const dimensionedScalar one("one", dimless, 1);
+    // Share of the pressure's gradient that acts on the gas, at cells and faces
+    const volScalarField acts("acts", modelB ? one + 0*alpha_ : 1*alpha_);
+    const surfaceScalarField alphaf("alphaf", linearInterpolate(alpha_));
+    const surfaceScalarField actsf("actsf", linearInterpolate(acts));
 
-    volVectorField HbyA(constrainHbyA(rAU*UEqn.H(), U_, p_));
-    const surfaceScalarField phiHbyA
+    // What drag takes off p along a superficial flux: -grad(p) = R alpha U + ...
+    const volScalarField resistance("resistance", drag_/(acts*alpha_));
+    const surfaceScalarField Kf("Kf", actsf*alphaf*inSeries(resistance));
+    const surfaceScalarField D
+    (
+        "D", linearInterpolate(volScalarField(UEqn.A() - drag_)) + Kf
+    );
+    const surfaceScalarField rAUpf("rAUpf", actsf/D);
+
+    // Without the grains: their drag and source are at the face already
+    const volVectorField H(UEqn.H() - source_);
+    surfaceScalarField phiHbyA
     (
         "phiHbyA",
-        fvc::flux(HbyA) + fvc::interpolate(alpha_*rAU)*fvc::ddtCorr(U_, phi_)
+        (
+            (linearInterpolate(H) & mesh_.Sf()) + kept()
+          + actsf*(inSeries(volVectorField(source_/acts)) & mesh_.Sf())
+        )/D
     );
+    forAll(U_.boundaryField(), patchi)
+    {
+        const fvPatchVectorField& pU = U_.boundaryField()[patchi];
+        const bool isMirror = polyPatch::constraintType(pU.patch().type());
+        if (!pU.coupled() && (isMirror || !pU.assignable()))
+        {
+            phiHbyA.boundaryFieldRef()[patchi] = pU & mesh_.Sf().boundaryField()[patchi];
+        }
+    }
     constrainPressure(p_, U_, phiHbyA, rAUpf);
 
-    while (pimple_.correctNonOrthogonal())
+    const surfaceScalarField conducts("conducts", alphaf*rAUpf);
+    for (label i = 0; i <= nNonOrthogonalCorrectors_; ++i)
     {
+        const surfaceScalarField oblique(conducts*slope_.oblique());
         fvScalarMatrix pEqn
         (
-            fvm::laplacian(alphaf*rAUpf, p_) == fvc::ddt(alpha_) + fvc::div(alphaf*phiHbyA)
+            fv::gaussLaplacianScheme<scalar, scalar>::fvmLaplacianUncorrected
+            (
+                conducts*mesh_.magSf(), mesh_.nonOrthDeltaCoeffs(), p_
+            )
+         ==
+            fvc::ddt(alpha_) + fvc::div(alphaf*phiHbyA) - fvc::div(oblique)
         );
         pEqn.setReference(pRefCell_, pRefValue_);
         iterations_ += pEqn.solve(mesh_.solver(p_.select(pimple_.finalInnerIter()))).nIterations();
 
-        if (pimple_.finalNonOrthogonalIter())
+        if (i == nNonOrthogonalCorrectors_)
         {
-            phi_ = phiHbyA - pEqn.flux()/alphaf;
+            alphaPhi_ = alphaf*phiHbyA - pEqn.flux() - oblique;
+        }
+        else
+        {
+            slope_.update(resistance, acts, drag_, source_, phi_);
         }
     }
+    phi_ = alphaPhi_/alphaf;
     p_.relax();
-    alphaPhi_ = alphaf*phi_;
-    U_ = HbyA - rAUp*fvc::grad(p_);
+    slope_.update(resistance, acts, drag_, source_, phi_);
+    U_ = (UEqn.H() - acts*slope_())/UEqn.A();
     U_.correctBoundaryConditions();
 }
 
@@ -290,7 +381,7 @@ void Foam::gasFlow::answer
 )
 {
     const AmberfieldFlowQuestion& question = demProcess_.request().flow;
-    const vectorField gradient(density*fvc::grad(p_)().primitiveField());
+    const vectorField gradient(density*slope_().primitiveField());
     vectorField viscous;
     vectorField vorticity;
     if (question.viscous_force == 1)
@@ -331,6 +422,7 @@ void Foam::gasFlow::visitState(const std::function<void(scalar*, label)>& visit)
     visitWritten<volSymmTensorField>(mesh_, visit);
     visitField(phi_, visit);
     visitField(alphaPhi_, visit);
+    visitField(slope_.values(), visit);
 }
 
 

@@ -39,7 +39,7 @@ Foam::IOobject own(const char* name, const Foam::fvMesh& mesh)
 } // End anonymous namespace
 
 
-Foam::electricField::electricField(const fvMesh& mesh, fieldSide& demProcess)
+Foam::electricField::electricField(const fvMesh& mesh, fieldSide& demProcess, const bool withGas)
 :
     mesh_(mesh),
     phiE_
@@ -55,7 +55,7 @@ Foam::electricField::electricField(const fvMesh& mesh, fieldSide& demProcess)
         ),
         mesh
     ),
-    description_(phiE_, demProcess),
+    description_(phiE_, demProcess, withGas),
     parts_(mesh, true),
     floating_(floating(parts_, parts_.nRegions(), phiE_)),
     references_(references(parts_, floating_)),

@@ -110,7 +110,30 @@ Foam::wordList Foam::meshDescription::farTypes(const volScalarField& V)
 }
 
 
-Foam::meshDescription::meshDescription(const volScalarField& V, fieldSide& demProcess)
+void Foam::meshDescription::describeCorners(const fvMesh& mesh)
+{
+    points_ = mesh.points();
+    firstFaceCorner_.assign(1, 0);
+    forAll(mesh.cells(), celli)
+    {
+        for (const label facei : mesh.cells()[celli])
+        {
+            for (const label corner : mesh.faces()[facei])
+            {
+                faceCorners_.push_back(uint32_t(corner));
+            }
+            firstFaceCorner_.push_back(uint64_t(faceCorners_.size()));
+        }
+    }
+}
+
+
+Foam::meshDescription::meshDescription
+(
+    const volScalarField& V,
+    fieldSide& demProcess,
+    const bool withCorners
+)
 :
     view_(),
     firstCorner_(1, 0),
@@ -268,4 +291,12 @@ Foam::meshDescription::meshDescription(const volScalarField& V, fieldSide& demPr
     view_.first_corner = firstCorner_.data();
     view_.corner_points = reinterpret_cast<const double*>(corners_.cdata());
     view_.patches = patchLines_.c_str();
+    if (withCorners)
+    {
+        describeCorners(mesh);
+    }
+    view_.point_count = uint64_t(points_.size());
+    view_.points = reinterpret_cast<const double*>(points_.cdata());
+    view_.first_face_corner = firstFaceCorner_.data();
+    view_.face_corners = faceCorners_.data();
 }

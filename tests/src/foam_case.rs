@@ -120,6 +120,18 @@ pub fn foam_program(bench: &Workbench, program: &str, options: &[&str]) {
     assert!(output.status.success(), "{program}: {}", String::from_utf8_lossy(&output.stderr));
 }
 
+/// Runs a program of OpenFOAM on the case that changes its mesh and would change its fields, which stay as
+/// they are.
+///
+/// # Panics
+/// When it fails.
+pub fn foam_command_on(bench: &Workbench, program: &str, options: &[&str]) {
+    std::fs::rename(bench.path("foam/0"), bench.path("fields")).unwrap();
+    foam_program(bench, program, options);
+    let _ = std::fs::remove_dir_all(bench.path("foam/0"));
+    std::fs::rename(bench.path("fields"), bench.path("foam/0")).unwrap();
+}
+
 /// Recipe of a cube with an edge \[mm\] and one patch `wall`.
 ///
 /// `grading` is the ratio of the last cell to the first along each axis.

@@ -1,6 +1,7 @@
 //! Helpers of tests that run the `amberfield` binary in a folder of their own.
 
 pub mod any_bytes;
+pub mod foam_beds;
 mod foam_box;
 pub mod foam_case;
 mod workbench;

@@ -133,6 +133,15 @@ typedef struct AmberfieldMesh {
   const double *corner_points;
   // Patches of the mesh: lines of a name, a blank and a type; the same for all ranks.
   const char *patches;
+  // Corners of this rank's faces, each once; NULL unless a gas flows between grains.
+  const double *points;
+  // Number of these points, or 0.
+  uint64_t point_count;
+  // Place of the first corner of each entry of the arrays by face, and at last the number of corners; NULL
+  // without points.
+  const uint64_t *first_face_corner;
+  // Corners of the faces in order around each, either way, as places among the points; NULL without any.
+  const uint32_t *face_corners;
 } AmberfieldMesh;
 
 // Cloud of charge that stands for a grain in the far part of the field.

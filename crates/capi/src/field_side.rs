@@ -51,6 +51,15 @@ pub struct AmberfieldMesh {
     pub corner_points: *const f64,
     /// Patches of the mesh: lines of a name, a blank and a type; the same for all ranks.
     pub patches: *const c_char,
+    /// Corners of this rank's faces, each once; NULL unless a gas flows between grains.
+    pub points: *const f64,
+    /// Number of these points, or 0.
+    pub point_count: u64,
+    /// Place of the first corner of each entry of the arrays by face, and at last the number of corners; NULL
+    /// without points.
+    pub first_face_corner: *const u64,
+    /// Corners of the faces in order around each, either way, as places among the points; NULL without any.
+    pub face_corners: *const u32,
 }
 
 /// The far field at this rank's cell centres, and how it was found.
@@ -175,6 +184,10 @@ pub unsafe extern "C" fn amberfield_field_send_mesh(
     // SAFETY: the caller's promise.
     let mesh = unsafe { &*mesh };
     let (cells, faces, boundary) = (mesh.cells as usize, mesh.faces as usize, mesh.boundary as usize);
+    let first_count = if mesh.point_count == 0 { 0 } else { faces + 1 };
+    // SAFETY: the caller's promise.
+    let first_face_corner = unsafe { slice(mesh.first_face_corner, first_count) };
+    let face_corners = first_face_corner.last().map_or(0, |&count| count as usize);
     // SAFETY: the caller's promise; three doubles have the layout of an array of three.
     let part = unsafe {
         MeshPart {
@@ -190,6 +203,9 @@ pub unsafe extern "C" fn amberfield_field_send_mesh(
             first_corner: slice(mesh.first_corner, boundary + 1),
             corners: slice(mesh.corner_points.cast(), mesh.corners as usize),
             patches: CStr::from_ptr(mesh.patches).to_bytes(),
+            points: slice(mesh.points.cast(), mesh.point_count as usize),
+            first_face_corner,
+            face_corners: slice(mesh.face_corners, face_corners),
         }
     };
     // SAFETY: the caller's promise.

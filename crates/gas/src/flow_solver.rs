@@ -1,6 +1,6 @@
 //! The solver that computes the flow of the gas.
 
-use crate::GasError;
+use crate::{CellShapes, GasError};
 use amberfield_core::{Gas, GasFlow, Vector3};
 use amberfield_field::far::FarMesh;
 use serde::{Deserialize, Serialize};
@@ -53,6 +53,9 @@ pub struct FlowValues {
 pub trait FlowSolver: fmt::Debug + Send + Sync {
     /// Mesh of the cells on which the flow is computed.
     fn mesh(&self) -> &FarMesh;
+
+    /// Corners of the mesh's faces.
+    fn shapes(&self) -> &CellShapes;
 
     /// Asks for the flow after an interval, without waiting.
     ///

@@ -8,8 +8,10 @@ mod error;
 mod exchange;
 mod flow_solver;
 mod mapping;
+mod shapes;
 
 pub use error::GasError;
 pub use exchange::{Exchange, ExchangeSeconds, ExchangeState, GrainsView};
 pub use flow_solver::{ConnectFlow, FlowRequest, FlowSolver, FlowValues};
-pub use mapping::{Mapping, Share};
+pub use mapping::Mapping;
+pub use shapes::CellShapes;

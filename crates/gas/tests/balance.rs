@@ -2,7 +2,7 @@
 
 use amberfield_core::{Boundary, Domain, DragLaw, Gas, GasFlow, GasModel, Vector3};
 use amberfield_field::far::{FarMesh, FarMeshParts};
-use amberfield_gas::{Exchange, FlowRequest, FlowSolver, FlowValues, GasError, GrainsView};
+use amberfield_gas::{CellShapes, Exchange, FlowRequest, FlowSolver, FlowValues, GasError, GrainsView};
 use proptest::prelude::*;
 use std::sync::{Arc, Mutex};
 
@@ -10,6 +10,7 @@ use std::sync::{Arc, Mutex};
 #[derive(Debug)]
 struct Whimsical {
     mesh: FarMesh,
+    shapes: CellShapes,
     given: Arc<Mutex<Vector3<f64>>>,
     void: Arc<Mutex<f64>>,
     calls: u32,
@@ -20,6 +21,10 @@ struct Whimsical {
 impl FlowSolver for Whimsical {
     fn mesh(&self) -> &FarMesh {
         &self.mesh
+    }
+
+    fn shapes(&self) -> &CellShapes {
+        &self.shapes
     }
 
     fn ask(&mut self, request: &FlowRequest<'_>) -> Result<(), GasError> {
@@ -87,6 +92,7 @@ proptest! {
         let mesh = FarMesh::new(FarMeshParts::of_box(&domain, [cells; 3]).unwrap()).unwrap();
         let (given, void) = (Arc::new(Mutex::new(Vector3::zeros())), Arc::new(Mutex::new(0.0)));
         let solver = Whimsical {
+            shapes: CellShapes::of_planes(&mesh).unwrap(),
             mesh,
             given: Arc::clone(&given),
             void: Arc::clone(&void),
@@ -149,6 +155,7 @@ fn a_state_of_another_mesh_is_refused() {
     let exchange = |cells: usize| {
         let mesh = FarMesh::new(FarMeshParts::of_box(&domain(0.02), [cells; 3]).unwrap()).unwrap();
         let solver = Whimsical {
+            shapes: CellShapes::of_planes(&mesh).unwrap(),
             mesh,
             given: Arc::default(),
             void: Arc::default(),
@@ -168,6 +175,7 @@ fn a_state_of_another_mesh_is_refused() {
 #[derive(Debug)]
 struct Lump {
     mesh: FarMesh,
+    shapes: CellShapes,
     mass: f64,
     velocity: Vector3<f64>,
 }
@@ -175,6 +183,10 @@ struct Lump {
 impl FlowSolver for Lump {
     fn mesh(&self) -> &FarMesh {
         &self.mesh
+    }
+
+    fn shapes(&self) -> &CellShapes {
+        &self.shapes
     }
 
     fn ask(&mut self, request: &FlowRequest<'_>) -> Result<(), GasError> {
@@ -211,7 +223,8 @@ fn slip_that_stays(loading: f64, interval_over_response: f64, overlap: bool) -> 
         Domain::new(Vector3::zeros(), Vector3::repeat(0.02), [[Boundary::Periodic; 2]; 3]).expect("good");
     let mesh = FarMesh::new(FarMeshParts::of_box(&domain, [3; 3]).expect("good")).expect("good");
     let (count, mass, radius) = (50, 1e-6, 5e-4);
-    let solver = Lump { mesh, mass: count as f64 * mass / loading, velocity: Vector3::zeros() };
+    let shapes = CellShapes::of_planes(&mesh).expect("good");
+    let solver = Lump { mesh, shapes, mass: count as f64 * mass / loading, velocity: Vector3::zeros() };
     let (gas, flow) = gas(DragLaw::Stokes, GasModel::A, false);
     let flow = GasFlow { overlap, ..flow };
     let mut exchange = Exchange::new(gas, flow, Vector3::zeros(), Box::new(solver), 1e-3).expect("good");

@@ -17,6 +17,8 @@ unsafe impl Element for u64 {}
 // SAFETY: as above.
 unsafe impl Element for i64 {}
 // SAFETY: as above.
+unsafe impl Element for u32 {}
+// SAFETY: as above.
 unsafe impl Element for u8 {}
 // SAFETY: as above.
 unsafe impl<const N: usize> Element for [f64; N] {}

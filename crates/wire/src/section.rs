@@ -80,4 +80,11 @@ pub enum Section {
     /// Density of the far field's source by cell of all ranks, besides the charges' clouds [C/m³]; absent:
     /// none.
     SourceDensity = 36,
+    /// Corners of this rank's faces, each once [m]; empty unless a gas flows between grains.
+    Points = 37,
+    /// Place of the first corner of each entry of the arrays by face (`u64`), and at last the number of
+    /// corners; empty unless a gas flows between grains.
+    FirstFaceCorner = 38,
+    /// Corners of the faces in order around each, either way, as places among the points (`u32`).
+    FaceCorners = 39,
 }

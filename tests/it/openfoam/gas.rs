@@ -10,12 +10,12 @@ use amberfield_tests::foam_case::{brick, write_gas_case};
 use std::f64::consts::PI;
 use std::time::Duration;
 
-const DENSITY: f64 = 1.2;
-const VISCOSITY: f64 = 1.8e-5;
+pub(super) const DENSITY: f64 = 1.2;
+pub(super) const VISCOSITY: f64 = 1.8e-5;
 const CYCLIC: (&str, &str) = ("cyclic", "type cyclic;");
-const NO_GRAVITY: Vector3<f64> = Vector3::new(0.0, 0.0, 0.0);
+pub(super) const NO_GRAVITY: Vector3<f64> = Vector3::new(0.0, 0.0, 0.0);
 
-fn gas(drag: DragLaw, model: GasModel) -> (Gas, GasFlow) {
+pub(super) fn gas(drag: DragLaw, model: GasModel) -> (Gas, GasFlow) {
     let flow = GasFlow {
         model,
         interval_s: 1.0,
@@ -53,7 +53,7 @@ fn solver(
     (bench, flow)
 }
 
-fn start(bench: &Workbench, ranks: u32) -> RemoteFlow {
+pub(super) fn start(bench: &Workbench, ranks: u32) -> RemoteFlow {
     let settings = SolverSettings {
         case: bench.path("foam"),
         application: None,
@@ -73,14 +73,14 @@ fn cyclic() -> [&'static str; 3] {
 }
 
 /// MovedGrains that this test moves.
-struct MovedGrains {
-    centre: Vec<[f64; 4]>,
+pub(super) struct MovedGrains {
+    pub(super) centre: Vec<[f64; 4]>,
     velocity: Vec<Vector3<f64>>,
     inverse_mass: Vec<f64>,
 }
 
 impl MovedGrains {
-    fn new(places: impl IntoIterator<Item = [f64; 3]>, radius: f64, density: f64) -> Self {
+    pub(super) fn new(places: impl IntoIterator<Item = [f64; 3]>, radius: f64, density: f64) -> Self {
         let centre: Vec<_> = places.into_iter().map(|[x, y, z]| [x, y, z, radius]).collect();
         let mass = density * 4.0 / 3.0 * PI * radius.powi(3);
         Self {
@@ -90,7 +90,7 @@ impl MovedGrains {
         }
     }
 
-    fn view(&self) -> GrainsView<'_> {
+    pub(super) fn view(&self) -> GrainsView<'_> {
         GrainsView {
             centre: &self.centre,
             velocity: &self.velocity,
@@ -113,7 +113,7 @@ impl MovedGrains {
     }
 
     /// Holds the grains at their places for an interval [s]; returns the force on all of them [N].
-    fn hold(&self, exchange: &mut Exchange, interval: f64) -> Vector3<f64> {
+    pub(super) fn hold(&self, exchange: &mut Exchange, interval: f64) -> Vector3<f64> {
         let mut force = vec![Vector3::zeros(); self.centre.len()];
         exchange.add_forces(&self.velocity, interval, &mut force);
         force.iter().sum()
@@ -132,7 +132,7 @@ fn lattice(counts: [usize; 3], spacing: f64) -> impl Iterator<Item = [f64; 3]> {
 }
 
 /// Ergun's pressure drop [Pa/m] for a void fraction, a diameter [m] and a superficial velocity [m/s].
-fn ergun(void: f64, diameter: f64, superficial: f64) -> f64 {
+pub(super) fn ergun(void: f64, diameter: f64, superficial: f64) -> f64 {
     let solid = 1.0 - void;
     150.0 * VISCOSITY * solid * solid * superficial / (void.powi(3) * diameter * diameter)
         + 1.75 * DENSITY * solid * superficial * superficial / (void.powi(3) * diameter)
@@ -316,7 +316,7 @@ fn between_plates_a_gas_flows_through_grains_at_rest_as_brinkmans() {
     let settings = GasFlow { smoothing_length_m: Some(1.5e-3), ..settings };
     let mut exchange = Exchange::new(gas, settings, NO_GRAVITY, Box::new(flow), 1e-4).expect("a good mesh");
     let grains = MovedGrains::new(lattice([20, 4, 16], 0.5e-3), RADIUS, 2500.0);
-    for k in 0..200 {
+    for k in 0..400 {
         exchange.exchange(mesh.domain(), &grains.view(), 5e-3, f64::from(k) * 5e-3).expect("a good flow");
         grains.hold(&mut exchange, 5e-3);
     }

@@ -6,7 +6,8 @@ use super::remote::{Remote, alive, check_sender, of_solver};
 use super::settings::SolverSettings;
 use crate::CouplingError;
 use crate::meeting::{Link, Message, RunRoot, SideOf};
-use crate::mesh::{MeshPart, assemble};
+use crate::mesh::{MeshPart, assemble, shapes_of};
+use amberfield_gas::CellShapes;
 use amberfield_wire::MessageKind;
 use std::sync::Arc;
 use std::time::Instant;
@@ -76,7 +77,8 @@ impl Announced {
         let parts = parts.map_err(of_solver)?;
         let cells: Vec<usize> = parts.iter().map(|part| part.centres.len()).collect();
         let mesh = Arc::new(assemble(&parts)?);
+        let shapes = if settings.flow { shapes_of(&mesh, &parts)? } else { CellShapes::default() };
         let remote = Remote::new(settings, &cells, (link, process, root));
-        Ok(RemoteSolver::new(mesh, remote))
+        Ok(RemoteSolver::new(mesh, Arc::new(shapes), remote))
     }
 }

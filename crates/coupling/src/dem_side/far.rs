@@ -7,6 +7,7 @@ use crate::CouplingError;
 use amberfield_core::Vector3;
 use amberfield_field::FieldError;
 use amberfield_field::far::{FarField, FarMesh, FarRequest, FarValues};
+use amberfield_gas::CellShapes;
 use amberfield_wire::payloads::{FarAnswer, FarQuestion};
 use amberfield_wire::{Layout, MessageKind, Section, Sections, WireError};
 use std::ops::Range;
@@ -16,6 +17,8 @@ use std::sync::{Arc, Mutex};
 #[derive(Debug)]
 pub struct RemoteSolver {
     mesh: Arc<FarMesh>,
+    /// Corners of its faces, where a gas flows.
+    shapes: Arc<CellShapes>,
     shared: Arc<Mutex<Shared>>,
     /// Cells of the charges that were asked about last, where each is spread over its cell.
     cells: Vec<u64>,
@@ -23,15 +26,15 @@ pub struct RemoteSolver {
 
 impl RemoteSolver {
     /// A process that has sent its mesh.
-    pub(super) fn new(mesh: Arc<FarMesh>, remote: Remote) -> Self {
+    pub(super) fn new(mesh: Arc<FarMesh>, shapes: Arc<CellShapes>, remote: Remote) -> Self {
         let shared = Shared { remote, far: Pending::NOTHING, flow: Pending::NOTHING };
-        Self { mesh, shared: Arc::new(Mutex::new(shared)), cells: Vec::new() }
+        Self { mesh, shapes, shared: Arc::new(Mutex::new(shared)), cells: Vec::new() }
     }
 
     /// The flow of the same process.
     #[must_use]
     pub fn flow(&self) -> RemoteFlow {
-        RemoteFlow::new(Arc::clone(&self.mesh), Arc::clone(&self.shared))
+        RemoteFlow::new(Arc::clone(&self.mesh), Arc::clone(&self.shapes), Arc::clone(&self.shared))
     }
 
     /// Asks for the far field and waits for the answer.

@@ -4,7 +4,7 @@ use super::shared::{Shared, locked, read_vectors, write_vectors};
 use crate::CouplingError;
 use amberfield_core::{GasModel, Vector3};
 use amberfield_field::far::FarMesh;
-use amberfield_gas::{FlowRequest, FlowSolver, FlowValues, GasError};
+use amberfield_gas::{CellShapes, FlowRequest, FlowSolver, FlowValues, GasError};
 use amberfield_wire::payloads::{FlowAnswer, FlowQuestion};
 use amberfield_wire::{Layout, MessageKind, Section, Sections, WireError};
 use std::ops::Range;
@@ -14,12 +14,13 @@ use std::sync::{Arc, Mutex};
 #[derive(Debug)]
 pub struct RemoteFlow {
     mesh: Arc<FarMesh>,
+    shapes: Arc<CellShapes>,
     shared: Arc<Mutex<Shared>>,
 }
 
 impl RemoteFlow {
-    pub(super) fn new(mesh: Arc<FarMesh>, shared: Arc<Mutex<Shared>>) -> Self {
-        Self { mesh, shared }
+    pub(super) fn new(mesh: Arc<FarMesh>, shapes: Arc<CellShapes>, shared: Arc<Mutex<Shared>>) -> Self {
+        Self { mesh, shapes, shared }
     }
 
     fn fetch(&self) -> Result<Vec<Vec<f64>>, CouplingError> {
@@ -122,6 +123,10 @@ impl Shared {
 impl FlowSolver for RemoteFlow {
     fn mesh(&self) -> &FarMesh {
         &self.mesh
+    }
+
+    fn shapes(&self) -> &CellShapes {
+        &self.shapes
     }
 
     fn ask(&mut self, request: &FlowRequest<'_>) -> Result<(), GasError> {

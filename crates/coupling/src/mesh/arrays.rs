@@ -76,6 +76,9 @@ impl MeshArrays {
             first_corner: &self.first_corner,
             corners: &self.corners,
             patches: self.patches.as_bytes(),
+            points: &[],
+            first_face_corner: &[],
+            face_corners: &[],
         }
     }
 }

@@ -5,4 +5,4 @@ mod part;
 
 pub use arrays::MeshArrays;
 pub use part::{MeshPart, assemble};
-pub(crate) use part::{OwnCells, mesh_header};
+pub(crate) use part::{OwnCells, mesh_header, shapes_of};

@@ -4,6 +4,7 @@ use crate::CouplingError;
 use amberfield_core::{Boundary, Domain, Matrix3, Vector3};
 use amberfield_field::FieldError;
 use amberfield_field::far::{BoundaryFace, CellFace, Condition, FarMesh, FarMeshParts, MeshPatch, Neighbour};
+use amberfield_gas::CellShapes;
 use amberfield_wire::payloads::{self, MeshOutline};
 use amberfield_wire::{Block64, Header, Layout, MessageKind, Section, Sections, WireError};
 use std::mem::MaybeUninit;
@@ -35,6 +36,13 @@ pub struct MeshPart<'a> {
     pub corners: &'a [[f64; 3]],
     /// Patches of the mesh: lines of a name, a blank and a type; the same for all ranks.
     pub patches: &'a [u8],
+    /// Corners of this rank's faces, each once [m]; empty unless a gas flows between grains, as are the next
+    /// two.
+    pub points: &'a [[f64; 3]],
+    /// Place of each face entry's first corner, and at last the number of corners.
+    pub first_face_corner: &'a [u64],
+    /// Corners of the faces in order around each, either way, as places among the points.
+    pub face_corners: &'a [u32],
 }
 
 impl MeshPart<'_> {
@@ -52,6 +60,9 @@ impl MeshPart<'_> {
             .with::<u64>(Section::FirstCorner, self.first_corner.len())
             .with::<[f64; 3]>(Section::Corners, self.corners.len())
             .with::<u8>(Section::Patches, self.patches.len())
+            .with::<[f64; 3]>(Section::Points, self.points.len())
+            .with::<u64>(Section::FirstFaceCorner, self.first_face_corner.len())
+            .with::<u32>(Section::FaceCorners, self.face_corners.len())
     }
 
     pub(crate) fn write(
@@ -72,6 +83,10 @@ impl MeshPart<'_> {
         layout.section_mut::<u64>(payload, Section::FirstCorner)?.copy_from_slice(self.first_corner);
         layout.section_mut::<[f64; 3]>(payload, Section::Corners)?.copy_from_slice(self.corners);
         layout.section_mut::<u8>(payload, Section::Patches)?.copy_from_slice(self.patches);
+        layout.section_mut::<[f64; 3]>(payload, Section::Points)?.copy_from_slice(self.points);
+        let first = layout.section_mut::<u64>(payload, Section::FirstFaceCorner)?;
+        first.copy_from_slice(self.first_face_corner);
+        layout.section_mut::<u32>(payload, Section::FaceCorners)?.copy_from_slice(self.face_corners);
         Ok(())
     }
 
@@ -96,6 +111,9 @@ impl MeshPart<'_> {
             first_corner: sections.exactly(Section::FirstCorner, boundary_faces.len() + 1)?,
             corners: sections.get(Section::Corners)?,
             patches: sections.get(Section::Patches)?,
+            points: sections.get(Section::Points)?,
+            first_face_corner: sections.get(Section::FirstFaceCorner)?,
+            face_corners: sections.get(Section::FaceCorners)?,
         })
     }
 }
@@ -158,6 +176,26 @@ pub fn assemble(parts: &[MeshPart<'_>]) -> Result<FarMesh, CouplingError> {
         return Err(broken(format!("{announced} cells were announced, {came} came")));
     }
     Ok(FarMesh::new(whole)?)
+}
+
+/// Puts the corners of all faces together, in the order of a mesh's faces by cell.
+///
+/// # Errors
+/// The first number that makes no sense.
+pub(crate) fn shapes_of(mesh: &FarMesh, parts: &[MeshPart<'_>]) -> Result<CellShapes, CouplingError> {
+    let (mut points, mut first, mut corners) = (Vec::new(), vec![0], Vec::new());
+    for part in parts {
+        let before = points.len();
+        points.extend(part.points.iter().map(|&point| Vector3::from(point)));
+        if part.first_face_corner.is_empty() {
+            continue;
+        }
+        first.extend(ends_from(corners.len(), part.first_face_corner)?);
+        for &corner in part.face_corners {
+            corners.push(index((before as i64).saturating_add(i64::from(corner)))?);
+        }
+    }
+    CellShapes::new(mesh, points, first, corners).map_err(|error| broken(error.to_string()))
 }
 
 /// Ends of the lists whose begins a rank gives, where `first` entries of lower ranks come before its own.

@@ -11,26 +11,30 @@
 //! grain feels
 //!
 //! ```text
-//! F = β (u − v) + L  +  V (−∇p + ∇·τ) − ρ V g          (model A)
-//! F = β (u − v)/ε + L − ρ V g                           (model B)
+//! F = Σ w β (u_c − v) + L  +  V (−∇p + ∇·τ) − ρ V g        (model A)
+//! F = Σ w β (u_c − v)/ε + L − ρ V g                        (model B)
 //! ```
 //!
 //! with its own v as it changes. The same shares gather u, ∇p and ∇·τ; L is lift.
 //!
-//! The gas gave Δt V_c (K u − S) by cell. What grains got of the first two terms differs from this, since v
-//! and u changed meanwhile. The difference is booked and goes into the next R, so that momentum given and
-//! taken balance to round-off over a run.
+//! A grain thus exchanges with each cell's own gas, and in each cell the gas gives Δt V_c (K u − S), which is
+//! what the grains get of it as long as v is that of the interval's start. What they get more or less because
+//! v changed since, −Σ w ∫β (v − v₀) dt, is booked by cell and goes into the next R. So momentum given and
+//! taken balance to round-off over a run, and no flow from cell to cell is without drag.
 //!
 //! Source of the equations: Zhou, Kuang, Chu & Yu, J. Fluid Mech. 661, 482 (2010), sets II (A) and III (B).
 //! The booking is ours.
 
 mod forces;
+mod ledger;
 mod state;
 
 pub use state::ExchangeState;
 
+use ledger::Gone;
+
 use crate::flow_solver::{FlowRequest, FlowSolver, FlowValues};
-use crate::mapping::{CHUNK, Shares};
+use crate::mapping::{CHUNK, Placed, Places};
 use crate::{GasError, Mapping};
 use amberfield_core::{Domain, Gas, GasFlow, Vector3};
 use rayon::prelude::*;
@@ -60,6 +64,8 @@ pub struct GrainsView<'a> {
 struct Held {
     /// Drag coefficient: β in model A, β/ε in model B [kg/s].
     drag: f64,
+    /// Velocity u of the gas at the grain [m/s].
+    flow: Vector3<f64>,
     /// Part that does not depend on the grain's velocity: β u + L [N].
     push: Vector3<f64>,
     /// Part that the gas does not give in exchange: pressure, viscous stress, buoyancy [N].
@@ -92,8 +98,13 @@ pub struct Exchange {
     held: Vec<Held>,
     places: Vec<Vector3<f64>>,
     cells: Vec<u32>,
-    /// Shares at the exchange.
-    shares: Shares,
+    diameters: Vec<f64>,
+    /// Places among the cells at the exchange.
+    shares: Places,
+    /// Time for which the forces of the exchange have acted [s].
+    elapsed_s: f64,
+    /// Grains that are gone since.
+    gone: Vec<Gone>,
     /// Momentum by cell that grains got of the gas, less what it gave [N·s].
     owed: Vec<Vector3<f64>>,
     /// Momentum that grains got of the gas up to the last exchange [N·s].
@@ -123,7 +134,8 @@ impl Exchange {
         solver: Box<dyn FlowSolver>,
         largest_diameter: f64,
     ) -> Result<Self, GasError> {
-        let mapping = Mapping::new(solver.mesh(), flow.smoothing_length_m, largest_diameter)?;
+        let length = flow.smoothing_length_m;
+        let mapping = Mapping::new(solver.mesh(), solver.shapes(), length, largest_diameter)?;
         let cells = solver.mesh().cell_count();
         Ok(Self {
             gas,
@@ -133,7 +145,10 @@ impl Exchange {
             held: Vec::new(),
             places: Vec::new(),
             cells: Vec::new(),
-            shares: Shares::default(),
+            diameters: Vec::new(),
+            shares: Places::default(),
+            elapsed_s: 0.0,
+            gone: Vec::new(),
             owed: vec![Vector3::zeros(); cells],
             booked: Vector3::zeros(),
             void_fraction: vec![1.0; cells],
@@ -184,6 +199,7 @@ impl Exchange {
 
     /// Adds the forces on the grains at their present velocities [N], and books a step's [s] impulse.
     pub fn add_forces(&mut self, velocity: &[Vector3<f64>], step_s: f64, total: &mut [Vector3<f64>]) {
+        self.elapsed_s += step_s;
         let one = |((held, total), velocity): ((&mut Held, &mut Vector3<f64>), &Vector3<f64>)| {
             let given = held.push - velocity * held.drag;
             held.impulse += given * step_s;
@@ -204,7 +220,10 @@ impl Exchange {
             let mut stays = vec![false; self.held.len()];
             order.iter().for_each(|&i| stays[i as usize] = true);
             for (i, _) in stays.iter().enumerate().filter(|(_, stays)| !**stays) {
-                self.book_one(i);
+                let got = self.got(i);
+                let Held { slot, impulse, .. } = self.held[i];
+                self.booked += impulse;
+                self.gone.push(Gone { slot, got, impulse });
             }
         }
         self.held = order.iter().map(|&i| self.held[i as usize]).collect();
@@ -241,6 +260,7 @@ impl Exchange {
     pub fn owed(&self) -> Vector3<f64> {
         self.owed.iter().sum::<Vector3<f64>>()
             + self.held.iter().map(|held| held.impulse).sum::<Vector3<f64>>()
+            + self.gone.iter().map(|gone| gone.impulse).sum::<Vector3<f64>>()
     }
 
     /// Momentum that grains got in exchange from the start [N·s]: what the gas gave and what it owes.
@@ -255,24 +275,10 @@ impl Exchange {
         self.seconds
     }
 
-    /// Radius over which grains are smoothed [m].
+    /// Length over which grains are smoothed where cells are small [m].
     #[must_use]
     pub fn smoothing_length_m(&self) -> f64 {
-        self.mapping.radius()
-    }
-
-    /// Books what the grains got since the last exchange in the cells that they were in then.
-    fn book(&mut self) {
-        (0..self.held.len()).for_each(|i| self.book_one(i));
-    }
-
-    fn book_one(&mut self, i: usize) {
-        let impulse = std::mem::take(&mut self.held[i].impulse);
-        self.booked += impulse;
-        let slot = self.held[i].slot as usize;
-        for share in self.shares.of(slot) {
-            self.owed[share.cell as usize] += impulse * share.weight;
-        }
+        self.mapping.length()
     }
 
     /// Finds every grain's cell and shares.
@@ -291,19 +297,23 @@ impl Exchange {
             .collect();
         (self.places, self.cells) = found.into_iter().unzip();
         self.held.resize(grains.centre.len(), Held::default());
-        self.mapping.fill(&self.places, &self.cells, &mut self.shares);
+        self.find_shares(grains.centre.iter().map(|c| 2.0 * c[3]).collect());
+    }
+
+    /// Finds the shares of grains with diameters [m] at their places.
+    fn find_shares(&mut self, diameters: Vec<f64>) {
+        let places = self.places.iter().zip(&self.cells).zip(&diameters);
+        let grains: Vec<Placed> =
+            places.map(|((&centre, &cell), &diameter)| Placed { centre, diameter, cell }).collect();
+        self.shares = self.mapping.place(self.solver.mesh(), &grains);
+        self.diameters = diameters;
     }
 
     /// Fills in the void fraction ε of every cell.
     fn fill_void(&mut self, grains: &GrainsView<'_>) {
-        self.void_fraction.fill(1.0);
-        let volumes = self.solver.mesh().volumes();
-        for (i, c) in grains.centre.iter().enumerate() {
-            let volume = sphere(2.0 * c[3]);
-            for share in self.shares.of(i) {
-                self.void_fraction[share.cell as usize] -=
-                    share.weight * volume / volumes[share.cell as usize];
-            }
+        let solids: Vec<[f64; 1]> = grains.centre.iter().map(|c| [sphere(2.0 * c[3])]).collect();
+        for (void, [solid]) in self.void_fraction.iter_mut().zip(self.mapping.spread(&self.shares, &solids)) {
+            *void = 1.0 - solid;
         }
         let mut clipped = 0;
         for void in self.void_fraction.iter_mut().filter(|void| **void < LEAST_VOID) {

@@ -1,5 +1,6 @@
 //! State from which an exchange goes on.
 
+use super::ledger::Gone;
 use super::{Exchange, Held};
 use crate::{FlowValues, GasError};
 use amberfield_core::Vector3;
@@ -9,10 +10,13 @@ use serde::{Deserialize, Serialize};
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
 pub struct ExchangeState {
     held: Vec<Held>,
-    /// Places at the exchange, and the cells there.
+    /// Places at the exchange, the cells there, and diameters [m].
     places: Vec<Vector3<f64>>,
     cells: Vec<u32>,
+    diameters: Vec<f64>,
     owed: Vec<Vector3<f64>>,
+    elapsed_s: f64,
+    gone: Vec<Gone>,
     booked: Vector3<f64>,
     values: FlowValues,
     response_s: f64,
@@ -29,7 +33,10 @@ impl ExchangeState {
     /// Whether this is a state of `count` grains.
     #[must_use]
     pub fn fits(&self, count: usize) -> bool {
-        self.held.len() == count && self.held.iter().all(|held| (held.slot as usize) < self.places.len())
+        let known = |slot: u32| (slot as usize) < self.places.len();
+        self.held.len() == count
+            && self.held.iter().all(|held| known(held.slot))
+            && self.gone.iter().all(|gone| known(gone.slot))
     }
 }
 
@@ -53,7 +60,10 @@ impl Exchange {
             held: self.held.clone(),
             places: self.places.clone(),
             cells: self.cells.clone(),
+            diameters: self.diameters.clone(),
             owed: self.owed.clone(),
+            elapsed_s: self.elapsed_s,
+            gone: self.gone.clone(),
             booked: self.booked,
             values: self.values.clone(),
             response_s: self.response_s,
@@ -69,7 +79,8 @@ impl Exchange {
         let (cells, theirs) = (self.owed.len(), state.owed.len());
         let by_cell = [state.drag.len(), state.source.len()];
         let in_mesh = by_cell == [cells; 2] && state.cells.iter().all(|&cell| (cell as usize) < cells);
-        if cells != theirs || state.cells.len() != state.places.len() || !in_mesh {
+        let counts = [state.cells.len(), state.diameters.len()];
+        if cells != theirs || counts != [state.places.len(); 2] || !in_mesh {
             return Err(GasError::Settings(format!(
                 "the checkpoint's gas is one of {theirs} cells, the mesh has {cells}; \
                  resume with the case that wrote it"
@@ -80,6 +91,8 @@ impl Exchange {
         self.places.clone_from(&state.places);
         self.cells.clone_from(&state.cells);
         self.owed.clone_from(&state.owed);
+        self.elapsed_s = state.elapsed_s;
+        self.gone.clone_from(&state.gone);
         self.booked = state.booked;
         self.values.clone_from(&state.values);
         self.response_s = state.response_s;
@@ -87,7 +100,7 @@ impl Exchange {
         self.early.clone_from(&state.early);
         self.drag.clone_from(&state.drag);
         self.source.clone_from(&state.source);
-        self.mapping.fill(&self.places, &self.cells, &mut self.shares);
+        self.find_shares(state.diameters.clone());
         Ok(())
     }
 }
