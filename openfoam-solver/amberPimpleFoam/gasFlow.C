@@ -141,6 +141,7 @@ Foam::gasFlow::gasFlow(Time& time, fvMesh& mesh, fieldSide& demProcess)
     pRefCell_(0),
     pRefValue_(0),
     begun_(false),
+    isAdvised_(false),
     iterations_(0)
 {
     setRefCell(p_, pimple_.dict(), pRefCell_, pRefValue_);
@@ -183,6 +184,8 @@ void Foam::gasFlow::answer()
     const AmberfieldFlowQuestion question = demProcess_.request().flow;
     const auto begun = std::chrono::steady_clock::now();
     scalar residual = 0;
+    scalar courant = 0;
+    label steps = 0;
     iterations_ = 0;
     checkGas();
 
@@ -200,9 +203,10 @@ void Foam::gasFlow::answer()
     if (question.interval_s > 0)
     {
         const scalarField through(fvc::surfaceSum(mag(phi_))().primitiveField());
-        const scalar courant = 0.5*question.interval_s*gMax(scalarField(through/mesh_.V().field()));
+        courant = 0.5*question.interval_s*gMax(scalarField(through/mesh_.V().field()));
         const scalar most = pimple_.dict().lookupOrDefault<scalar>("maxCo", 1);
-        const label steps = max(label(1), label(std::ceil(courant/most)));
+        steps = max(label(1), label(std::ceil(courant/most)));
+        courant /= steps;
         const scalarField before(alpha_.primitiveField());
 
         time_.setDeltaT(question.interval_s/steps, false);
@@ -219,10 +223,44 @@ void Foam::gasFlow::answer()
             residual = max(residual, missing());
             time_.write();
         }
+        Info<< "Gas at " << time_.value() << " s: steps " << steps << ", Courant number " << courant
+            << ", void fraction " << gMin(voidFraction) << " to " << gMax(voidFraction)
+            << ", drag " << gMin(drag_.primitiveField()) << " to " << gMax(drag_.primitiveField())
+            << " 1/s, continuity " << residual << endl;
     }
     const std::chrono::duration<scalar> taken = std::chrono::steady_clock::now() - begun;
 
-    answer(question.density_kg_m3, residual, taken.count());
+    AmberfieldFlowAnswer outcome;
+    outcome.iterations = uint64_t(iterations_);
+    outcome.residual = residual;
+    outcome.seconds = taken.count();
+    outcome.steps = uint64_t(steps);
+    outcome.courant = courant;
+    answer(question.density_kg_m3, outcome);
+}
+
+
+Foam::string Foam::gasFlow::advice() const
+{
+    string advice;
+    forAll(U_.boundaryField(), patchi)
+    {
+        const fvPatchVectorField& pU = U_.boundaryField()[patchi];
+        if (pU.type() == "flowRateInletVelocity")
+        {
+            advice += "the flow rate of patch " + pU.patch().name() + " (flowRateInletVelocity) is that"
+                " between grains: where grains are at the patch, less gas comes in; give"
+                " interstitialInletVelocity the superficial velocity. ";
+        }
+    }
+    word scheme;
+    mesh_.gradScheme("grad(U)") >> scheme;
+    if (scheme == "Gauss" && slope_.isOblique())
+    {
+        advice += "the mesh is not orthogonal, and gradSchemes has Gauss for grad(U); give it"
+            " leastSquares, which is right on any cells (the pressure's gradient is so already). ";
+    }
+    return advice;
 }
 
 
@@ -373,12 +411,7 @@ Foam::scalar Foam::gasFlow::missing() const
 }
 
 
-void Foam::gasFlow::answer
-(
-    const scalar density,
-    const scalar residual,
-    const scalar seconds
-)
+void Foam::gasFlow::answer(const scalar density, const AmberfieldFlowAnswer& outcome)
 {
     const AmberfieldFlowQuestion& question = demProcess_.request().flow;
     const vectorField gradient(density*slope_().primitiveField());
@@ -407,9 +440,11 @@ void Foam::gasFlow::answer
     flow.pressure_gradient = numbers(gradient);
     flow.viscous_force = numbers(viscous);
     flow.vorticity = numbers(vorticity);
-    flow.answer.iterations = uint64_t(iterations_);
-    flow.answer.residual = residual;
-    flow.answer.seconds = seconds;
+    flow.answer = outcome;
+    // Said once, by one rank
+    const string words(isAdvised_ || !Pstream::master() ? string() : advice());
+    isAdvised_ = true;
+    flow.advice = words.empty() ? nullptr : words.c_str();
     demProcess_.reply(flow);
 }
 

@@ -227,6 +227,10 @@ typedef struct AmberfieldFlowAnswer {
   double residual;
   // Time that the solver took [s].
   double seconds;
+  // Steps of the flow in the interval.
+  uint64_t steps;
+  // Largest Courant number of a step.
+  double courant;
 } AmberfieldFlowAnswer;
 
 // The flow at this rank's cell centres. Vectors are three doubles each.
@@ -241,8 +245,10 @@ typedef struct AmberfieldFlow {
   const double *viscous_force;
   // Vorticity [1/s], or NULL where it is not wanted.
   const double *vorticity;
-  // Iterations, residual and time of the solver.
+  // Iterations, residual, time, steps and Courant number of the solver.
   struct AmberfieldFlowAnswer answer;
+  // What the case should have for its mesh, to be shown to the user; NULL for nothing.
+  const char *advice;
 } AmberfieldFlow;
 
 // Face of the box, with the condition there.
@@ -375,7 +381,7 @@ enum AmberfieldStatus amberfield_field_grains(struct AmberfieldField *field,
 //
 // # Safety
 // `field` comes from amberfield_field_open and is not closed; the flow's arrays have the lengths that it
-// says.
+// says, and its advice is a C string or NULL.
 enum AmberfieldStatus amberfield_field_reply_flow(struct AmberfieldField *field,
                                                   const struct AmberfieldFlow *flow);
 

@@ -7,6 +7,7 @@ use crate::status::AmberfieldStatus;
 use amberfield_coupling::{CouplingError, FlowReply};
 use amberfield_wire::payloads::FlowAnswer;
 use amberfield_wire::{Section, WireError};
+use std::ffi::{CStr, c_char};
 
 /// The flow at this rank's cell centres. Vectors are three doubles each.
 #[repr(C)]
@@ -22,8 +23,10 @@ pub struct AmberfieldFlow {
     pub viscous_force: *const f64,
     /// Vorticity [1/s], or NULL where it is not wanted.
     pub vorticity: *const f64,
-    /// Iterations, residual and time of the solver.
+    /// Iterations, residual, time, steps and Courant number of the solver.
     pub answer: FlowAnswer,
+    /// What the case should have for its mesh, to be shown to the user; NULL for nothing.
+    pub advice: *const c_char,
 }
 
 /// Copies what the grains do to the gas in this rank's cells: void fraction, drag [kg/(m^3 s)] and source
@@ -62,7 +65,7 @@ pub unsafe extern "C" fn amberfield_field_grains(
 ///
 /// # Safety
 /// `field` comes from amberfield_field_open and is not closed; the flow's arrays have the lengths that it
-/// says.
+/// says, and its advice is a C string or NULL.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn amberfield_field_reply_flow(
     field: *mut AmberfieldField,
@@ -75,12 +78,19 @@ pub unsafe extern "C" fn amberfield_field_reply_flow(
         // SAFETY: the caller's promise.
         unsafe { slice::<[f64; 3]>(pointer.cast(), count) }
     };
+    let advice = if flow.advice.is_null() {
+        String::new()
+    } else {
+        // SAFETY: the caller's promise.
+        unsafe { CStr::from_ptr(flow.advice) }.to_string_lossy().into_owned()
+    };
     let reply = FlowReply {
         velocity: array(flow.velocity),
         pressure_gradient: array(flow.pressure_gradient),
         viscous_force: array(flow.viscous_force),
         vorticity: array(flow.vorticity),
         answer: flow.answer,
+        advice: &advice,
     };
     // SAFETY: the caller's promise.
     unsafe { with(field, |side| side.reply_flow(&reply).map(|()| AmberfieldStatus::Ok)) }

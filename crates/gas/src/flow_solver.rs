@@ -47,6 +47,10 @@ pub struct FlowValues {
     pub residual: f64,
     /// Time that the solver took, without the way there and back [s].
     pub seconds: f64,
+    /// Steps of the flow in the interval.
+    pub steps: u64,
+    /// Largest Courant number of a step.
+    pub courant: f64,
 }
 
 /// Solver of the flow.

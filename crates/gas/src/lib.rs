@@ -11,7 +11,7 @@ mod mapping;
 mod shapes;
 
 pub use error::GasError;
-pub use exchange::{Exchange, ExchangeSeconds, ExchangeState, GrainsView};
+pub use exchange::{Exchange, ExchangeExtremes, ExchangeSeconds, ExchangeState, GrainsView};
 pub use flow_solver::{ConnectFlow, FlowRequest, FlowSolver, FlowValues};
 pub use mapping::Mapping;
 pub use shapes::CellShapes;

@@ -24,5 +24,6 @@ pub mod restitution;
 pub mod rolling_friction;
 pub mod saffman_lift;
 pub mod schiller_naumann_drag;
+pub mod self_disturbance;
 pub mod stokes_drag;
 pub mod time_step_limits;

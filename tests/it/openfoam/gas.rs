@@ -3,8 +3,6 @@
 use amberfield_core::{DragLaw, Gas, GasFlow, GasModel, Vector3};
 use amberfield_coupling::{Announced, RemoteFlow, SolverSettings};
 use amberfield_gas::{Exchange, FlowSolver as _, GrainsView};
-use amberfield_laws::drag;
-use amberfield_laws::particle_reynolds::Slip;
 use amberfield_tests::Workbench;
 use amberfield_tests::foam_case::{brick, write_gas_case};
 use std::f64::consts::PI;
@@ -38,7 +36,7 @@ pub(super) fn gas(drag: DragLaw, model: GasModel) -> (Gas, GasFlow) {
 /// Starts the solver of a box with edges [mm] and a number of cells per axis, with `ranks` processes.
 ///
 /// Each side has a kind, a condition of U and a condition of p.
-fn solver(
+pub(super) fn solver(
     edges_mm: [f64; 3],
     cells: [usize; 3],
     sides: &[[&str; 3]; 6],
@@ -68,14 +66,14 @@ pub(super) fn start(bench: &Workbench, ranks: u32) -> RemoteFlow {
 }
 
 /// Kind and conditions of a periodic side.
-fn cyclic() -> [&'static str; 3] {
+pub(super) fn cyclic() -> [&'static str; 3] {
     [CYCLIC.0, CYCLIC.1, CYCLIC.1]
 }
 
 /// MovedGrains that this test moves.
 pub(super) struct MovedGrains {
     pub(super) centre: Vec<[f64; 4]>,
-    velocity: Vec<Vector3<f64>>,
+    pub(super) velocity: Vec<Vector3<f64>>,
     inverse_mass: Vec<f64>,
 }
 
@@ -100,7 +98,7 @@ impl MovedGrains {
     }
 
     /// Moves the grains through an interval [s] between exchanges, in `steps` steps.
-    fn go(&mut self, exchange: &mut Exchange, gravity: Vector3<f64>, interval: f64, steps: usize) {
+    pub(super) fn go(&mut self, exchange: &mut Exchange, gravity: Vector3<f64>, interval: f64, steps: usize) {
         let step = interval / steps as f64;
         for _ in 0..steps {
             let mut force = vec![Vector3::zeros(); self.centre.len()];
@@ -331,51 +329,4 @@ fn between_plates_a_gas_flows_through_grains_at_rest_as_brinkmans() {
     }
     println!("λH {:.2}, largest speed {most:.4} m/s, missed by {:.2e} of it", rate * 8e-3, missed / most);
     assert!(missed < 0.01 * most, "{missed} {most}");
-}
-
-#[test]
-fn a_grain_falls_at_the_terminal_speed_of_its_drag_law() {
-    let gravity = Vector3::new(0.0, 0.0, -9.81);
-    let cases = [
-        (DragLaw::Stokes, 2e-5),
-        (DragLaw::SchillerNaumann, 1.2e-5),
-        (DragLaw::SchillerNaumann, 1e-4),
-        (DragLaw::SchillerNaumann, 4e-4),
-        (DragLaw::SchillerNaumann, 1.55e-3),
-    ];
-    for (law, diameter) in cases {
-        let weight = (2500.0 - DENSITY) * PI / 6.0 * diameter * diameter * diameter * 9.81;
-        let beta = |speed: f64| {
-            let slip = Slip { speed, void_fraction: 1.0, diameter, density: DENSITY, viscosity: VISCOSITY };
-            drag::coefficient(law, &slip)
-        };
-        let (mut slow, mut fast) = (0.0, 1e3);
-        for _ in 0..200 {
-            let middle = 0.5 * (slow + fast);
-            if beta(middle) * middle < weight { slow = middle } else { fast = middle }
-        }
-        let response = 2500.0 * PI / 6.0 * diameter.powi(3) / beta(slow);
-        let edge_mm = 1500.0 * diameter * 1e3;
-        let (_bench, flow) = solver([edge_mm; 3], [10; 3], &[cyclic(); 6], 1);
-        let domain = flow.mesh().domain().clone();
-        let (gas, settings) = gas(law, GasModel::A);
-        let mut exchange =
-            Exchange::new(gas, settings, gravity, Box::new(flow), diameter).expect("a good mesh");
-        let mut grains = MovedGrains::new([[0.3e-3 * edge_mm; 3]], 0.5 * diameter, 2500.0);
-        grains.velocity[0].z = -0.9 * slow;
-        let interval = 0.1 * response;
-        for k in 0..70 {
-            exchange
-                .exchange(&domain, &grains.view(), interval, f64::from(k) * interval)
-                .expect("a good flow");
-            grains.go(&mut exchange, gravity, interval, 10);
-        }
-        let found = -grains.velocity[0].z;
-        let reynolds = DENSITY * diameter * slow / VISCOSITY;
-        println!(
-            "{law:?}, d {diameter:e} m, Re {reynolds:.3}: {found:.5} m/s, law {slow:.5} m/s, {:.2e}",
-            found / slow - 1.0
-        );
-        assert!((found / slow - 1.0).abs() < 0.005, "{law:?} {diameter}: {found} {slow}");
-    }
 }

@@ -1,7 +1,9 @@
 //! Runs in a gas whose flow OpenFOAM computes, started as a user starts them.
 
 use super::good;
-use amberfield_tests::foam_case::{brick, write_file, write_gas_case, write_potential};
+use amberfield_tests::foam_case::{
+    brick, foam_program, perturb, write_file, write_gas_case, write_potential,
+};
 use amberfield_tests::{Answer, DEADLINE, Workbench};
 use std::process::Stdio;
 use std::time::{Duration, Instant};
@@ -106,7 +108,9 @@ fn a_run_in_a_gas_goes_on_bit_for_bit_from_its_checkpoint() {
         let checkpoint = format!("parts/checkpoints/{checkpoint}");
         let answer = run(&bench, "parts", &[&sets[..], &["--resume", &checkpoint]].concat());
         good(&answer);
-        assert!(answer.stderr.contains("of momentum"), "{}", answer.stderr);
+        for word in ["of momentum", "steps of the flow", "Courant number", "void fraction", "drag up to"] {
+            assert!(answer.stderr.contains(word), "{word}: {}", answer.stderr);
+        }
         assert_eq!(grains(&bench, "parts"), grains(&bench, "whole"), "overlap = {overlap}");
     }
 }
@@ -156,6 +160,26 @@ fn a_run_in_a_gas_needs_no_charge_and_is_the_same_with_two_ranks() {
     good(&plan);
     assert!(plan.stdout.contains("flow of another process, model A; drag (di_felice)"), "{}", plan.stdout);
     assert!(plan.stdout.contains("gas interval"), "{}", plan.stdout);
+}
+
+#[test]
+fn the_log_says_what_a_mesh_and_its_patches_ask_for() {
+    let bench = bed(&SCENE.replace("end_s = 8e-3", "end_s = 1e-3"));
+    let quiet = run(&bench, "quiet", &[]);
+    good(&quiet);
+    assert!(!quiet.stderr.contains("leastSquares"), "{}", quiet.stderr);
+    let velocity = bench.read("foam/0/U");
+    let begin = velocity.find("type interstitialInletVelocity").expect("it has one");
+    let end = begin + velocity[begin..].find('}').expect("it ends");
+    let rate = "type flowRateInletVelocity; volumetricFlowRate constant 6e-5; value uniform (0 0 0.6); ";
+    bench.write("foam/0/U", format!("{}{rate}{}", &velocity[..begin], &velocity[end..]));
+    foam_program(&bench, "blockMesh", &[]);
+    perturb(&bench, 10.0, 4, 0.1);
+    let told = run(&bench, "told", &[]);
+    good(&told);
+    for word in ["patch z0 (flowRateInletVelocity)", "leastSquares"] {
+        assert!(told.stderr.contains(word), "{word}: {}", told.stderr);
+    }
 }
 
 #[test]

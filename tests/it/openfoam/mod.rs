@@ -6,6 +6,7 @@ mod failures;
 mod fields;
 mod function_object;
 mod gas;
+mod gas_alone;
 mod gas_meshes;
 mod gas_runs;
 mod meshes;

@@ -191,6 +191,17 @@ fn tell_gas(simulation: &Simulation) {
             seconds.mapping,
             seconds.wire
         );
+        let extremes = exchange.extremes();
+        tracing::info!(
+            "gas: {} exchanges in {} steps of the flow, up to {} for one, Courant number up to {:.2}; void \
+             fraction of cells down to {:.3}, drag up to {:.3e} kg/(m3 s)",
+            extremes.exchanges,
+            extremes.steps,
+            extremes.most_steps,
+            extremes.courant,
+            extremes.least_void,
+            extremes.most_drag
+        );
     }
 }
 

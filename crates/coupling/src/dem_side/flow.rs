@@ -104,6 +104,7 @@ impl Shared {
         values.viscous_force.resize(count_if(|question| question.viscous_force), Vector3::zeros());
         values.vorticity.resize(count_if(|question| question.vorticity), Vector3::zeros());
         (values.iterations, values.residual, values.seconds) = (0, 0.0, 0.0);
+        (values.steps, values.courant) = (0, 0.0);
         self.remote.collect(MessageKind::Flow, |cells, _, sections| read(cells, sections, values))?;
         let outcome = sound(values);
         self.remote.noted(outcome)
@@ -168,6 +169,12 @@ fn read(of_rank: Range<usize>, sections: &Sections<'_>, values: &mut FlowValues)
     values.iterations = values.iterations.max(answer.iterations);
     values.residual = values.residual.max(answer.residual);
     values.seconds = values.seconds.max(answer.seconds);
+    values.steps = values.steps.max(answer.steps);
+    values.courant = values.courant.max(answer.courant);
+    let advice = sections.text();
+    if !advice.is_empty() {
+        tracing::warn!("gas: {}", advice.trim_end());
+    }
     Ok(())
 }
 

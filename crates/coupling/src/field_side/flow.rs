@@ -17,8 +17,10 @@ pub struct FlowReply<'a> {
     pub viscous_force: &'a [[f64; 3]],
     /// Vorticity ∇ × u [1/s]; empty unless wanted.
     pub vorticity: &'a [[f64; 3]],
-    /// Iterations, residual and time.
+    /// Iterations, residual, time, steps and Courant number.
     pub answer: FlowAnswer,
+    /// What the case should have for its mesh, for the user; empty for nothing.
+    pub advice: &'a str,
 }
 
 /// Effect of the grains on the gas in a rank's cells.
@@ -94,12 +96,15 @@ impl FieldSide {
         for (section, array) in arrays {
             layout = layout.with::<[f64; 3]>(section, array.len());
         }
-        let layout = layout.with::<FlowAnswer>(Section::FlowAnswer, 1);
+        let advice = reply.advice.as_bytes();
+        let layout =
+            layout.with::<FlowAnswer>(Section::FlowAnswer, 1).with::<u8>(Section::Text, advice.len());
         self.answer(&layout, |payload| {
             for (section, array) in arrays {
                 layout.section_mut::<[f64; 3]>(payload, section)?.copy_from_slice(array);
             }
             layout.section_mut::<FlowAnswer>(payload, Section::FlowAnswer)?.fill(reply.answer);
+            layout.section_mut::<u8>(payload, Section::Text)?.copy_from_slice(advice);
             Ok(())
         })
     }

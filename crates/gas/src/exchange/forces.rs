@@ -4,8 +4,35 @@ use super::{Exchange, GrainsView, Held, sphere};
 use crate::mapping::CHUNK;
 use amberfield_core::{Gas, GasModel, Vector3};
 use amberfield_laws::particle_reynolds::Slip;
-use amberfield_laws::{drag, magnus_lift, saffman_lift};
+use amberfield_laws::{drag, magnus_lift, saffman_lift, self_disturbance};
 use rayon::prelude::*;
+use std::f64::consts::PI;
+
+/// Rounds in which drag and the wind that a grain makes for itself are brought together.
+const ROUNDS: u32 = 3;
+/// Most of its slip that a grain's own wind may take.
+const MOST_WIND: f64 = 0.6;
+
+/// Part of a grain in what it finds around it.
+#[derive(Clone, Copy, Debug)]
+struct Itself {
+    /// Share of the volume that hinders it: that of the others, where it is alone, and of all, in a bed, whose
+    /// laws count every grain.
+    others: f64,
+    /// How much it is alone: 1 far from others, 0 in a bed.
+    alone: f64,
+}
+
+impl Itself {
+    /// Part of a grain of a volume [m³] in a share of the volume, over which it is spread by Gaussians [m].
+    fn new(solid: f64, volume: f64, spread: f64) -> Self {
+        let own = volume / ((2.0 * PI).powf(1.5) * spread.powi(3));
+        let share = if solid > 0.0 { (own / solid).min(1.0) } else { 1.0 };
+        // Slope 1 where it is alone, so that an error of its own share counts once; of third order in a bed.
+        let alone = share * share * share * (3.0 - 2.0 * share);
+        Self { others: solid * (1.0 - alone), alone }
+    }
+}
 
 /// Flow at a grain.
 #[derive(Clone, Copy, Debug)]
@@ -55,10 +82,23 @@ impl Exchange {
         let AtGrain { void_fraction, vorticity, .. } = *flow;
         let diameter = 2.0 * grains.centre[i][3];
         let slip = flow.velocity - grains.velocity[i];
-        let known = Slip { speed: slip.norm(), void_fraction, diameter, density, viscosity };
+        let [of_void, of_flow] = self.mapping.spreads_of_one(self.cells[i], diameter);
+        let itself = Itself::new(1.0 - void_fraction, sphere(diameter), of_void);
+        let void_fraction = 1.0 - itself.others;
+        let beta = |speed: f64| {
+            let known = Slip { speed, void_fraction, diameter, density, viscosity };
+            drag::coefficient(self.gas.drag, &known)
+        };
+        // Drag in the gas that the grain does not disturb, over the slip in the gas as it is.
+        let mut larger = 1.0;
+        for _ in 0..ROUNDS {
+            let speed = larger * slip.norm();
+            let wind = self_disturbance::per_force(speed, of_flow, density, viscosity);
+            larger = 1.0 / (1.0 - (itself.alone * wind * beta(speed)).min(MOST_WIND));
+        }
         let over = match self.flow.model {
-            GasModel::A => 1.0,
-            GasModel::B => 1.0 / void_fraction,
+            GasModel::A => larger,
+            GasModel::B => larger / void_fraction,
         };
         let mut lift = Vector3::zeros();
         if self.flow.saffman_lift {
@@ -67,12 +107,7 @@ impl Exchange {
         if self.gas.magnus_lift && !grains.angular.is_empty() {
             lift += magnus_lift::force(-slip, grains.angular[i], vorticity, diameter, density);
         }
-        Held {
-            drag: over * drag::coefficient(self.gas.drag, &known),
-            push: lift,
-            slot: i as u32,
-            ..Held::default()
-        }
+        Held { drag: over * beta(larger * slip.norm()), push: lift, slot: i as u32, ..Held::default() }
     }
 
     /// Sets the force of the flow on every grain until the next exchange.

@@ -27,8 +27,10 @@
 
 mod forces;
 mod ledger;
+mod measures;
 mod state;
 
+pub use measures::{ExchangeExtremes, ExchangeSeconds};
 pub use state::ExchangeState;
 
 use ledger::Gone;
@@ -76,17 +78,6 @@ struct Held {
     slot: u32,
 }
 
-/// Time of the exchanges by purpose [s].
-#[derive(Clone, Copy, Debug, Default, PartialEq)]
-pub struct ExchangeSeconds {
-    /// Finding cells and shares, taking grains to cells and the flow to grains.
-    pub mapping: f64,
-    /// Waiting while the solver works.
-    pub solver: f64,
-    /// The messages' way there and back.
-    pub wire: f64,
-}
-
 /// A gas whose flow is computed, and the grains in it.
 #[derive(Debug)]
 pub struct Exchange {
@@ -120,6 +111,7 @@ pub struct Exchange {
     /// Answer of the solver, if it had to be taken before its time.
     early: Option<FlowValues>,
     seconds: ExchangeSeconds,
+    extremes: ExchangeExtremes,
 }
 
 impl Exchange {
@@ -160,6 +152,7 @@ impl Exchange {
             asked_s: None,
             early: None,
             seconds: ExchangeSeconds::default(),
+            extremes: ExchangeExtremes::NONE,
             solver,
         })
     }
@@ -275,6 +268,12 @@ impl Exchange {
         self.seconds
     }
 
+    /// Steps of the flow and extremes, since this process began.
+    #[must_use]
+    pub fn extremes(&self) -> ExchangeExtremes {
+        self.extremes
+    }
+
     /// Length over which grains are smoothed where cells are small [m].
     #[must_use]
     pub fn smoothing_length_m(&self) -> f64 {
@@ -362,6 +361,7 @@ impl Exchange {
                 self.seconds.wire += waited - solving;
             }
         }
+        self.extremes.note(interval_s, &self.values, &self.void_fraction, &self.drag);
         let volumes = self.solver.mesh().volumes();
         for (cell, owed) in self.owed.iter_mut().enumerate() {
             let given = self.values.velocity[cell] * self.drag[cell] - self.source[cell];

@@ -26,6 +26,9 @@ use sparse::{Rows, add};
 const OVER_DIAMETER: f64 = 3.0;
 /// Least spread σ_f over the distance of two cells' centres. The nodes spread a grain over some 0.4 already.
 const OVER_CELL: f64 = 0.6;
+/// Variance along an axis, over the square of a cell's size, of where the cells are that the nodes give a
+/// grain to: that of linear functions.
+const OF_NODES: f64 = 1.0 / 6.0;
 /// Spread σ along an axis over the smoothing length: that of (1 − s²)³ over a ball.
 const SPREAD: f64 = 0.301_511_344_577_763_6;
 /// Places at which a grain is looked for, over its diameter from its centre: its centre, and four corners of
@@ -130,6 +133,20 @@ impl Mapping {
     #[must_use]
     pub fn length(&self) -> f64 {
         self.length
+    }
+
+    /// Standard deviations [m] along an axis over which a lone grain of a diameter [m] in a cell is spread:
+    /// that of the void fraction which it finds where it is, and that of its force and of the flow which it
+    /// feels, both together. They hold far from walls; in cells of several sizes they are estimates.
+    pub(crate) fn spreads_of_one(&self, cell: u32, diameter: f64) -> [f64; 2] {
+        let size = self.volumes[cell as usize].cbrt();
+        let beside = if self.is_coarse { 0.0 } else { BESIDE * diameter };
+        // Of the places beside the centre, and of linear functions between nodes half a cell apart.
+        let mut placed = (1.0 - AT_CENTRE) * beside * beside + OF_NODES * size * size;
+        let smoothed = (SPREAD * self.length).max(OVER_CELL * size).powi(2);
+        let void = smoothed + 2.0 * placed;
+        placed += smoothed;
+        [void.sqrt(), (2.0 * placed).sqrt()]
     }
 
     /// Finds the places of grains among the cells of `mesh`.

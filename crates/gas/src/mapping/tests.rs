@@ -83,3 +83,29 @@ fn nonsense_is_refused() {
     assert!(Mapping::new(&mesh, &shapes, Some(f64::NAN), 0.1).is_err());
     assert!(Mapping::new(&mesh, &shapes, Some(-1.0), 0.1).is_err());
 }
+
+/// Case of a lone grain: what it finds of itself is what [`Mapping::spreads_of_one`] says, in cells of any size.
+#[test]
+fn a_lone_grain_is_spread_as_far_as_is_said() {
+    const COUNT: usize = 24;
+    let edge = COUNT as f64;
+    let domain = Domain::new(Vector3::zeros(), Vector3::repeat(edge), [[Boundary::Periodic; 2]; 3]).unwrap();
+    let mesh = FarMesh::new(FarMeshParts::of_box(&domain, [COUNT; 3]).unwrap()).unwrap();
+    for diameter in [0.1, 0.3, 1.0, 2.0, 3.5] {
+        let mapping = mapping(&mesh, None, diameter);
+        let (mut void, mut flow, mut said) = (0.0, 0.0, [0.0; 2]);
+        let places = [[0.5, 0.5, 0.5], [0.1, 0.4, 0.2], [0.0, 0.0, 0.0], [0.3, 0.0, 0.45], [0.25; 3]];
+        for offset in places {
+            let centre = Vector3::from(offset) + Vector3::repeat(11.0);
+            let cell = mesh.locate(&centre, None).0;
+            let place = mapping.place(&mesh, &[Placed { centre, diameter, cell }]);
+            let density = mapping.spread(&place, &[[1.0]]);
+            void += mapping.gather_near(&place, &density)[0][0] / places.len() as f64;
+            flow += mapping.gather(&place, &density)[0][0] / places.len() as f64;
+            said = mapping.spreads_of_one(cell, diameter);
+        }
+        let spread = |density: f64| (density * (2.0 * std::f64::consts::PI).powf(1.5)).powf(-1.0 / 3.0);
+        let off = [(void, said[0]), (flow, said[1])].map(|(found, said)| said / spread(found) - 1.0);
+        assert!(off.iter().all(|off| off.abs() < 0.08), "{diameter}: {off:?}");
+    }
+}

@@ -14,14 +14,20 @@ pub struct FlowAnswer {
     pub residual: f64,
     /// Time that the solver took [s].
     pub seconds: f64,
+    /// Steps of the flow in the interval.
+    pub steps: u64,
+    /// Largest Courant number of a step.
+    pub courant: f64,
 }
 
-// SAFETY: three numbers without padding, see below.
+// SAFETY: five numbers without padding, see below.
 unsafe impl Element for FlowAnswer {}
 
 const _: () = {
-    assert!(size_of::<FlowAnswer>() == 24);
+    assert!(size_of::<FlowAnswer>() == 40);
     assert!(offset_of!(FlowAnswer, iterations) == 0);
     assert!(offset_of!(FlowAnswer, residual) == 8);
     assert!(offset_of!(FlowAnswer, seconds) == 16);
+    assert!(offset_of!(FlowAnswer, steps) == 24);
+    assert!(offset_of!(FlowAnswer, courant) == 32);
 };
