@@ -16,10 +16,10 @@ const MOST_WIND: f64 = 0.6;
 /// Part of a grain in what it finds around it.
 #[derive(Clone, Copy, Debug)]
 struct Itself {
-    /// Share of the volume that hinders it: that of the others, where it is alone, and of all, in a bed, whose
+    /// Share of the volume that hinders it: that of the others where it is alone, and of all in a bed, whose
     /// laws count every grain.
     others: f64,
-    /// How much it is alone: 1 far from others, 0 in a bed.
+    /// Degree to which it is alone: 1 far from others, 0 in a bed.
     alone: f64,
 }
 

@@ -31,7 +31,7 @@ pub struct ExchangeExtremes {
 }
 
 impl ExchangeExtremes {
-    /// Before the first exchange.
+    /// Extremes before the first exchange.
     pub(super) const NONE: Self =
         Self { exchanges: 0, steps: 0, most_steps: 0, courant: 0.0, least_void: 1.0, most_drag: 0.0 };
 

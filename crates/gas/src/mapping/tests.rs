@@ -84,7 +84,7 @@ fn nonsense_is_refused() {
     assert!(Mapping::new(&mesh, &shapes, Some(-1.0), 0.1).is_err());
 }
 
-/// Case of a lone grain: what it finds of itself is what [`Mapping::spreads_of_one`] says, in cells of any size.
+/// Case of a lone grain: it finds itself spread as [`Mapping::spreads_of_one`] says, in cells of any size.
 #[test]
 fn a_lone_grain_is_spread_as_far_as_is_said() {
     const COUNT: usize = 24;
