@@ -47,7 +47,8 @@ struct AtGrain {
 impl Exchange {
     /// Sets drag and lift of every grain in the flow known so far, and their sums by cell.
     pub(super) fn resist(&mut self, grains: &GrainsView<'_>, interval_s: f64) {
-        let velocity = self.gathered(&self.values.velocity);
+        self.smooth_flow();
+        let flow = self.mapping.of_grains(&self.shares, &self.smooth);
         let vorticity =
             if self.flow.saffman_lift { self.gathered(&self.values.vorticity) } else { Vec::new() };
         let voids: Vec<[f64; 1]> = self.void_fraction.iter().map(|&void| [void]).collect();
@@ -55,7 +56,7 @@ impl Exchange {
         let one = |i: usize| {
             let flow = AtGrain {
                 void_fraction: voids[i][0],
-                velocity: velocity[i],
+                velocity: Vector3::new(flow[i][0], flow[i][1], flow[i][2]),
                 vorticity: vorticity.get(i).copied().unwrap_or_default(),
             };
             self.resistance(grains, i, &flow)
@@ -113,24 +114,40 @@ impl Exchange {
     /// Sets the force of the flow on every grain until the next exchange.
     pub(super) fn hold(&mut self, grains: &GrainsView<'_>) {
         let acts = self.flow.model == GasModel::A;
-        let velocity = self.gathered(&self.values.velocity);
-        let slope = if acts { self.gathered(&self.values.pressure_gradient) } else { Vec::new() };
+        self.smooth_flow();
+        let flow = self.mapping.of_grains(&self.shares, &self.smooth);
         let is_viscous = acts && self.flow.viscous_force;
         let viscous = if is_viscous { self.gathered(&self.values.viscous_force) } else { Vec::new() };
         let weight = self.gravity * self.gas.density_kg_m3;
         self.held.par_iter_mut().with_min_len(CHUNK).enumerate().for_each(|(i, held)| {
             let none = Vector3::zeros();
-            let density = viscous.get(i).unwrap_or(&none) - slope.get(i).unwrap_or(&none) - weight;
-            held.flow = velocity[i];
-            held.push += velocity[i] * held.drag;
+            let [x, y, z, slope_x, slope_y, slope_z] = flow[i];
+            let slope = if acts { Vector3::new(slope_x, slope_y, slope_z) } else { none };
+            let density = viscous.get(i).unwrap_or(&none) - slope - weight;
+            held.flow = Vector3::new(x, y, z);
+            held.push += held.flow * held.drag;
             held.still = density * sphere(2.0 * grains.centre[i][3]);
         });
+        self.felt.clone_from(&self.values.velocity);
         self.elapsed_s = 0.0;
+    }
+
+    /// Makes the flow smooth at the nodes, if it is new.
+    fn smooth_flow(&mut self) {
+        if self.smooth.is_empty() {
+            let cells = self.values.velocity.iter().zip(&self.values.pressure_gradient);
+            let both: Vec<[f64; 6]> = cells.map(|(u, p)| [u.x, u.y, u.z, p.x, p.y, p.z]).collect();
+            self.smooth = self.mapping.smooth(&both);
+        }
     }
 
     /// Means of the cells' vectors at the grains, weighted by their shares.
     fn gathered(&self, values: &[Vector3<f64>]) -> Vec<Vector3<f64>> {
         let values: Vec<[f64; 3]> = values.iter().map(|&value| value.into()).collect();
-        self.mapping.gather(&self.shares, &values).into_iter().map(Vector3::from).collect()
+        self.mapping
+            .of_grains(&self.shares, &self.mapping.smooth(&values))
+            .into_iter()
+            .map(Vector3::from)
+            .collect()
     }
 }

@@ -16,10 +16,12 @@ pub(super) struct Gone {
 }
 
 impl Exchange {
-    /// Books what the grains got since the last exchange in the cells whose gas they got it of.
-    pub(super) fn book(&mut self) {
+    /// Takes what the grains got since the last exchange, as sums at the nodes: see [`Self::got`].
+    ///
+    /// Empty where there was none.
+    pub(super) fn got_at_nodes(&mut self) -> Vec<[f64; 4]> {
         if self.held.is_empty() && self.gone.is_empty() {
-            return;
+            return Vec::new();
         }
         let mut got = vec![[0.0; 4]; self.places.len()];
         for (i, held) in self.held.iter().enumerate() {
@@ -31,12 +33,13 @@ impl Exchange {
         for held in &mut self.held {
             self.booked += std::mem::take(&mut held.impulse);
         }
-        let by_cell = self.mapping.spread(&self.shares, &got);
-        let volumes = self.solver.mesh().volumes();
-        for (cell, [drag, x, y, z]) in by_cell.into_iter().enumerate() {
-            let impulse = self.values.velocity[cell] * drag + Vector3::new(x, y, z);
-            self.owed[cell] += impulse * volumes[cell];
-        }
+        self.mapping.at_nodes(&self.shares, &got)
+    }
+
+    /// Books what grains got of a cell's gas, per volume: β t, and the impulse beside that of its velocity.
+    pub(super) fn book(&mut self, cell: usize, drag: f64, beside: Vector3<f64>) {
+        let impulse = self.felt[cell] * drag + beside;
+        self.owed[cell] += impulse * self.solver.mesh().volumes()[cell];
     }
 
     /// Gives what a grain got since the exchange: β t, times which each cell's own velocity u_c counts, and

@@ -104,6 +104,10 @@ pub struct Exchange {
     drag: Vec<f64>,
     source: Vec<Vector3<f64>>,
     values: FlowValues,
+    /// Velocity and pressure gradient at the nodes, smooth; empty where the flow is new.
+    smooth: Vec<[f64; 6]>,
+    /// Velocity by cell that the grains feel [m/s].
+    felt: Vec<Vector3<f64>>,
     response_s: f64,
     warned: bool,
     /// Interval that the solver works on [s].
@@ -147,6 +151,8 @@ impl Exchange {
             drag: vec![0.0; cells],
             source: vec![Vector3::zeros(); cells],
             values: FlowValues::default(),
+            smooth: Vec::new(),
+            felt: Vec::new(),
             response_s: f64::INFINITY,
             warned: false,
             asked_s: None,
@@ -170,10 +176,10 @@ impl Exchange {
         time_s: f64,
     ) -> Result<(), GasError> {
         let (begun, before) = (Instant::now(), self.seconds);
-        self.book();
+        let got = self.got_at_nodes();
         self.take()?;
         self.place(domain, grains);
-        self.fill_void(grains);
+        self.fill_cells(&got, grains);
         if self.values.velocity.is_empty() {
             // The flow as it is at the start.
             self.ask(0.0, time_s)?;
@@ -308,11 +314,20 @@ impl Exchange {
         self.diameters = diameters;
     }
 
-    /// Fills in the void fraction ε of every cell.
-    fn fill_void(&mut self, grains: &GrainsView<'_>) {
+    /// Fills in the void fraction ε of every cell, and books there what grains got, by sums at the nodes.
+    fn fill_cells(&mut self, got: &[[f64; 4]], grains: &GrainsView<'_>) {
         let solids: Vec<[f64; 1]> = grains.centre.iter().map(|c| [sphere(2.0 * c[3])]).collect();
-        for (void, [solid]) in self.void_fraction.iter_mut().zip(self.mapping.spread(&self.shares, &solids)) {
-            *void = 1.0 - solid;
+        let solids = self.mapping.at_nodes(&self.shares, &solids);
+        // Both in one go: smoothing takes most of the time.
+        let sums: Vec<[f64; 5]> = match got {
+            [] => solids.iter().map(|&[solid]| [0.0, 0.0, 0.0, 0.0, solid]).collect(),
+            _ => got.iter().zip(&solids).map(|(&[a, b, c, d], &[solid])| [a, b, c, d, solid]).collect(),
+        };
+        for (cell, [drag, x, y, z, solid]) in self.mapping.to_cells(&sums).into_iter().enumerate() {
+            self.void_fraction[cell] = 1.0 - solid;
+            if !got.is_empty() {
+                self.book(cell, drag, Vector3::new(x, y, z));
+            }
         }
         let mut clipped = 0;
         for void in self.void_fraction.iter_mut().filter(|void| **void < LEAST_VOID) {
@@ -349,6 +364,7 @@ impl Exchange {
     /// Takes the flow that was asked for, if any, and books what the gas gave meanwhile.
     fn take(&mut self) -> Result<(), GasError> {
         let Some(interval_s) = self.asked_s.take() else { return Ok(()) };
+        self.smooth.clear();
         match self.early.take() {
             Some(values) => self.values = values,
             None => {

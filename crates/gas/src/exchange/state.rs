@@ -95,6 +95,8 @@ impl Exchange {
         self.gone.clone_from(&state.gone);
         self.booked = state.booked;
         self.values.clone_from(&state.values);
+        self.felt.clone_from(&state.values.velocity);
+        self.smooth.clear();
         self.response_s = state.response_s;
         self.asked_s = state.asked_s;
         self.early.clone_from(&state.early);

@@ -22,8 +22,8 @@ use smoothing::Smoothing;
 use sparse::{Rows, add};
 
 /// Least smoothing length over the largest diameter. Gas laws know many grains, not one: a grain in cells
-/// smaller than itself is spread over some sixty times its volume.
-const OVER_DIAMETER: f64 = 3.0;
+/// smaller than itself is spread over some eighty times its volume.
+const OVER_DIAMETER: f64 = 3.3;
 /// Least spread σ_f over the distance of two cells' centres. The nodes spread a grain over some 0.4 already.
 const OVER_CELL: f64 = 0.6;
 /// Variance along an axis, over the square of a cell's size, of where the cells are that the nodes give a
@@ -93,10 +93,6 @@ pub(crate) struct Placed {
     /// Cell that the centre is in.
     pub(crate) cell: u32,
 }
-
-/// Sums of numbers of grains at the nodes.
-#[derive(Clone, Debug, Default, PartialEq)]
-pub(crate) struct AtAllNodes<const N: usize>(Vec<[f64; N]>);
 
 impl Mapping {
     /// Mapping with a smoothing length [m], or with one that suits the grains up to a diameter [m]; nowhere
@@ -195,56 +191,37 @@ impl Mapping {
         let share = (1.0 - AT_CENTRE) / CORNERS.len() as f64;
         for corner in CORNERS {
             let beside = grain.centre + Vector3::from(corner) * (BESIDE * grain.diameter);
-            let wrapped = mesh.domain().wrap(beside);
-            let (cell, is_inside) = mesh.locate(&wrapped, Some(grain.cell));
-            // What is beyond a wall counts where the grain is.
-            let at = if is_inside {
-                self.nodes.at(mesh, &wrapped, cell)
-            } else {
-                self.nodes.at(mesh, &beside, grain.cell)
-            };
-            add(at, share);
+            add(self.nodes.at(mesh, &beside, grain.cell), share);
         }
     }
 
-    /// No grains at any node.
-    pub(crate) fn none<const N: usize>(&self) -> AtAllNodes<N> {
-        AtAllNodes(vec![[0.0; N]; self.nodes.count()])
-    }
-
-    /// Adds the numbers of grains to the nodes; the order of sums depends on counts alone.
-    pub(crate) fn gather_at_nodes<const N: usize>(
-        &self,
-        places: &Places,
-        numbers: &[[f64; N]],
-        sums: &mut AtAllNodes<N>,
-    ) {
+    /// Sums of numbers of grains at the nodes; their order depends on counts alone.
+    pub(crate) fn at_nodes<const N: usize>(&self, places: &Places, numbers: &[[f64; N]]) -> Vec<[f64; N]> {
         let nodes = self.nodes.count();
         let parts = (4 * numbers.len() / nodes.max(1)).clamp(1, MOST_PARTS);
-        let sum = |grains: std::ops::Range<usize>, sums: &mut [[f64; N]]| {
+        let sum = |grains: std::ops::Range<usize>| {
+            let mut sums = vec![[0.0; N]; nodes];
             for grain in grains {
                 places.of(grain).for_each(|(node, weight)| add(&mut sums[node], weight, &numbers[grain]));
             }
+            sums
         };
         if parts == 1 {
-            return sum(0..numbers.len(), &mut sums.0);
+            return sum(0..numbers.len());
         }
-        let of_parts: Vec<Vec<[f64; N]>> = (0..parts)
-            .into_par_iter()
-            .map(|part| {
-                let mut sums = vec![[0.0; N]; nodes];
-                sum(part * numbers.len() / parts..(part + 1) * numbers.len() / parts, &mut sums);
-                sums
-            })
-            .collect();
-        sums.0.par_iter_mut().enumerate().with_min_len(CHUNK).for_each(|(node, sum)| {
-            of_parts.iter().for_each(|part| add(sum, 1.0, &part[node]));
-        });
+        let bounds = |part: usize| part * numbers.len() / parts..(part + 1) * numbers.len() / parts;
+        let of_parts: Vec<_> = (0..parts).into_par_iter().map(|part| sum(bounds(part))).collect();
+        let total = |node: usize| {
+            let mut sum = [0.0; N];
+            of_parts.iter().for_each(|part| add(&mut sum, 1.0, &part[node]));
+            sum
+        };
+        (0..nodes).into_par_iter().with_min_len(CHUNK).map(total).collect()
     }
 
     /// Numbers per volume of each cell, from sums at the nodes.
-    pub(crate) fn to_cells<const N: usize>(&self, sums: &AtAllNodes<N>) -> Vec<[f64; N]> {
-        let per_volume = sums.0.iter().zip(&self.nodes.volumes_of_nodes);
+    pub(crate) fn to_cells<const N: usize>(&self, sums: &[[f64; N]]) -> Vec<[f64; N]> {
+        let per_volume = sums.iter().zip(&self.nodes.volumes_of_nodes);
         let smooth = self.smoothing.apply(per_volume.map(|(sum, volume)| sum.map(|x| x / volume)).collect());
         let mut cells = self.of_cells.times(&smooth);
         for (cell, volume) in cells.iter_mut().zip(&self.volumes) {
@@ -255,14 +232,12 @@ impl Mapping {
 
     /// Numbers of grains per volume of each cell.
     pub(crate) fn spread<const N: usize>(&self, places: &Places, numbers: &[[f64; N]]) -> Vec<[f64; N]> {
-        let mut sums = self.none();
-        self.gather_at_nodes(places, numbers, &mut sums);
-        self.to_cells(&sums)
+        self.to_cells(&self.at_nodes(places, numbers))
     }
 
-    /// Means of cells' numbers at grains, by their shares.
-    pub(crate) fn gather<const N: usize>(&self, places: &Places, cells: &[[f64; N]]) -> Vec<[f64; N]> {
-        self.of_grains(places, &self.smoothing.apply(self.nodes.to_cells.times(cells)))
+    /// Smooth numbers of cells at the nodes, from which grains take their means.
+    pub(crate) fn smooth<const N: usize>(&self, cells: &[[f64; N]]) -> Vec<[f64; N]> {
+        self.smoothing.apply(self.nodes.to_cells.times(cells))
     }
 
     /// Means of cells' numbers at grains, without smoothing: of numbers that are smooth already.
@@ -271,7 +246,7 @@ impl Mapping {
     }
 
     /// Means of nodes' numbers at grains.
-    fn of_grains<const N: usize>(&self, places: &Places, nodes: &[[f64; N]]) -> Vec<[f64; N]> {
+    pub(crate) fn of_grains<const N: usize>(&self, places: &Places, nodes: &[[f64; N]]) -> Vec<[f64; N]> {
         let one = |grain: usize| {
             let mut sum = [0.0; N];
             places.of(grain).for_each(|(node, weight)| add(&mut sum, weight, &nodes[node]));

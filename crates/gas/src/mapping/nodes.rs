@@ -13,12 +13,14 @@ use super::numbering::Numbering;
 use super::sparse::Rows;
 use crate::shapes::CellShapes;
 use amberfield_core::Vector3;
-use amberfield_field::far::FarMesh;
+use amberfield_field::far::{CellFace, FarMesh, Neighbour};
 
 /// Least volume of a tetrahedron over its cell's: a flatter one holds no grain.
 const FLAT: f64 = 1e-9;
-/// Least barycentric coordinate with which a grain is in a tetrahedron.
-const INSIDE: f64 = -1e-9;
+/// Distance beyond a face at which a point is still on it, over the face's distance from the cell's centre.
+const ON_FACE: f64 = 1e-9;
+/// Cells of a walk at most.
+const LONGEST_WALK: usize = 20;
 
 /// A grain's nodes and their weights, which add up to one.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
@@ -41,6 +43,8 @@ pub(super) struct Nodes {
     face_centres: Vec<Vector3<f64>>,
     /// Node of each corner of each face.
     of_corner: Vec<u32>,
+    /// Inverse distance of each face from its cell's centre, along its normal [1/m].
+    per_reach: Vec<f64>,
     /// Volume of each node, a quarter of that of its tetrahedra [m³].
     pub(super) volumes_of_nodes: Vec<f64>,
     /// Share θ of each node that each cell has.
@@ -51,6 +55,10 @@ impl Nodes {
     pub(super) fn new(mesh: &FarMesh, shapes: &CellShapes) -> Self {
         let cells = mesh.cell_count();
         let Numbering { first_face, face_centres, of_face, of_corner, count } = Numbering::new(mesh, shapes);
+        let per_reach = |cell: usize| {
+            let reach = move |face: &CellFace| face.offset - face.normal.dot(&mesh.centres()[cell]);
+            mesh.faces_of(cell).iter().map(move |face| 1.0 / reach(face))
+        };
         let mut nodes = Self {
             shapes: shapes.clone(),
             first_face,
@@ -59,6 +67,7 @@ impl Nodes {
             of_face,
             face_centres,
             of_corner,
+            per_reach: (0..cells).flat_map(per_reach).collect(),
             volumes_of_nodes: Vec::new(),
             to_cells: Rows::default(),
         };
@@ -100,10 +109,9 @@ impl Nodes {
                     let tetrahedron = self.tetrahedron(cell, face, corner);
                     let quarter = 0.25 * tetrahedron.volume();
                     let nodes = self.nodes_of(cell, face, corner);
-                    for (a, b, is_half, squared) in tetrahedron.sides() {
-                        // A face's centre is half a cell away from what it is joined with.
-                        let floor = if is_half { 2.0 * least } else { least };
-                        let conductance = quarter * (spread * spread / squared).max(floor * floor);
+                    for (a, b, of_cell_squared, squared) in tetrahedron.sides() {
+                        let floor = least * least * of_cell_squared;
+                        let conductance = quarter * (spread * spread / squared).max(floor);
                         let (a, b) = (nodes[a], nodes[b]);
                         if a != b && conductance.is_finite() {
                             of_cell.push((a.min(b), a.max(b), conductance));
@@ -145,33 +153,72 @@ impl Nodes {
         Tetrahedron { edges }
     }
 
-    /// Nodes and weights of a grain at a point [m] of a cell.
+    /// Nodes and weights of a grain at a point [m] that is in a cell or near it.
+    ///
+    /// Beyond a wall they are those of a point on it.
     pub(super) fn at(&self, mesh: &FarMesh, point: &Vector3<f64>, cell: u32) -> AtNodes {
-        let cell = cell as usize;
+        let (mut cell, mut point) = (cell as usize, *point);
+        let mut face = self.ahead(mesh, cell, &point);
+        for _ in 0..LONGEST_WALK {
+            let crossed = &mesh.faces_of(cell)[face.number];
+            let Neighbour::Cell { cell: other, shift } = crossed.neighbour else { break };
+            if face.ahead <= 1.0 + ON_FACE {
+                break;
+            }
+            (cell, point) = (other as usize, point - shift);
+            face = self.ahead(mesh, cell, &point);
+        }
         let from = point - self.centres[cell];
-        // The ray from the centre through the point leaves a convex cell where this is largest.
-        let mut likely = (f64::NEG_INFINITY, 0);
-        for (face, plane) in self.faces(cell).zip(mesh.faces_of(cell)) {
-            let ahead = plane.normal.dot(&from) / (plane.offset - plane.normal.dot(&self.centres[cell]));
-            if ahead > likely.0 {
-                likely = (ahead, face);
+        let first = self.first_face[cell] as usize;
+        self.quick(cell, first + face.number, &from).unwrap_or_else(|| self.best(cell, &from))
+    }
+
+    /// Face through which the ray from a cell's centre through a point [m] leaves a convex cell.
+    fn ahead(&self, mesh: &FarMesh, cell: usize, point: &Vector3<f64>) -> Ahead {
+        let from = point - self.centres[cell];
+        let mut face = Ahead { ahead: f64::NEG_INFINITY, number: 0 };
+        for (number, plane) in mesh.faces_of(cell).iter().enumerate() {
+            let ahead = plane.normal.dot(&from) * self.per_reach[self.first_face[cell] as usize + number];
+            if ahead > face.ahead {
+                face = Ahead { ahead, number };
             }
         }
+        face
+    }
+
+    /// Nodes and weights in the tetrahedron of a face that holds a place seen from the cell's centre [m].
+    fn quick(&self, cell: usize, face: usize, from: &Vector3<f64>) -> Option<AtNodes> {
+        for corner in 0..self.shapes.corners(face).len() {
+            let [a, b, c] = self.tetrahedron(cell, face, corner).edges;
+            let across = b.cross(&c);
+            let volume = a.dot(&across);
+            let first = from.dot(&across) / volume;
+            let second = from.dot(&c.cross(&a)) / volume;
+            let third = from.dot(&a.cross(&b)) / volume;
+            let rest = 1.0 - first - second - third;
+            // Of a flat one these are no numbers, or large ones of either sign.
+            if first >= 0.0 && second >= 0.0 && third >= 0.0 && rest >= 0.0 {
+                let nodes = self.nodes_of(cell, face, corner);
+                return Some(AtNodes { nodes, weights: [rest, first, second, third] });
+            }
+        }
+        None
+    }
+
+    /// Nodes and weights in the tetrahedron of a cell that a place is least outside of.
+    fn best(&self, cell: usize, from: &Vector3<f64>) -> AtNodes {
         let mut best =
             (f64::NEG_INFINITY, AtNodes { nodes: [cell as u32; 4], weights: [1.0, 0.0, 0.0, 0.0] });
-        'search: for face in std::iter::once(likely.1).chain(self.faces(cell)) {
+        for face in self.faces(cell) {
             for corner in 0..self.shapes.corners(face).len() {
                 let tetrahedron = self.tetrahedron(cell, face, corner);
-                if tetrahedron.volume().abs() < FLAT * self.volumes[cell] {
+                if tetrahedron.volume() < FLAT * self.volumes[cell] {
                     continue;
                 }
-                let weights = tetrahedron.coordinates(&from);
+                let weights = tetrahedron.coordinates(from);
                 let least = weights.iter().copied().fold(f64::INFINITY, f64::min);
                 if least > best.0 {
                     best = (least, AtNodes { nodes: self.nodes_of(cell, face, corner), weights });
-                }
-                if best.0 >= INSIDE {
-                    break 'search;
                 }
             }
         }
@@ -180,6 +227,15 @@ impl Nodes {
         let sum: f64 = inside.iter().sum();
         AtNodes { nodes, weights: inside.map(|weight| weight / sum) }
     }
+}
+
+/// Face ahead of a point as a cell's centre sees it.
+#[derive(Clone, Copy)]
+struct Ahead {
+    /// Distance of the point along the face's normal over that of the face; above 1 the point is beyond it.
+    ahead: f64,
+    /// Number of the face among the cell's.
+    number: usize,
 }
 
 /// A tetrahedron of a cell's centre and three more places.
@@ -199,17 +255,17 @@ impl Tetrahedron {
         self.signed().abs()
     }
 
-    /// Sides: the numbers of two corners (0 the cell's centre, 1 the face's), whether one of them is the
-    /// face's centre, and the squared length [m²].
-    fn sides(&self) -> [(usize, usize, bool, f64); 6] {
+    /// Sides: the numbers of two corners (0 the cell's centre, 1 the face's), the square of a cell's size
+    /// over the side's length in a cube, and the squared length [m²].
+    fn sides(&self) -> [(usize, usize, f64, f64); 6] {
         let [a, b, c] = &self.edges;
         [
-            (0, 1, true, a.norm_squared()),
-            (0, 2, false, b.norm_squared()),
-            (0, 3, false, c.norm_squared()),
-            (1, 2, true, (b - a).norm_squared()),
-            (1, 3, true, (c - a).norm_squared()),
-            (2, 3, false, (c - b).norm_squared()),
+            (0, 1, 4.0, a.norm_squared()),
+            (0, 2, 4.0 / 3.0, b.norm_squared()),
+            (0, 3, 4.0 / 3.0, c.norm_squared()),
+            (1, 2, 2.0, (b - a).norm_squared()),
+            (1, 3, 2.0, (c - a).norm_squared()),
+            (2, 3, 1.0, (c - b).norm_squared()),
         ]
     }
 
