@@ -148,8 +148,10 @@ impl Nodes {
     fn tetrahedron(&self, cell: usize, face: usize, corner: usize) -> Tetrahedron {
         let corners = self.shapes.corners(face);
         let centre = self.centres[cell];
-        let to = |corner: usize| self.shapes.points()[corners[corner % corners.len()] as usize] - centre;
-        let edges = [self.face_centres[face] - centre, to(corner), to(corner + 1)];
+        // A choice instead of `%`, which divides.
+        let next = if corner + 1 == corners.len() { 0 } else { corner + 1 };
+        let to = |corner: usize| self.shapes.points()[corners[corner] as usize] - centre;
+        let edges = [self.face_centres[face] - centre, to(corner), to(next)];
         Tetrahedron { edges }
     }
 
