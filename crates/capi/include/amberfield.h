@@ -247,7 +247,7 @@ typedef struct AmberfieldFlow {
   const double *vorticity;
   // Iterations, residual, time, steps and Courant number of the solver.
   struct AmberfieldFlowAnswer answer;
-  // What the case should have for its mesh, to be shown to the user; NULL for nothing.
+  // Advice about the case for its mesh, to be shown to the user; NULL for nothing.
   const char *advice;
 } AmberfieldFlow;
 

@@ -25,7 +25,7 @@ pub struct AmberfieldFlow {
     pub vorticity: *const f64,
     /// Iterations, residual, time, steps and Courant number of the solver.
     pub answer: FlowAnswer,
-    /// What the case should have for its mesh, to be shown to the user; NULL for nothing.
+    /// Advice about the case for its mesh, to be shown to the user; NULL for nothing.
     pub advice: *const c_char,
 }
 

@@ -15,6 +15,7 @@ mod norms;
 mod parallel_plates;
 mod point_charge;
 pub mod reference;
+mod wedge;
 
 pub use charged_ball::{ChargedBall, ball_points};
 pub use collision::{
@@ -29,3 +30,4 @@ pub use manufactured::Manufactured;
 pub use norms::{ErrorNorms, field_scale, observed_order, rms, rms_difference, rms_scalar};
 pub use parallel_plates::ParallelPlates;
 pub use point_charge::{ExactField, coulomb_field, coulomb_potential, open_sum};
+pub use wedge::GroundedWedge;

@@ -9,8 +9,8 @@ const SCENE: &str = "[particles]\nfile = 'grains.csv'\n[electric_field]\ntuning 
 const GRAINS: &str = "id,x_m,y_m,z_m,radius_m,charge_C\n1,2e-3,1.1e-3,2.1e-3,0,1e-12\n\
     2,7e-3,2.9e-3,1.3e-3,0,-1e-12\n";
 const DICTIONARY: &str = "system/decomposeParDict";
-/// Difference of the same field on other ranks, over its RMS: each has a grid of its own for the density of the
-/// clouds, good to 1e-4.
+/// Difference of the same field on other ranks, over its RMS: each has a grid of its own for the density of
+/// the clouds, good to 1e-4.
 const OTHER_RANKS: f64 = 1e-4;
 
 fn bench() -> Workbench {

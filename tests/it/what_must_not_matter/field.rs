@@ -174,8 +174,8 @@ fn field_in_a_box_that_repeats_does_not_see_how_the_box_is_looked_at() {
     ];
     assert_that_nothing_matters(&scene, &of_periods);
 
-    // Ghosts at the rim of an insulating sheet may see the sheet beyond the seam from one side only (1.3e-4 of
-    // E_rms seen).
+    // Ghosts at the rim of an insulating sheet may see the sheet beyond the seam from one side only (1.3e-4
+    // of E_rms seen).
     let mirrored: [Line<BoxScene>; 1] = [Line {
         name: "insulating sheet mirrored",
         demand: Demand::WithinStated,

@@ -17,11 +17,11 @@ const OF_STATED: f64 = 2.0;
 /// Agreement that is demanded of the fields before and after a change.
 #[derive(Clone, Copy, Debug)]
 pub(super) enum Demand {
-    /// The same sums, in another order.
+    /// Equal sums in another order.
     Same,
-    /// The same sums, by other processes.
+    /// Equal sums by other processes.
     ByOtherRanks,
-    /// The same field by other sums, as other cells or parameters make them: to the errors that both state.
+    /// One field by other sums, as other cells or parameters make them: to the errors that both state.
     /// Those are RMS over all grains, and may be at the grains that both scenes have.
     WithinStated,
 }
@@ -60,7 +60,8 @@ pub(super) fn what_matters<S: Scene>(base: &S, lines: &[Line<S>]) -> Vec<String>
             println!("{name}, set {set}: {difference:.1e} of {bound:.1e}");
             if difference.is_nan() || difference > bound {
                 seen.push(format!(
-                    "{name}, set {set}: {difference:.2e} is above {bound:.2e}, most at grain {grain}: {worst:.2e}"
+                    "{name}, set {set}: {difference:.2e} is above {bound:.2e}, most at grain {grain}: \
+                     {worst:.2e}"
                 ));
             }
         }

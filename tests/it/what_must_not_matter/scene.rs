@@ -40,9 +40,9 @@ pub(super) fn cloud(count: usize, low: [f64; 3], high: [f64; 3], apart: f64, see
     grains
 }
 
-/// Frame in which a scene is seen: x ↦ scale·turn·x + shift. Charges go with the square of the scale, with the
-/// medium and the sign, potentials with the scale and the sign, so that E is turned, has the sign, and is else
-/// the same.
+/// Frame in which a scene is seen: x ↦ scale·turn·x + shift. Charges go with the square of the scale, with
+/// the medium and the sign, potentials with the scale and the sign, so that E is turned, has the sign, and is
+/// else the same.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Frame {
     pub(super) turn: Matrix3<f64>,
@@ -86,7 +86,7 @@ impl Frame {
         Self { sign: -1.0, ..Self::identity() }
     }
 
-    /// In a medium of a relative permittivity.
+    /// Puts it into a medium of a relative permittivity.
     pub(super) fn in_medium(medium: f64) -> Self {
         Self { medium, ..Self::identity() }
     }

@@ -19,7 +19,7 @@ pub struct FlowReply<'a> {
     pub vorticity: &'a [[f64; 3]],
     /// Iterations, residual, time, steps and Courant number.
     pub answer: FlowAnswer,
-    /// What the case should have for its mesh, for the user; empty for nothing.
+    /// Advice about the case for its mesh, for the user; empty for nothing.
     pub advice: &'a str,
 }
 

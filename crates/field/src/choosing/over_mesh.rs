@@ -10,7 +10,7 @@ use crate::choosing::choice::Measured;
 use crate::choosing::splittings::{sample_of, second_splitting};
 use crate::choosing::tuner::{Chosen, Tuner};
 use crate::error::FieldError;
-use crate::levels::far::{FarField, FarLevel};
+use crate::levels::far::{FarField, FarLevel, FarRadii};
 use crate::methods::method::{FieldMethod, TwoSplittings};
 use crate::methods::p3m::P3m;
 use crate::methods::p3m_parameters::P3mParameters;
@@ -33,6 +33,11 @@ const TIGHTER: f64 = 0.4;
 /// Smallest factor of their tolerance that near level and middle grid begin with where grains are few: they
 /// cost little beside the cells then, and a model of many charges knows little of what they leave.
 const FEW: f64 = 0.15;
+/// Factor of the ghosts' radii at least where grains are many in a cell: what cells miss of each then
+/// averages out, and the ghosts' pairs are as many as their square.
+const LEAST_OF_GHOSTS: f64 = 0.5;
+/// Factor by which wider clouds widen the ghosts at most.
+const MOST_OF_GHOSTS: f64 = 2.0;
 /// Share of the jumps of E between cells that counts as an error: what cells are too coarse for, all
 /// splittings miss alike. From boxes with known fields, see `crates/coupling/tests/stated_error.rs`.
 const OF_JUMPS: f64 = 0.6;
@@ -58,13 +63,15 @@ pub(crate) fn choose(
     let wrapped: Vec<_> = positions.iter().map(|position| far.mesh().domain().wrap(*position)).collect();
     let widest = WIDEST * far.mesh().domain().extent().max();
     let grains_per_cell = positions.len() as f64 / far.mesh().cell_count() as f64;
+    let of_ghosts = grains_per_cell.max(1.0).powf(-1.0 / 3.0).max(LEAST_OF_GHOSTS);
+    far.set_radii(FarRadii { of_ghosts, ..far.radii() });
     let mut tolerance = settings.tolerance * grains_per_cell.sqrt().clamp(FEW, 1.0);
     let mut best: Option<Round> = None;
     let mut failed = 0;
     for _ in 0..ROUNDS {
         let aim = FieldSettings { tolerance, ..settings.clone() };
         let chosen = tune(&far, &aim, &wrapped, charges)?;
-        let parameters = P3mParameters { far_radius_m: Some(far.radius()), ..chosen.parameters };
+        let parameters = P3mParameters { far: Some(far.radii()), ..chosen.parameters };
         let mut p3m = P3m::over(far, parameters);
         let Some(error) = measure(&mut p3m, parameters, positions, charges)? else {
             return Ok(OverMesh { p3m, parameters, estimated: chosen.estimated, measured: None });
@@ -76,16 +83,18 @@ pub(crate) fn choose(
         if error.rms < before {
             best = Some(Round { error, parameters, estimated: chosen.estimated });
         }
-        let next_radius = (WIDER * far.radius()).min(widest);
+        let radii = far.radii();
+        let wider = WIDER.min(widest / radii.cloud_m);
         if error.rms <= ACCEPT * settings.tolerance * error.scale || failed == 2 {
             break;
         }
         // Whatever seems to leave more; where that has brought nothing, the other.
         let of_short = chosen.error_v_m.unwrap_or(0.0) > OF_SHORT * error.rms;
-        if (of_short != (failed == 1)) || next_radius <= far.radius() {
+        if (of_short != (failed == 1)) || wider <= 1.0 {
             tolerance *= TIGHTER;
         } else {
-            far.set_radius(next_radius);
+            let radii = radii.times(wider);
+            far.set_radii(FarRadii { of_ghosts: radii.of_ghosts.min(MOST_OF_GHOSTS * of_ghosts), ..radii });
         }
     }
     let Round { error, parameters, estimated } = best.expect("one round at least");
@@ -97,7 +106,7 @@ pub(crate) fn choose(
             settings.tolerance
         );
     }
-    far.set_radius(far_radius(&parameters));
+    far.set_radii(parameters.far.expect("a round has radii"));
     let p3m = P3m::over(far, parameters);
     Ok(OverMesh { p3m, parameters, estimated, measured: Some(error.relative(positions.len())) })
 }
@@ -107,10 +116,6 @@ struct Round {
     error: OnMesh,
     parameters: P3mParameters,
     estimated: Option<f64>,
-}
-
-fn far_radius(parameters: &P3mParameters) -> f64 {
-    parameters.far_radius_m.unwrap_or(0.0)
 }
 
 /// Parameters of near level and middle grid below a far level.

@@ -24,7 +24,7 @@ pub(crate) fn with_best_shapes(
         order,
         window_shape: window,
         kernel_accuracy,
-        far_radius_m: None,
+        far: None,
     }
 }
 
@@ -33,7 +33,7 @@ pub(crate) fn second_splitting(first: P3mParameters) -> P3mParameters {
     let order = (first.order + 1).min(*ORDERS.end());
     let cutoff = SECOND_CUTOFF * first.cutoff_m;
     let second = with_best_shapes(order, cutoff, first.spacing_m, 0.1 * first.kernel_accuracy);
-    P3mParameters { far_radius_m: first.far_radius_m, ..second }
+    P3mParameters { far: first.far, ..second }
 }
 
 /// Particles of so many on which an error is measured.

@@ -98,8 +98,8 @@ impl ElectricField {
             Choice::P3m(parameters) => {
                 check_method_over_mesh(settings)?;
                 let mut far = FarLevel::new(solver, settings);
-                if let Some(radius) = parameters.far_radius_m {
-                    far.set_radius(radius);
+                if let Some(radii) = parameters.far {
+                    far.set_radii(radii);
                 }
                 Self::of_p3m_over_mesh(P3m::over(far, *parameters), settings, *parameters)
             }

@@ -1,5 +1,6 @@
 //! Parameters of p3m.
 
+use crate::levels::far::FarRadii;
 use crate::levels::grid::level::GridParameters;
 use crate::levels::near::NearParameters;
 use amberfield_laws::kaiser_bessel_cloud::Cloud;
@@ -20,9 +21,9 @@ pub struct P3mParameters {
     pub window_shape: f64,
     /// Error of the near kernel's polynomials over the cloud's value at its centre.
     pub kernel_accuracy: f64,
-    /// Radius of the far level's clouds over a field solver's mesh [m]; `None` without one.
+    /// Radii of the far level over a field solver's mesh; `None` without one.
     #[serde(default)]
-    pub far_radius_m: Option<f64>,
+    pub far: Option<FarRadii>,
 }
 
 impl P3mParameters {

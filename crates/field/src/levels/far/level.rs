@@ -9,8 +9,8 @@
 
 use super::local_fit::LocalFits;
 use super::mesh::{Condition, FarMesh};
-use super::walls::{Ghosts, Images, Outline, Place, Walls};
-use super::{FarField, FarRequest, FarSolver, check_net_charge};
+use super::walls::{Ghosts, OfWalls, Outline, Place, Walls};
+use super::{FarField, FarRadii, FarRequest, FarSolver, check_net_charge};
 use crate::error::FieldError;
 use crate::values::FieldAt;
 use amberfield_core::{Axis, Boundary, Domain, FarQuestion, FieldSettings, Permittivity, SourceCloud};
@@ -27,10 +27,13 @@ const SHAPE: f64 = 10.0;
 const WIDER_FOR_A_CHECK: f64 = 1.5;
 const DEEPER_FOR_A_CHECK: f64 = 1.4;
 
+/// Charges whose images are found by one thread at once.
+const REFLECTED_AT_ONCE: usize = 512;
+
 /// State of a far level before a check.
 #[derive(Debug)]
 pub(crate) struct Before {
-    radius: f64,
+    radii: FarRadii,
     overlap: bool,
 }
 
@@ -57,6 +60,8 @@ pub(crate) struct FarLevel {
     walls: Walls,
     fits: LocalFits,
     cloud: Cloud,
+    /// Factor of the ghosts' radii.
+    of_ghosts: f64,
     medium: Medium,
     image_positions: Vec<Vector3<f64>>,
     image_charges: Vec<f64>,
@@ -73,12 +78,13 @@ impl FarLevel {
         let size = mesh.largest_cell();
         let (fits, outline) = (LocalFits::new(mesh), Outline::new(mesh));
         Self {
-            walls: Walls::new(mesh, &outline, 1.0),
+            walls: Walls::new(mesh, &outline, 1.0, 1.0),
             outline,
-            ghosts: Ghosts::new(fits.smoothing_over_size(), 1.0),
+            ghosts: Ghosts::new(fits.smoothing_over_size()),
             ghost_density: Vec::new(),
             fits,
             cloud: Cloud { radius: RADIUS_OF_CELL * size, shape: SHAPE },
+            of_ghosts: 1.0,
             medium: Medium::of(settings),
             image_positions: Vec::new(),
             image_charges: Vec::new(),
@@ -97,31 +103,35 @@ impl FarLevel {
         self.medium
     }
 
-    /// Radius of the clouds [m].
-    pub(crate) fn radius(&self) -> f64 {
-        self.cloud.radius
+    /// Radii of the clouds and of the ghosts.
+    pub(crate) fn radii(&self) -> FarRadii {
+        FarRadii { cloud_m: self.cloud.radius, of_ghosts: self.of_ghosts }
     }
 
-    /// Gives the clouds another radius [m], and those of ghosts one in proportion.
-    pub(crate) fn set_radius(&mut self, radius: f64) {
-        let mesh = self.solver.mesh();
-        let scale = radius / (RADIUS_OF_CELL * mesh.largest_cell());
-        self.walls = Walls::new(mesh, &self.outline, scale);
-        self.ghosts = Ghosts::new(self.fits.smoothing_over_size(), scale);
-        self.cloud.radius = radius;
+    /// Gives clouds and ghosts other radii.
+    pub(crate) fn set_radii(&mut self, radii: FarRadii) {
+        self.set_radii_with_edges(radii, radii.of_ghosts);
+    }
+
+    /// Gives clouds and ghosts other radii, and edges a reach of their own.
+    fn set_radii_with_edges(&mut self, radii: FarRadii, of_edges: f64) {
+        let FarRadii { cloud_m, of_ghosts } = radii;
+        self.walls = Walls::new(self.solver.mesh(), &self.outline, of_ghosts, of_edges);
+        (self.cloud.radius, self.of_ghosts) = (cloud_m, of_ghosts);
     }
 
     /// Changes what the sum must not depend on, and what the field solver knows of the motion.
     pub(crate) fn change_for_a_check(&mut self) -> Before {
-        let before = Before { radius: self.cloud.radius, overlap: self.solver.without_overlap() };
-        self.set_radius(WIDER_FOR_A_CHECK * self.cloud.radius);
+        let before = Before { radii: self.radii(), overlap: self.solver.without_overlap() };
+        // Edges that reach farther would cost more than they tell.
+        self.set_radii_with_edges(before.radii.times(WIDER_FOR_A_CHECK), before.radii.of_ghosts);
         self.walls.scale_depth(DEEPER_FOR_A_CHECK);
         before
     }
 
     /// Takes the changes for a check back.
     pub(crate) fn change_back(&mut self, before: Before) {
-        self.set_radius(before.radius);
+        self.set_radii(before.radii);
         self.solver.with_overlap(before.overlap);
     }
 
@@ -168,17 +178,18 @@ impl FarLevel {
     /// Appends to the grains the places at the walls where the short-ranged field is asked for, without
     /// charge, and the images. How many places the field is asked for at, grains included.
     pub(crate) fn extend(&mut self, positions: &mut Vec<Vector3<f64>>, charges: &mut Vec<f64>) -> usize {
+        let reflect =
+            |(positions, charges): (&[Vector3<f64>], &[f64])| self.walls.of_charges(positions, charges);
+        let pieces = positions.par_chunks(REFLECTED_AT_ONCE).zip(charges.par_chunks(REFLECTED_AT_ONCE));
+        let of_walls: Vec<OfWalls> = pieces.map(reflect).collect();
         self.image_positions.clear();
         self.image_charges.clear();
-        let mut images = Images::default();
-        let mut ghosts = Vec::new();
-        for (position, charge) in positions.iter().zip(&*charges).filter(|(_, charge)| **charge != 0.0) {
-            self.walls.reflect(position, &mut images);
-            self.image_positions.extend(images.plain.iter().map(|image| image.at));
-            self.image_charges.extend(images.plain.iter().map(|image| image.factor * charge));
-            ghosts.extend(images.ghosts.iter().map(|ghost| ghost.with_charge(*charge)));
+        for piece in &of_walls {
+            self.image_positions.extend(&piece.image_positions);
+            self.image_charges.extend(&piece.image_charges);
         }
-        self.ghosts.replace(ghosts.into_iter(), self.solver.mesh().domain());
+        let ghosts = of_walls.into_iter().flat_map(|piece| piece.ghosts);
+        self.ghosts.replace(ghosts, self.solver.mesh().domain());
         positions.extend(self.walls.places().iter().map(|place| place.at));
         charges.resize(positions.len(), 0.0);
         let targets = positions.len();

@@ -12,6 +12,7 @@ mod level;
 mod local_fit;
 mod mesh;
 mod polygon;
+mod radii;
 mod reentrant;
 mod search;
 mod solver;
@@ -23,6 +24,7 @@ pub(crate) use connected::check_net_charge;
 pub use density::SmoothDensity;
 pub(crate) use level::{FarLevel, Medium};
 pub use mesh::{BoundaryFace, CellFace, Condition, FarMesh, FarMeshParts, Neighbour};
+pub use radii::FarRadii;
 pub use solver::{FarSolver, FarState};
 
 use crate::error::FieldError;

@@ -5,9 +5,9 @@
 //! corners' distances from the centre, brings the corners onto it. Facets lie inside a concave wall by s:
 //! images in one surface and boundary data on the other would be wrong by more than all the rest.
 
+use super::creases::Creases;
 use super::mirror::{Ground, Mirror, Side};
 use super::patch::{Patch, half_diagonal};
-use super::rims::Rims;
 use super::screen::Screen;
 use super::{DEEPEST, Surface};
 use crate::levels::far::mesh::{BoundaryFace, Condition};
@@ -54,7 +54,7 @@ pub(super) struct CurvedWall {
     patch: Patch,
     conductor: bool,
     ground: Vec<Ground>,
-    rims: Rims,
+    rims: Creases,
     /// Corners of the box in which charges can be mirrored [m].
     low: Vector3<f64>,
     high: Vector3<f64>,
@@ -91,7 +91,7 @@ impl CurvedWall {
             patch: Patch::new(all, faces, DEEPEST * deepest),
             conductor: matches!(member(0).condition, Condition::Potential(_)),
             ground,
-            rims: Rims::new(surface.mesh, surface.edges, Some(faces), surface.reach),
+            rims: Creases::rims_of(surface.mesh, surface.edges, faces, surface.reach),
         }
     }
 
@@ -127,13 +127,14 @@ impl CurvedWall {
         // What an insulator adds to the image of a sphere is no point charge: the plane's is as good.
         let curvature = if self.conductor { -0.5 * facet.surface.bend.trace() } else { 0.0 };
         let image_depth = distance / (1.0 - curvature * distance);
-        let side = Side::of(ground, &self.rims, &foot.at, &foot.normal, distance, image_depth)?;
+        let side = Side::of(ground, &self.rims, &foot.at, &foot.normal, image_depth)?;
         Some(Mirror {
             normal: foot.normal,
             offset: foot.normal.dot(&foot.at),
             distance,
             curvature,
             depth,
+            share: side.share(ground),
             screened: side.screened(ground, || Screen::Curved(facet.surface)),
         })
     }
@@ -185,6 +186,16 @@ impl Quadric {
         let is_smooth =
             slope.norm() < STEEPEST && bend.norm() * half < STEEPEST && height.abs() < HIGHEST * half;
         if is_smooth { Self { height, slope, bend, ..flat } } else { flat }
+    }
+
+    /// Centre of the face that the surface is about [m].
+    pub(crate) fn centre(&self) -> Vector3<f64> {
+        self.centre
+    }
+
+    /// Normal of that face, out of the mesh.
+    pub(crate) fn normal(&self) -> Vector3<f64> {
+        self.normal
     }
 
     /// The surface moved by a period [m].

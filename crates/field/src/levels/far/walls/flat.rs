@@ -1,8 +1,8 @@
 //! A flat wall.
 
+use super::creases::Creases;
 use super::mirror::{Ground, Mirror, Side};
 use super::patch::Patch;
-use super::rims::Rims;
 use super::screen::Screen;
 use super::{FLAT, Surface};
 use crate::levels::far::mesh::BoundaryFace;
@@ -27,7 +27,7 @@ pub(super) struct FlatWall {
     polygons: Vec<Vec<Vector3<f64>>>,
     ground: Vec<Ground>,
     deepest: f64,
-    rims: Rims,
+    rims: Creases,
 }
 
 impl FlatWall {
@@ -56,7 +56,7 @@ impl FlatWall {
         let filled = (normal[across].abs() - 1.0).abs() < FLAT && area > FILLED * rectangle;
         let ground: Vec<Ground> = faces.iter().map(|&face| surface.ground(face)).collect();
         let deepest = ground.iter().map(|ground| ground.depth).fold(0.0, f64::max);
-        let rims = Rims::new(surface.mesh, surface.edges, Some(faces), surface.reach);
+        let rims = Creases::rims_of(surface.mesh, surface.edges, faces, surface.reach);
         let is_even = filled && rims.is_empty() && ground.iter().all(|other| other.is_like(&ground[0]));
         // Feet lie on the plane to rounding only.
         let slack = Vector3::repeat(FLAT * size);
@@ -92,7 +92,7 @@ impl FlatWall {
         if distance >= ground.depth {
             return None;
         }
-        let side = Side::of(&ground, &self.rims, &foot, &self.normal, distance, distance)?;
+        let side = Side::of(&ground, &self.rims, &foot, &self.normal, distance)?;
         let plane = || Screen::Plane { normal: self.normal, offset: self.offset };
         Some(Mirror {
             normal: self.normal,
@@ -100,6 +100,7 @@ impl FlatWall {
             distance,
             curvature: 0.0,
             depth: ground.depth,
+            share: side.share(&ground),
             screened: side.screened(&ground, plane),
         })
     }

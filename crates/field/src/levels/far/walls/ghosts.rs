@@ -1,31 +1,32 @@
-//! Ghosts: charges that stand for what a screen hides and mirrors.
+//! Ghosts: charges that stand for what a screen hides and mirrors, and for what the faces of an edge do.
 //!
 //! A charge q at y before a screen has two of them, each felt only by places that the screen hides from the
 //! ghost's place:
 //!
 //! −q f at y itself, which takes the charge away behind the wall, and ∓q f at its mirror image y*,
 //!
-//! − before a conductor and + before an insulator. Their potential is q_g T(x, y_g) χ(R/R_g): the share
-//! that is hidden, cut off at a radius R_g that the cells can carry. What is cut off is left to the far
-//! level, as the density q_g ∇²(Tχ)/(4π) of its source; with T = 1/R that is the density of a cloud.
+//! − before a conductor and + before an insulator. Beside an edge it has one at its own place, felt by all
+//! places between the faces. Their potential is q_g T(x, y_g) χ(R/R_g), T = 1/R behind a screen and what the
+//! faces add beside an edge, cut off at a radius R_g that the cells can carry. What is cut off is left to
+//! the far level, as the density q_g ∇²(Tχ)/(4π) of its source; with T = 1/R that is the density of a cloud.
 //! The field is exact whatever the ghosts are: they make the boundary data smooth on both sides of a wall.
 
 use super::buckets::Buckets;
-use super::mirror::{RADIUS_AT_RIM_OF_CELL, RADIUS_OF_CELL};
-use super::screen::{HiddenAt, Place, Screen};
+use super::mirror::Extent;
+use super::screen::{EdgeScreen, Place, Screen};
+use super::share::{Share, Shares};
 use crate::levels::far::copies::shifts;
 use crate::values::FieldAt;
 use amberfield_core::{Axis, Domain};
-use amberfield_laws::kaiser_bessel_cloud::Cloud;
+use amberfield_laws::wedge::Around;
 use nalgebra::Vector3;
+use std::collections::HashMap;
 use std::f64::consts::PI;
 
-/// Shape of the ghosts' clouds.
-const SHAPE: f64 = 10.0;
-/// Shape of the share without cusp.
-const SHAPE_WITHOUT_CUSP: f64 = 12.0;
-/// Intervals of the table of the clouds' share.
-const INTERVALS: usize = 512;
+/// Radius of what comes back of a cloud from the cells, over its own, at most.
+const WIDENED_AT_MOST: f64 = 1.5;
+/// Rings of buckets in which ghosts near a place are looked for.
+const RINGS: u32 = 2;
 
 /// Half space that a ghost is confined to.
 #[derive(Clone, Copy, Debug)]
@@ -36,19 +37,31 @@ pub(crate) struct Confined {
     pub(crate) above: f64,
 }
 
-/// A charge that only places behind a screen feel.
+/// Places that feel a ghost.
+#[derive(Clone, Copy, Debug)]
+pub(crate) enum Shown {
+    /// Places that a screen hides from it; it is before the screen (+1) or behind it (−1).
+    Behind {
+        /// The screen.
+        screen: Screen,
+        /// Side of the ghost.
+        above: f64,
+    },
+    /// Places around an edge: what they feel is the potential that the edge's faces add to the charge's.
+    Around(EdgeScreen),
+}
+
+/// A charge that not all places feel.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Ghost {
     /// Place [m].
     pub(crate) at: Vector3<f64>,
     /// Charge [C].
     pub(crate) charge: f64,
-    /// Radius up to which it is felt, R_g [m].
-    pub(crate) radius: f64,
-    /// Screen that hides it.
-    pub(crate) screen: Screen,
-    /// Side of the screen on which its place is: +1 before it, −1 behind it.
-    pub(crate) above: f64,
+    /// Radius up to which it is felt, R_g.
+    pub(crate) extent: Extent,
+    /// Places that feel it.
+    pub(crate) shown: Shown,
     /// Half spaces of other screens that confine it.
     pub(crate) confined: [Option<Confined>; 2],
 }
@@ -64,61 +77,99 @@ impl Ghost {
         let confined = self.confined.map(|other| {
             other.map(|Confined { screen, above }| Confined { screen: screen.moved(by), above })
         });
-        Self { at: self.at + by, screen: self.screen.moved(by), confined, ..*self }
-    }
-
-    /// Whether its other screens let a place feel it.
-    fn reaches(&self, place: &Place) -> bool {
-        let mut confined = self.confined.iter().flatten();
-        confined.all(|other| other.screen.height(&place.seen_from) * other.above > 0.0)
-    }
-
-    fn hidden(&self, place: &Place, distance: f64) -> Option<HiddenAt> {
-        if !self.reaches(place) {
-            return None;
-        }
-        self.screen.hides(place, &self.at, distance, self.above)
-    }
-
-    /// Field and potential at a place, over Coulomb's constant [C/m² and C/m].
-    fn field_at(&self, share: &Share, place: &Place) -> FieldAt {
-        let apart = place.at - self.at;
-        let (distance, radius) = (apart.norm(), self.radius * share.widened);
-        if distance >= radius {
-            return FieldAt::default();
-        }
-        let Some(hidden) = self.hidden(place, distance) else { return FieldAt::default() };
-        let Shares { value, slope, .. } = share.of(distance / radius);
-        let slope_over_distance = if distance > 0.0 { slope / (radius * distance) } else { 0.0 };
-        let along = value * hidden.slope_over_distance + hidden.value * slope_over_distance;
-        FieldAt {
-            e: -self.charge * (along * apart + value * hidden.aside),
-            potential: self.charge * value * hidden.value,
-        }
-    }
-
-    /// Density of the cells' source at a place [C/m³].
-    fn density_at(&self, share: &Share, place: &Place) -> f64 {
-        let apart = place.at - self.at;
-        let distance = apart.norm();
-        if distance >= self.radius || distance == 0.0 {
-            return 0.0;
-        }
-        let Some(hidden) = self.hidden(place, distance) else { return 0.0 };
-        let shares = share.of(distance / self.radius);
-        let (slope, bend) = (shares.slope / self.radius, shares.bend / (self.radius * self.radius));
-        let outwards = hidden.slope_over_distance * distance + hidden.aside.dot(&apart) / distance;
-        let laplacian = 2.0 * slope * outwards + hidden.value * (bend + 2.0 * slope / distance);
-        self.charge * laplacian / (4.0 * PI)
+        let shown = match self.shown {
+            Shown::Behind { screen, above } => Shown::Behind { screen: screen.moved(by), above },
+            Shown::Around(edge) => Shown::Around(edge.moved(by)),
+        };
+        Self { at: self.at + by, shown, confined, ..*self }
     }
 }
 
-/// The ghosts of all charges.
+/// The ghosts of all charges, bucket by bucket.
 #[derive(Debug)]
 pub(crate) struct Ghosts {
-    ghosts: Vec<Ghost>,
+    spots: Vec<Spot>,
+    ghosts: Vec<Felt>,
+    screens: Screens,
     buckets: Buckets,
     shares: BothShares,
+}
+
+/// Place of a ghost, and the square of the radius up to which its field is felt [m²].
+#[derive(Clone, Copy, Debug)]
+struct Spot {
+    at: Vector3<f64>,
+    reach_squared: f64,
+}
+
+/// Ghost that is felt, but for its place: its screens by their numbers.
+#[derive(Clone, Copy, Debug)]
+struct Felt {
+    charge: f64,
+    /// Radius of its cloud [m], and of what comes back of that from the cells.
+    radius: f64,
+    returned: f64,
+    by: By,
+    confined: [Option<Side>; 2],
+}
+
+/// Screen or edge that shows a ghost.
+#[derive(Clone, Copy, Debug)]
+enum By {
+    Screen(Side),
+    /// Number of an edge, and where the ghost is around it.
+    Edge(u32, Around),
+}
+
+/// Side of a screen: +1 before it, −1 behind it.
+#[derive(Clone, Copy, Debug)]
+struct Side {
+    screen: u32,
+    above: f32,
+}
+
+/// Screens and edges of ghosts, each once where many have it.
+#[derive(Debug, Default)]
+struct Screens {
+    all: Vec<Screen>,
+    known: HashMap<[u64; 6], u32>,
+    edges: Vec<EdgeScreen>,
+    known_edges: HashMap<[u64; 6], u32>,
+}
+
+/// Potential of a unit ghost but for its share [1/m], and its gradient [1/m²].
+#[derive(Clone, Copy, Debug)]
+struct Whole {
+    value: f64,
+    slope: Vector3<f64>,
+}
+
+impl Screens {
+    fn side(&mut self, screen: Screen, above: f64) -> Side {
+        let next = self.all.len() as u32;
+        let number = *self.known.entry(screen.key()).or_insert(next);
+        if number == next {
+            self.all.push(screen);
+        }
+        Side { screen: number, above: above as f32 }
+    }
+
+    fn by(&mut self, ghost: &Ghost) -> Option<By> {
+        let edge = match ghost.shown {
+            Shown::Behind { screen, above } => return Some(By::Screen(self.side(screen, above))),
+            Shown::Around(edge) => edge,
+        };
+        let next = self.edges.len() as u32;
+        let number = *self.known_edges.entry(edge.key()).or_insert(next);
+        if number == next {
+            self.edges.push(edge);
+        }
+        Some(By::Edge(number, edge.around(&Place { at: ghost.at, seen_from: ghost.at })?))
+    }
+
+    fn height(&self, side: Side, place: &Place) -> f64 {
+        self.all[side.screen as usize].height(&place.seen_from) * f64::from(side.above)
+    }
 }
 
 /// Shares of ghosts of both kinds.
@@ -126,40 +177,80 @@ pub(crate) struct Ghosts {
 struct BothShares {
     of_point: Share,
     without_cusp: Share,
+    /// Variance by which cells widen a cloud over their size squared.
+    smoothing: f64,
 }
 
 impl BothShares {
-    fn of(&self, ghost: &Ghost) -> &Share {
-        if matches!(ghost.screen, Screen::Rim(_)) { &self.without_cusp } else { &self.of_point }
+    fn of(&self, by: &By) -> &Share {
+        match by {
+            By::Screen(_) => &self.of_point,
+            By::Edge(..) => &self.without_cusp,
+        }
+    }
+
+    /// Radius of what comes back from the cells over that of what they were given.
+    fn widened(&self, by: &By, cells: f64) -> f64 {
+        (1.0 + self.smoothing / (self.of(by).mean_square * cells * cells)).max(0.0).sqrt()
+    }
+}
+
+/// A place, and where it is around the edge that it was last seen from: many ghosts have one edge.
+struct Sight {
+    place: Place,
+    edge: u32,
+    around: Option<Around>,
+}
+
+impl Sight {
+    fn of(place: &Place) -> Self {
+        Self { place: *place, edge: u32::MAX, around: None }
+    }
+
+    fn around(&mut self, edge: u32, screen: &EdgeScreen) -> Option<Around> {
+        if self.edge != edge {
+            (self.edge, self.around) = (edge, screen.around(&self.place));
+        }
+        self.around
     }
 }
 
 impl Ghosts {
-    /// No ghosts yet, with radii scaled, over cells that widen a cloud by a variance of `smoothing` over
-    /// their size squared.
-    pub(crate) fn new(smoothing: f64, scale: f64) -> Self {
-        let shares = BothShares {
-            of_point: Share::of_point().over_cells(smoothing, scale * RADIUS_OF_CELL),
-            without_cusp: Share::without_cusp().over_cells(smoothing, scale * RADIUS_AT_RIM_OF_CELL),
-        };
-        Self { ghosts: Vec::new(), buckets: Buckets::default(), shares }
+    /// No ghosts yet, over cells that widen a cloud by a variance of `smoothing` over their size squared.
+    pub(crate) fn new(smoothing: f64) -> Self {
+        let shares =
+            BothShares { of_point: Share::of_point(), without_cusp: Share::without_cusp(), smoothing };
+        let (spots, ghosts) = (Vec::new(), Vec::new());
+        Self { spots, ghosts, screens: Screens::default(), buckets: Buckets::default(), shares }
     }
 
     /// Takes new ghosts in the place of earlier ones, with their copies that are felt inside the domain.
     pub(crate) fn replace(&mut self, ghosts: impl Iterator<Item = Ghost>, domain: &Domain) {
-        self.ghosts.clear();
+        self.screens = Screens::default();
         let shifts = shifts(domain, Axis::ALL.map(|axis| domain.is_periodic(axis)));
-        let mut reach: f64 = 0.0;
+        let (mut spots, mut felt) = (Vec::new(), Vec::new());
+        let mut farthest: f64 = 0.0;
         for ghost in ghosts {
-            let radius = ghost.radius * self.shares.of(&ghost).widened.max(1.0);
-            reach = reach.max(radius);
-            let felt = |at: &Vector3<f64>| {
-                let outside = (domain.min() - at).sup(&(at - domain.max())).sup(&Vector3::zeros());
-                outside.norm() < radius
-            };
-            self.ghosts.extend(shifts.iter().map(|by| ghost.moved(by)).filter(|copy| felt(&copy.at)));
+            let Extent { radius, cells } = ghost.extent;
+            for copy in shifts.iter().map(|by| ghost.moved(by)) {
+                let outside = (domain.min() - copy.at).sup(&(copy.at - domain.max())).sup(&Vector3::zeros());
+                if outside.norm() >= WIDENED_AT_MOST * radius {
+                    continue;
+                }
+                let Some(by) = self.screens.by(&copy) else { continue };
+                let screens = &mut self.screens;
+                let confined = copy.confined.map(|other| other.map(|it| screens.side(it.screen, it.above)));
+                let returned = radius * self.shares.widened(&by, cells).min(WIDENED_AT_MOST);
+                let reach = returned.max(radius);
+                farthest = farthest.max(reach);
+                spots.push(Spot { at: copy.at, reach_squared: reach * reach });
+                felt.push(Felt { charge: copy.charge, radius, returned, by, confined });
+            }
         }
-        self.buckets = Buckets::new(self.ghosts.iter().map(|ghost| &ghost.at), reach);
+        self.buckets = Buckets::with_rings(spots.iter().map(|spot| &spot.at), farthest, RINGS);
+        let order = || self.buckets.order().iter().map(|&number| number as usize);
+        self.spots = order().map(|number| spots[number]).collect();
+        self.ghosts = order().map(|number| felt[number]).collect();
     }
 
     pub(crate) fn is_empty(&self) -> bool {
@@ -168,102 +259,86 @@ impl Ghosts {
 
     /// Field and potential at a place, over Coulomb's constant [C/m² and C/m].
     pub(crate) fn field_at(&self, place: &Place) -> FieldAt {
-        self.near(place)
-            .fold(FieldAt::default(), |sum, ghost| sum + ghost.field_at(self.shares.of(ghost), place))
+        let mut sum = FieldAt::default();
+        let mut sight = Sight::of(place);
+        for number in self.near(place) {
+            let Felt { charge, returned: radius, by, .. } = &self.ghosts[number];
+            let apart = place.at - self.spots[number].at;
+            let distance = apart.norm();
+            if distance >= *radius {
+                continue;
+            }
+            let Some(whole) = self.whole(number, &mut sight, &apart, distance) else { continue };
+            let Shares { value, slope, .. } = self.shares.of(by).of(distance / radius);
+            let along = if distance > 0.0 { slope / (radius * distance) } else { 0.0 };
+            sum.e -= *charge * (value * whole.slope + whole.value * along * apart);
+            sum.potential += charge * value * whole.value;
+        }
+        sum
     }
 
     /// Density of the cells' source at a place [C/m³].
     pub(crate) fn density_at(&self, place: &Place) -> f64 {
-        self.near(place).map(|ghost| ghost.density_at(self.shares.of(ghost), place)).sum()
+        let mut sum = 0.0;
+        let mut sight = Sight::of(place);
+        for number in self.near(place) {
+            let Felt { charge, radius, by, .. } = &self.ghosts[number];
+            let apart = place.at - self.spots[number].at;
+            let distance = apart.norm();
+            if distance >= *radius || distance == 0.0 {
+                continue;
+            }
+            let Some(whole) = self.whole(number, &mut sight, &apart, distance) else { continue };
+            let shares = self.shares.of(by).of(distance / radius);
+            let (slope, bend) = (shares.slope / radius, shares.bend / (radius * radius));
+            let outwards = whole.slope.dot(&apart) / distance;
+            sum += charge * (2.0 * slope * outwards + whole.value * (bend + 2.0 * slope / distance));
+        }
+        sum / (4.0 * PI)
     }
 
-    fn near(&self, place: &Place) -> impl Iterator<Item = &Ghost> {
-        self.buckets.near(&place.at).map(|number| &self.ghosts[number])
+    /// Numbers of the ghosts within whose reach a place is.
+    #[inline]
+    fn near(&self, place: &Place) -> impl Iterator<Item = usize> {
+        let at = place.at;
+        let is_near = move |number: &usize| {
+            let spot = &self.spots[*number];
+            (at - spot.at).norm_squared() < spot.reach_squared
+        };
+        self.buckets.rows(&place.at).flatten().filter(is_near)
+    }
+
+    /// Potential of a ghost of unit charge but for its share, if a place at a distance from it feels it.
+    #[inline]
+    fn whole(&self, number: usize, sight: &mut Sight, apart: &Vector3<f64>, distance: f64) -> Option<Whole> {
+        let Felt { by, confined, .. } = &self.ghosts[number];
+        if let By::Screen(side) = by
+            && self.screens.height(*side, &sight.place) > 0.0
+        {
+            return None;
+        }
+        if confined.iter().flatten().any(|side| self.screens.height(*side, &sight.place) <= 0.0) {
+            return None;
+        }
+        match by {
+            By::Screen(_) => {
+                let value = distance.recip();
+                Some(Whole { value, slope: -value.powi(3) * apart })
+            }
+            By::Edge(edge, there) => {
+                let screen = &self.screens.edges[*edge as usize];
+                let Some(here) = sight.around(*edge, screen) else {
+                    let value = -distance.recip();
+                    return Some(Whole { value, slope: value.powi(2) / distance * apart });
+                };
+                let (value, slope) = screen.induced(&here, there);
+                Some(Whole { value, slope })
+            }
+        }
     }
 
     pub(crate) fn memory_bytes(&self) -> usize {
-        self.ghosts.capacity() * (size_of::<Ghost>() + 4)
+        self.ghosts.capacity() * (size_of::<Felt>() + size_of::<Spot>() + 4)
+            + self.screens.all.capacity() * size_of::<Screen>()
     }
-}
-
-/// Share χ(t) of a ghost's potential that pairs carry, t = R/R_g, with its first two derivatives.
-#[derive(Debug)]
-struct Share {
-    nodes: Vec<[f64; 3]>,
-    /// Radius of what comes back from the cells over that of what they were given.
-    widened: f64,
-}
-
-impl Share {
-    /// Share for T = 1/R, 1 − Φ(t) with Φ the clouds' share of a point charge.
-    fn of_point() -> Self {
-        let cloud = Cloud { radius: 1.0, shape: SHAPE };
-        Self::tabulated(|t| [1.0 - cloud.primitive(t), -cloud.slope(t), -cloud.bend(t)])
-    }
-
-    /// Share for a T that is finite at R = 0, where a cusp as that of 1 − Φ would be felt: its slope goes as
-    /// t²Φ'.
-    fn without_cusp() -> Self {
-        let cloud = Cloud { radius: 1.0, shape: SHAPE_WITHOUT_CUSP };
-        let slope = |t: f64| t * t * cloud.slope(t);
-        let bend = |t: f64| 2.0 * t * cloud.slope(t) + t * t * cloud.bend(t);
-        // Simpson's rule from node to node.
-        let step = 1.0 / INTERVALS as f64;
-        let mut sums = vec![0.0];
-        for interval in 0..INTERVALS {
-            let t = interval as f64 * step;
-            let piece = (slope(t) + 4.0 * slope(t + 0.5 * step) + slope(t + step)) * step / 6.0;
-            sums.push(sums[interval] + piece);
-        }
-        let whole = sums[INTERVALS];
-        let at = |t: f64| sums[((t / step).round() as usize).min(INTERVALS)];
-        Self::tabulated(|t| [1.0 - at(t) / whole, -slope(t) / whole, -bend(t) / whole])
-    }
-
-    fn tabulated(function: impl Fn(f64) -> [f64; 3]) -> Self {
-        let nodes = (0..=INTERVALS).map(|node| function(node as f64 / INTERVALS as f64)).collect();
-        Self { nodes, widened: 1.0 }
-    }
-
-    /// The share that stays correct where cells widen a cloud by a variance of `smoothing` over their size
-    /// squared, and clouds have a radius of `cells` cells.
-    fn over_cells(self, smoothing: f64, cells: f64) -> Self {
-        // Mean square of one coordinate over the cloud's density, whose potential is (1 − χ)/t.
-        let of_node = |(node, [_, slope, _]): (usize, &[f64; 3])| {
-            let t = node as f64 / INTERVALS as f64;
-            -slope * t * t / INTERVALS as f64
-        };
-        let mean_square: f64 = self.nodes.iter().enumerate().map(of_node).sum();
-        let widened = (1.0 + smoothing / (mean_square * cells * cells)).max(0.0).sqrt();
-        Self { widened, ..self }
-    }
-
-    /// χ, χ' and χ'' at t below 1, by cubics between the nodes.
-    fn of(&self, t: f64) -> Shares {
-        let step = 1.0 / INTERVALS as f64;
-        let first = ((t / step) as usize).min(INTERVALS - 1);
-        let u = t / step - first as f64;
-        let ([value0, slope0, bend0], [value1, slope1, bend1]) = (self.nodes[first], self.nodes[first + 1]);
-        Shares {
-            value: cubic(u, step, [value0, slope0], [value1, slope1]),
-            slope: cubic(u, step, [slope0, bend0], [slope1, bend1]),
-            bend: bend0 + u * (bend1 - bend0),
-        }
-    }
-}
-
-/// χ and its derivatives at one place.
-struct Shares {
-    value: f64,
-    slope: f64,
-    bend: f64,
-}
-
-/// Cubic at u in [0, 1] of an interval, from value and slope at both its ends.
-fn cubic(u: f64, step: f64, [value0, slope0]: [f64; 2], [value1, slope1]: [f64; 2]) -> f64 {
-    let (square, cube) = (u * u, u * u * u);
-    (2.0 * cube - 3.0 * square + 1.0) * value0
-        + (cube - 2.0 * square + u) * step * slope0
-        + (3.0 * square - 2.0 * cube) * value1
-        + (cube - square) * step * slope1
 }

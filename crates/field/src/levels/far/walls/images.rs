@@ -4,8 +4,8 @@
 //! third image, two that face each other a row of images. Screens then reflect the charge and all of those,
 //! one screen after the other: what the first hides or shows, the next hides and mirrors again.
 
-use super::ghosts::{Confined, Ghost};
-use super::mirror::{Mirror, Screened};
+use super::ghosts::{Confined, Ghost, Shown};
+use super::mirror::{AtEdge, Mirror, Screened};
 use super::screen::Screen;
 use nalgebra::Vector3;
 
@@ -25,6 +25,8 @@ const LONGEST_ROW: usize = 12;
 pub(super) struct Reflection {
     pub(super) mirror: Mirror,
     pub(super) sign: f64,
+    /// Whether the wall ends at the edge beside the charge.
+    pub(super) is_at_edge: bool,
 }
 
 /// Image of a charge that every place feels.
@@ -71,10 +73,27 @@ struct Bound {
 }
 
 impl Images {
-    /// Makes the images and ghosts of a unit charge at a point.
-    pub(super) fn take(&mut self, point: &Vector3<f64>, reflections: impl Iterator<Item = Reflection>) {
+    /// Makes the images and ghosts of a unit charge at a point, beside an edge or not.
+    pub(super) fn take(
+        &mut self,
+        point: &Vector3<f64>,
+        edge: Option<&AtEdge>,
+        reflections: impl Iterator<Item = Reflection> + Clone,
+    ) {
         self.plain.clear();
         self.ghosts.clear();
+        if let Some(edge) = edge {
+            // What the other walls make of the charge, the edge's faces reflect.
+            self.reflect_in(point, reflections.clone().filter(|reflection| !reflection.is_at_edge));
+            self.plain.clear();
+            self.ghosts.clear();
+            self.add_edge(edge);
+        }
+        self.reflect_in(point, reflections);
+    }
+
+    /// Adds the images and ghosts that some walls make of a unit charge at a point.
+    fn reflect_in(&mut self, point: &Vector3<f64>, reflections: impl Iterator<Item = Reflection>) {
         self.solid.clear();
         self.screens.clear();
         let is_felt = |reflection: &Reflection| (reflection.sign * reflection.mirror.factor()).abs() >= LEAST;
@@ -87,11 +106,34 @@ impl Images {
             let screened = reflection.mirror.screened.is_some();
             if screened { self.screens.push(reflection) } else { self.solid.push(reflection) }
         }
+        self.leave_out_hidden();
         self.screen_those_that_face_screens();
         self.add_solid(0, Image { at: *point, factor: 1.0 }, &mut Vec::new());
-        if !self.screens.is_empty() {
-            self.add_screens(point);
+        self.add_screens(point);
+    }
+
+    /// Adds the ghosts that an edge makes of the charge and of what other walls have made of it.
+    fn add_edge(&mut self, edge: &AtEdge) {
+        for source in &self.sources {
+            let confined = source.bounds.map(|bound| self.confined(bound));
+            for (screen, share) in edge.screens.iter().flatten().filter(|(_, share)| *share != 0.0) {
+                let (charge, shown) = (share * source.factor, Shown::Around(*screen));
+                self.ghosts.push(Ghost { at: source.at, charge, extent: edge.extent, shown, confined });
+            }
         }
+    }
+
+    fn confined(&self, bound: Option<Bound>) -> Option<Confined> {
+        let Bound { screen, above } = bound?;
+        Some(Confined { screen: self.screens[screen].mirror.screened?.screen, above })
+    }
+
+    /// Leaves out walls behind others, which the charge does not see.
+    fn leave_out_hidden(&mut self) {
+        let all: Vec<Mirror> = self.solid.iter().chain(&self.screens).map(|wall| wall.mirror).collect();
+        let is_seen = |wall: &Reflection| !all.iter().any(|front| front.hides(&wall.mirror));
+        self.solid.retain(is_seen);
+        self.screens.retain(is_seen);
     }
 
     /// Makes screens of solid walls that face a screen: what it mirrors again is no plain image.
@@ -104,8 +146,8 @@ impl Images {
                 continue;
             };
             let Mirror { normal, offset, .. } = reflection.mirror;
-            let radius = facing.mirror.screened.map_or(0.0, |screened| screened.radius);
-            let screened = Screened { screen: Screen::Plane { normal, offset }, radius, fade: 1.0 };
+            let Some(of_facing) = facing.mirror.screened else { break };
+            let screened = Screened { screen: Screen::Plane { normal, offset }, ..of_facing };
             let mirror = Mirror { screened: Some(screened), ..reflection.mirror };
             self.screens.push(Reflection { mirror, ..reflection });
             self.solid.remove(number);
@@ -117,7 +159,7 @@ impl Images {
     /// that stand across all that were used.
     fn add_solid(&mut self, from: usize, before: Image, used: &mut Vec<usize>) {
         for number in from..self.solid.len() {
-            let Reflection { mirror, sign } = self.solid[number];
+            let Reflection { mirror, sign, .. } = self.solid[number];
             if !used.iter().all(|&earlier| are_across(&self.solid[earlier].mirror, &mirror)) {
                 continue;
             }
@@ -135,7 +177,7 @@ impl Images {
                 used.pop();
                 let facing = |other: &usize| faces(&self.solid[turn].mirror, &self.solid[*other].mirror);
                 let Some(next) = (0..self.solid.len()).find(facing) else { break };
-                let Reflection { mirror, sign } = self.solid[next];
+                let Reflection { mirror, sign, .. } = self.solid[next];
                 let factor = image.factor * sign * mirror.fade(mirror.distance_of(&image.at));
                 image = Image { at: mirror.again(&image.at), factor };
                 turn = next;
@@ -176,8 +218,8 @@ impl Images {
 
     /// Adds the two ghosts that a screen makes of a source.
     fn reflect(&mut self, number: usize, source: &Source) {
-        let Reflection { mirror, sign } = self.screens[number];
-        let Some(Screened { screen, radius, .. }) = mirror.screened else { return };
+        let Reflection { mirror, sign, .. } = self.screens[number];
+        let Some(Screened { screen, extent }) = mirror.screened else { return };
         let distance = if source.is_charge { mirror.distance } else { mirror.distance_of(&source.at) };
         if distance < 0.0 || distance >= mirror.depth {
             return;
@@ -185,16 +227,10 @@ impl Images {
         let fade = mirror.fade(distance);
         let is_curved = source.is_charge && mirror.curvature != 0.0;
         let curved = if is_curved { mirror.factor() / fade } else { 1.0 };
-        // A half plane stands on its rim, which need not lie in the tangent plane.
-        let (height, image) = match &screen {
-            Screen::Rim(half) => (half.height(&source.at), half.mirrored(&source.at)),
-            _ if is_curved => (distance, mirror.image(&source.at)),
-            _ => (distance, mirror.again(&source.at)),
-        };
-        let above = if height < 0.0 { -1.0 } else { 1.0 };
+        let image = if is_curved { mirror.image(&source.at) } else { mirror.again(&source.at) };
         // A surface that bends so much that it does not part a charge from its image is replaced by its
         // tangent plane.
-        let parts = screen.height(&source.at) * above > 0.0 && screen.height(&image) * above < 0.0;
+        let parts = screen.height(&source.at) > 0.0 && screen.height(&image) < 0.0;
         let screen = match screen {
             Screen::Curved(_) if !parts => Screen::Plane { normal: mirror.normal, offset: mirror.offset },
             screen => screen,
@@ -203,19 +239,15 @@ impl Images {
         let other: Vec<Bound> = others.clone().filter(|bound| bound.screen != number).collect();
         let is_hidden_already = others.clone().any(|bound| bound.screen == number);
         let bounds = [other.first().copied(), other.get(1).copied()];
-        let confined = bounds.map(|bound| {
-            bound.and_then(|Bound { screen, above }| {
-                let screened = self.screens[screen].mirror.screened?;
-                Some(Confined { screen: screened.screen, above })
-            })
-        });
-        let hides = (source.at, -fade * source.factor, above, true);
-        let mirrors = (image, sign * fade * curved * source.factor, -above, false);
+        let confined = bounds.map(|bound| self.confined(bound));
+        let hides = (source.at, -fade * source.factor, 1.0, true);
+        let mirrors = (image, sign * fade * curved * source.factor, -1.0, false);
         for (at, factor, above, hides) in [hides, mirrors] {
             if factor.abs() < LEAST || (hides && is_hidden_already) {
                 continue;
             }
-            self.ghosts.push(Ghost { at, charge: factor, radius, screen, above, confined });
+            let shown = Shown::Behind { screen, above };
+            self.ghosts.push(Ghost { at, charge: factor, extent, shown, confined });
             if bounds[1].is_none() {
                 let made_by = Bound { screen: number, above: -above };
                 let bounds = [Some(made_by), bounds[0]];

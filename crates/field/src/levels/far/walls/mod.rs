@@ -8,10 +8,12 @@
 //! walls that face each other.
 //!
 //! Where the solid behind a wall is thick enough, these are plain image charges, felt by every place. Where
-//! an image would lie in the mesh behind a sheet or a plate, or beside the edge of a body, they are ghosts,
-//! felt only by the places that the wall hides from them ([`ghosts`]).
+//! an image would lie in the mesh behind a sheet or a plate, they are ghosts, felt only by the places that
+//! the wall hides from them ([`ghosts`]). Near a crease, at which walls meet at an angle that is no right
+//! one, a ghost has what the two faces do ([`creases`]).
 
 mod buckets;
+mod creases;
 mod curved;
 mod edges;
 mod flat;
@@ -19,23 +21,23 @@ mod ghosts;
 mod images;
 mod mirror;
 mod patch;
-mod rims;
 mod screen;
+mod share;
 mod solid;
 
 pub(super) use ghosts::Ghosts;
-pub(super) use images::Images;
 pub(super) use screen::Place;
 
 use super::mesh::{Condition, FarMesh};
+use creases::Creases;
 use curved::CurvedWall;
 use edges::{Edge, edges};
 use flat::FlatWall;
-use images::Reflection;
-use mirror::{Ground, Mirror, RADIUS_AT_RIM_OF_CELL};
+use ghosts::Ghost;
+use images::{Images, Reflection};
+use mirror::{AtEdge, Ground, Mirror};
 use nalgebra::Vector3;
 use patch::half_diagonal;
-use rims::Rims;
 use solid::{Surroundings, surroundings};
 
 /// Faces whose normals and planes differ by less are flat, over one and over the face's size.
@@ -61,6 +63,17 @@ impl Outline {
     }
 }
 
+/// Charges that walls make of others.
+#[derive(Debug, Default)]
+pub(super) struct OfWalls {
+    /// Places of the images that every place feels [m].
+    pub(super) image_positions: Vec<Vector3<f64>>,
+    /// Charges of these images [C].
+    pub(super) image_charges: Vec<f64>,
+    /// Ghosts, with their charges [C].
+    pub(super) ghosts: Vec<Ghost>,
+}
+
 /// The boundary of a mesh, as walls are made of it.
 #[derive(Clone, Copy)]
 struct Surface<'a> {
@@ -69,13 +82,15 @@ struct Surface<'a> {
     around: &'a [Surroundings],
     /// Factor of the ghosts' radii.
     ghost_scale: f64,
-    /// Distance up to which rims matter [m].
+    /// Factor of the distance up to which an edge takes the place of the planes beside it.
+    edge_scale: f64,
+    /// Distance up to which edges matter [m].
     reach: f64,
 }
 
 impl Surface<'_> {
     fn ground(&self, face: u32) -> Ground {
-        Ground::new(&self.around[face as usize], self.ghost_scale)
+        Ground::new(&self.around[face as usize], self.ghost_scale, self.edge_scale)
     }
 
     fn sign(&self, face: u32) -> f64 {
@@ -106,23 +121,23 @@ pub(super) struct Walls {
     walls: Vec<Wall>,
     /// Point of the wall at which each boundary face's condition holds [m].
     places: Vec<Place>,
-    /// All rims, with the ground and the sign of each boundary face.
-    rims: Rims,
+    /// All creases, with the ground and the wall of each boundary face.
+    creases: Creases,
     ground: Vec<Ground>,
-    signs: Vec<f64>,
+    wall_of: Vec<u32>,
     deepest: f64,
     /// Factor of all depths.
     depth_scale: f64,
 }
 
 impl Walls {
-    /// Walls of a mesh, with the radii of ghosts scaled.
-    pub(super) fn new(mesh: &FarMesh, outline: &Outline, ghost_scale: f64) -> Self {
+    /// Walls of a mesh, with the radii of ghosts scaled, and the distance up to which edges matter.
+    pub(super) fn new(mesh: &FarMesh, outline: &Outline, ghost_scale: f64, edge_scale: f64) -> Self {
         let boundary = mesh.boundary();
         let Outline { edges, around } = outline;
         let largest = around.iter().map(|face| face.cell).fold(0.0, f64::max);
-        let reach = ghost_scale * RADIUS_AT_RIM_OF_CELL * largest;
-        let surface = Surface { mesh, edges, around, ghost_scale, reach };
+        let reach = edge_scale.min(1.0) * mirror::LOOK_FOR_EDGES_OF_CELL * largest;
+        let surface = Surface { mesh, edges, around, ghost_scale, edge_scale, reach };
         let mut at: Vec<_> = boundary.iter().map(|face| mesh.place_of_condition(face)).collect();
         let beside = neighbours(mesh, edges);
         let mut walls = Vec::new();
@@ -142,22 +157,26 @@ impl Walls {
                     Shape::Curved(wall)
                 }
             };
-            walls.push(Wall { shape, sign: surface.sign(faces[0]) });
+            walls.push((Wall { shape, sign: surface.sign(faces[0]) }, faces));
         }
-        walls.sort_by_key(|wall| matches!(wall.shape, Shape::Flat(_)));
+        walls.sort_by_key(|(wall, _)| matches!(wall.shape, Shape::Flat(_)));
+        let mut wall_of = vec![0; boundary.len()];
+        for ((_, faces), number) in walls.iter().zip(0..) {
+            faces.iter().for_each(|&face| wall_of[face as usize] = number);
+        }
         let place = |(at, face): (&Vector3<f64>, usize)| {
             let into = SEEN_FROM * mesh.volumes()[boundary[face].cell as usize].cbrt();
             Place { at: *at, seen_from: at - boundary[face].normal * into }
         };
         let faces = 0..boundary.len() as u32;
-        let ground: Vec<Ground> = faces.clone().map(|face| surface.ground(face)).collect();
+        let ground: Vec<Ground> = faces.map(|face| surface.ground(face)).collect();
         Self {
-            walls,
+            walls: walls.into_iter().map(|(wall, _)| wall).collect(),
             places: at.iter().zip(0..).map(place).collect(),
-            rims: Rims::new(mesh, edges, None, reach),
+            creases: Creases::new(mesh, edges, reach),
             deepest: ground.iter().map(|ground| ground.depth).fold(0.0, f64::max),
             ground,
-            signs: faces.map(|face| surface.sign(face)).collect(),
+            wall_of,
             depth_scale: 1.0,
         }
     }
@@ -177,32 +196,44 @@ impl Walls {
         self.depth_scale * self.deepest
     }
 
+    /// Finds what the walls make of charges [C].
+    pub(super) fn of_charges(&self, positions: &[Vector3<f64>], charges: &[f64]) -> OfWalls {
+        let mut found = OfWalls::default();
+        let mut images = Images::default();
+        for (position, charge) in positions.iter().zip(charges).filter(|(_, charge)| **charge != 0.0) {
+            self.reflect(position, &mut images);
+            found.image_positions.extend(images.plain.iter().map(|image| image.at));
+            found.image_charges.extend(images.plain.iter().map(|image| image.factor * charge));
+            found.ghosts.extend(images.ghosts.iter().map(|ghost| ghost.with_charge(*charge)));
+        }
+        found
+    }
+
     /// Finds what the walls make of a unit charge at a point: images and ghosts.
-    pub(super) fn reflect(&self, point: &Vector3<f64>, images: &mut Images) {
-        let of_walls = self.walls.iter().filter_map(|wall| {
+    fn reflect(&self, point: &Vector3<f64>, images: &mut Images) {
+        let edge = self.edge_at(point);
+        let of_walls = self.walls.iter().zip(0..).filter_map(|(wall, number)| {
             let mirror = match &wall.shape {
                 Shape::Flat(flat) => flat.mirror(point, self.depth_scale)?,
                 Shape::Curved(curved) => curved.mirror(point, self.depth_scale)?,
             };
-            Some(Reflection { mirror, sign: wall.sign })
+            let of_edge = edge.as_ref().filter(|(_, walls)| walls.contains(&number));
+            let share = of_edge.map_or(1.0, |(edge, _)| 1.0 - edge.share);
+            Some(Reflection {
+                mirror: Mirror { share: share * mirror.share, ..mirror },
+                sign: wall.sign,
+                is_at_edge: of_edge.is_some(),
+            })
         });
-        images.take(point, of_walls.chain(self.beyond_rim(point)));
+        images.take(point, edge.as_ref().map(|(edge, _)| edge), of_walls);
     }
 
-    /// The half plane that a charge beyond a rim has beside it.
-    fn beyond_rim(&self, point: &Vector3<f64>) -> Option<Reflection> {
-        if self.rims.is_empty() {
-            return None;
-        }
-        let rim = self.rims.nearest(point)?;
-        let ground = self.ground[rim.face() as usize].deeper(self.depth_scale);
-        if rim.distance >= ground.depth {
-            return None;
-        }
-        let half = rim.between_faces(point)?;
-        let left = mirror::left_beside(self.rims.other(point, &rim), rim.distance);
-        let mirror = Mirror::beyond_rim(half, point, rim.distance, &ground, left);
-        Some(Reflection { mirror, sign: self.signs[rim.face() as usize] })
+    /// The edge beside a charge at a point, and the walls that end there.
+    fn edge_at(&self, point: &Vector3<f64>) -> Option<(AtEdge, [u32; 2])> {
+        let crease = self.creases.nearest(point)?;
+        let faces = crease.faces();
+        let edge = AtEdge::new(&crease, &self.creases, &self.ground[faces[0] as usize], point)?;
+        Some((edge, faces.map(|face| self.wall_of[face as usize])))
     }
 }
 
@@ -212,7 +243,7 @@ fn neighbours(mesh: &FarMesh, edges: &[Edge]) -> Vec<Vec<u32>> {
     let boundary = mesh.boundary();
     let kind = |face: u32| matches!(boundary[face as usize].condition, Condition::Potential(_));
     let mut across = vec![Vec::new(); boundary.len()];
-    for edge in edges.iter().filter(|edge| edge.bend().abs() < rims::LEAST_BEND) {
+    for edge in edges.iter().filter(|edge| edge.bend().abs() < creases::LEAST_BEND) {
         let [first, second] = edge.faces;
         if first != second && kind(first) == kind(second) {
             across[first as usize].push(second);

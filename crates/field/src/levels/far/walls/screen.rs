@@ -1,62 +1,42 @@
 //! Walls that hide what is behind them: sheets, plates and edges of bodies, where a mirror charge would lie
 //! in the mesh or beside it.
 //!
-//! A screen takes a share T(x, y) R of a charge's potential away from a place x that it hides from the
-//! charge's place y (R = |x − y|). An endless screen hides all or nothing; at a free rim the share goes
-//! smoothly around it, as a half plane's does (`amberfield_laws::half_plane`).
+//! An endless screen hides all of a charge's potential from the places behind it, or nothing. Around an edge
+//! the potential that its faces add goes smoothly, as between two half planes (`amberfield_laws::wedge`).
 
 use super::curved::Quadric;
-use amberfield_laws::half_plane::{Across, Hidden, hidden};
+use amberfield_laws::wedge::{Around, Induced, Wedge};
 use nalgebra::Vector3;
+use std::f64::consts::{FRAC_PI_2, PI, TAU};
 
-/// A wall as a charge near it sees it.
+/// A right angle [rad].
+pub(super) const RIGHT: f64 = FRAC_PI_2;
+
+/// A wall without an edge nearby, as a charge sees it.
 #[derive(Clone, Copy, Debug)]
 pub(crate) enum Screen {
-    /// A flat wall without a rim nearby.
+    /// A flat wall.
     Plane {
         /// Unit normal, away from the charge.
         normal: Vector3<f64>,
         /// Normal times a point of the plane [m].
         offset: f64,
     },
-    /// A curved wall without a rim nearby.
+    /// A curved wall.
     Curved(Quadric),
-    /// A flat wall that ends at a straight rim.
-    Rim(HalfPlane),
 }
 
-/// A half plane.
+/// Space between the two faces that meet in an edge.
 #[derive(Clone, Copy, Debug)]
-pub(crate) struct HalfPlane {
-    /// A point of the rim [m].
-    pub(crate) rim: Vector3<f64>,
-    /// Unit vector in the plane, from the rim into the plate.
+pub(crate) struct EdgeScreen {
+    /// A point of the edge [m].
+    pub(crate) point: Vector3<f64>,
+    /// Unit vectors along the edge, from it into the first face, and from that face into the mesh.
+    pub(crate) along: Vector3<f64>,
     pub(crate) into: Vector3<f64>,
-    /// Unit normal on the charge's side.
     pub(crate) up: Vector3<f64>,
-}
-
-impl HalfPlane {
-    /// Distance into the plate [m], negative beyond the rim.
-    pub(crate) fn inside(&self, point: &Vector3<f64>) -> f64 {
-        self.into.dot(&(point - self.rim))
-    }
-
-    /// Height above the plate [m].
-    pub(crate) fn height(&self, point: &Vector3<f64>) -> f64 {
-        self.up.dot(&(point - self.rim))
-    }
-
-    /// Mirror image of a point in the plane [m].
-    pub(crate) fn mirrored(&self, point: &Vector3<f64>) -> Vector3<f64> {
-        point - self.up * (2.0 * self.height(point))
-    }
-
-    /// Place across the rim; a place on the plate itself is on the side of `seen_from`.
-    pub(crate) fn across(&self, point: &Vector3<f64>, seen_from: &Vector3<f64>) -> Across {
-        let height = self.height(point).abs().copysign(self.height(seen_from));
-        Across::new(self.inside(point), height)
-    }
+    /// Angle of the mesh between the faces, and their conditions.
+    pub(crate) wedge: Wedge,
 }
 
 /// A place that a field is asked for at.
@@ -68,66 +48,72 @@ pub(crate) struct Place {
     pub(crate) seen_from: Vector3<f64>,
 }
 
-/// Share that is hidden, over the distance, with its gradient.
-#[derive(Clone, Copy, Debug, Default)]
-pub(crate) struct HiddenAt {
-    /// T [1/m].
-    pub(crate) value: f64,
-    /// ∂T/∂R over R at fixed c [1/m³].
-    pub(crate) slope_over_distance: f64,
-    /// ∂T/∂c ∇c [1/m²].
-    pub(crate) aside: Vector3<f64>,
-}
-
 impl Screen {
     /// The screen moved by a period [m].
     pub(crate) fn moved(&self, by: &Vector3<f64>) -> Self {
         match *self {
             Self::Plane { normal, offset } => Self::Plane { normal, offset: offset + normal.dot(by) },
             Self::Curved(quadric) => Self::Curved(quadric.moved(by)),
-            Self::Rim(half) => Self::Rim(HalfPlane { rim: half.rim + by, ..half }),
         }
     }
 
-    /// Height of a point above the wall [m], positive on the charge's side; on a half plane's own side of
-    /// the rim only.
+    /// Numbers by which a screen is known that many charges have.
+    pub(crate) fn key(&self) -> [u64; 6] {
+        let (place, normal) = match self {
+            Self::Plane { normal, offset } => (normal * *offset, *normal),
+            Self::Curved(quadric) => (quadric.centre(), quadric.normal()),
+        };
+        [place.x, place.y, place.z, normal.x, normal.y, normal.z].map(f64::to_bits)
+    }
+
+    /// Height of a point above the wall [m], positive on the charge's side.
+    #[inline]
     pub(crate) fn height(&self, point: &Vector3<f64>) -> f64 {
         match self {
             Self::Plane { normal, offset } => offset - normal.dot(point),
             Self::Curved(quadric) => -quadric.above(point),
-            Self::Rim(half) => half.height(point),
         }
     }
+}
 
-    /// Finds what is hidden at a place from the place `y` of a charge at a distance R, on the side `above`
-    /// (+1, −1) of the wall; `None` where the place sees it.
-    pub(crate) fn hides(
-        &self,
-        place: &Place,
-        y: &Vector3<f64>,
-        distance: f64,
-        above: f64,
-    ) -> Option<HiddenAt> {
-        match self {
-            Self::Plane { .. } | Self::Curved(_) => {
-                let sees = self.height(&place.seen_from) * above > 0.0;
-                let whole = || HiddenAt {
-                    value: 1.0 / distance,
-                    slope_over_distance: -distance.powi(-3),
-                    aside: Vector3::zeros(),
-                };
-                (!sees).then(whole)
-            }
-            Self::Rim(half) => {
-                let here = half.across(&place.at, &place.seen_from);
-                let height = half.height(y).abs().copysign(above);
-                let there = Across::new(half.inside(y), height);
-                let Hidden { value, slope_over_distance, slope_between } =
-                    hidden(distance, here.between(&there));
-                let [into, up] = here.slope_between(&there);
-                let aside = slope_between * (half.into * into + half.up * up);
-                Some(HiddenAt { value, slope_over_distance, aside })
-            }
+impl EdgeScreen {
+    /// Numbers by which an edge is known that many charges have.
+    pub(crate) fn key(&self) -> [u64; 6] {
+        let (place, across) = (self.point, self.into + 2.0 * self.up);
+        [place.x, place.y, place.z, across.x, across.y, across.z].map(f64::to_bits)
+    }
+
+    /// The edge moved by a period [m].
+    pub(crate) fn moved(&self, by: &Vector3<f64>) -> Self {
+        Self { point: self.point + by, ..*self }
+    }
+
+    /// Place around the edge; `None` outside the space between the faces, where all of a charge is hidden.
+    pub(crate) fn around(&self, place: &Place) -> Option<Around> {
+        let angle_of = |apart: &Vector3<f64>| {
+            let angle = apart.dot(&self.up).atan2(apart.dot(&self.into));
+            if angle < 0.0 { angle + TAU } else { angle }
+        };
+        let apart = place.at - self.point;
+        let seen = angle_of(&(place.seen_from - self.point));
+        if seen > self.wedge.angle() {
+            return None;
         }
+        // A place on a face is on the side that it is seen from.
+        let mut angle = angle_of(&apart);
+        if (angle - seen).abs() > PI {
+            angle -= TAU.copysign(angle - seen);
+        }
+        let r = apart.dot(&self.into).hypot(apart.dot(&self.up));
+        Some(self.wedge.around(r, angle.clamp(0.0, self.wedge.angle()), apart.dot(&self.along)))
+    }
+
+    /// Potential that the faces add to a unit charge's at a place [1/m], with its gradient [1/m²].
+    pub(crate) fn induced(&self, place: &Around, charge: &Around) -> (f64, Vector3<f64>) {
+        let Induced { value, slope } = self.wedge.induced(place, charge);
+        let [cosine, sine] = place.cosine_and_sine();
+        let outwards = self.into * cosine + self.up * sine;
+        let across = self.up * cosine - self.into * sine;
+        (value, outwards * slope[0] + across * slope[1] + self.along * slope[2])
     }
 }

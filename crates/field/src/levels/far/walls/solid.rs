@@ -1,7 +1,7 @@
 //! Surroundings of each boundary face: the size of the cells there, and how thick the solid behind it is.
 
 use super::patch::Patch;
-use crate::levels::far::mesh::{FarMesh, Neighbour};
+use crate::levels::far::mesh::{BoundaryFace, FarMesh, Neighbour};
 use crate::levels::far::polygon;
 use nalgebra::Vector3;
 use rayon::prelude::*;
@@ -29,9 +29,11 @@ pub(super) fn surroundings(mesh: &FarMesh) -> Vec<Surroundings> {
     let patch = Patch::new(mesh.boundary(), &all, 0.0);
     let of_face = |face: usize| {
         let cell = cell_size(mesh, mesh.boundary()[face].cell as usize);
-        let normal = mesh.boundary()[face].normal;
+        let BoundaryFace { normal, centre, cell: inside, .. } = mesh.boundary()[face];
         let look = Look { mesh, patch: &patch, face, farthest: LOOK * cell };
-        Surroundings { cell, solid: look.along(&normal), gap: look.along(&-normal) }
+        // The face's own cell is in front of it; the back of a sheet without thickness is not.
+        let depth = normal.dot(&(centre - mesh.centres()[inside as usize]));
+        Surroundings { cell, solid: look.along(&normal, f64::NEG_INFINITY), gap: look.along(&-normal, depth) }
     };
     (0..mesh.boundary().len()).into_par_iter().map(of_face).collect()
 }
@@ -54,8 +56,9 @@ struct Look<'a> {
 }
 
 impl Look<'_> {
-    /// Distance to the first boundary face that is seen from the side on which the line travels [m].
-    fn along(&self, direction: &Vector3<f64>) -> f64 {
+    /// Distance to the first boundary face that is seen from the side on which the line travels, beyond a
+    /// least distance [m].
+    fn along(&self, direction: &Vector3<f64>, least: f64) -> f64 {
         let from = self.mesh.boundary()[self.face].centre;
         let step = self.patch.reach();
         let mut nearest = f64::INFINITY;
@@ -67,7 +70,9 @@ impl Look<'_> {
             let wrapped = self.mesh.domain().wrap(place);
             for other in self.patch.near(&wrapped).filter(|other| *other != self.face) {
                 let distance = self.distance(other, &(from + wrapped - place), direction, outwards);
-                nearest = nearest.min(distance);
+                if distance > least {
+                    nearest = nearest.min(distance);
+                }
             }
             reached += step;
         }

@@ -8,7 +8,7 @@ fn corner_of_a_box_has_seven_images_with_the_walls_signs() {
     let faces = [[Boundary::Grounded; 2], [insulating; 2], [Boundary::Grounded; 2]];
     let domain = Domain::new(Vector3::zeros(), Vector3::repeat(1.0), faces).unwrap();
     let mesh = FarMesh::new(FarMeshParts::of_box(&domain, [8; 3]).unwrap()).unwrap();
-    let (walls, mut images) = (Walls::new(&mesh, &Outline::new(&mesh), 1.0), Images::default());
+    let (walls, mut images) = (Walls::new(&mesh, &Outline::new(&mesh), 1.0, 1.0), Images::default());
     walls.reflect(&Vector3::new(0.1, 0.12, 0.15), &mut images);
     assert!(images.ghosts.is_empty());
     assert_eq!(images.plain.len(), 7);
@@ -32,8 +32,8 @@ fn cube_with_sheet(is_sheet: impl Fn(&Vector3<f64>) -> bool) -> FarMesh {
 #[test]
 fn wall_that_a_divider_cuts_in_two_mirrors_a_charge_once_and_the_divider_mirrors_both() {
     let mesh = cube_with_sheet(|x| (x.x - 5.0).abs() < 1e-6);
-    let (walls, mut images) = (Walls::new(&mesh, &Outline::new(&mesh), 1.0), Images::default());
-    assert!(walls.rims.is_empty(), "a divider has no free rim");
+    let (walls, mut images) = (Walls::new(&mesh, &Outline::new(&mesh), 1.0, 1.0), Images::default());
+    assert!(walls.creases.is_empty(), "a divider has no free rim");
     walls.reflect(&Vector3::new(4.899, 0.188, 5.188), &mut images);
     assert_eq!(images.plain.len(), 1);
     let mut ghosts: Vec<_> =
@@ -51,7 +51,7 @@ fn wall_that_a_divider_cuts_in_two_mirrors_a_charge_once_and_the_divider_mirrors
 fn half_a_divider_has_one_rim_and_faces_that_meet_there_back_to_back() {
     let mesh = cube_with_sheet(|x| (x.x - 5.0).abs() < 1e-6 && x.z < 5.0);
     let all = edges(&mesh);
-    let rims: Vec<_> = all.iter().filter(|edge| edge.bend() > rims::LEAST_BEND).collect();
+    let rims: Vec<_> = all.iter().filter(|edge| edge.bend() > creases::LEAST_BEND).collect();
     assert_eq!(rims.len(), 20);
     for rim in rims {
         assert!((rim.angle - std::f64::consts::TAU).abs() < 1e-9);
