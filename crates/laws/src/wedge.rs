@@ -45,6 +45,8 @@ const POINTS: [[f64; 2]; COUNT] = [
 ];
 /// Least distance from the edge that counts, over that of the two places.
 const LEAST: f64 = 1e-9;
+/// Angles at which a place sees a charge or an image.
+const SEEN: std::ops::Range<f64> = LEAST - PI..PI + LEAST;
 
 /// Condition on a face.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -164,7 +166,6 @@ impl Wedge {
     /// Place at a distance r from the edge [m], an angle φ from the first face [rad], and z along it [m].
     #[must_use]
     pub fn around(&self, r: f64, angle: f64, along: f64) -> Around {
-        // Images are found from the conductor.
         let is_turned = self.faces == [Face::Insulator, Face::Conductor];
         let seen = if is_turned { self.angle - angle } else { angle };
         Around { r, angle, along, turn: Turn::by(angle), ordered: Turn::by(self.whole.order * seen) }
@@ -209,9 +210,8 @@ impl Whole {
         let mut induced = Induced::default();
         let own = place.angle - charge.angle;
         let turn = place.turn.and(charge.turn.back());
-        let is_seen = own.abs() < PI;
+        let is_seen = SEEN.contains(&own);
         if !is_seen {
-            // What the edge hides of the charge.
             induced.add(-1.0, &pair.seen_at(turn).point());
         }
         let of_charge = Part::new(self, own, turn, place.ordered.and(charge.ordered.back()), &pair);
@@ -306,7 +306,7 @@ impl Part {
     }
 
     fn take(&mut self, angle: f64, turn: Turn, pair: &Pair) {
-        if (LEAST - PI..PI + LEAST).contains(&angle) && self.count < MOST {
+        if SEEN.contains(&angle) && self.count < MOST {
             self.images[self.count] = pair.seen_at(turn);
             self.count += 1;
         }
