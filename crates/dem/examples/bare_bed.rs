@@ -18,7 +18,7 @@ use contacts::Contacts;
 use contacts::cells::{LinkedCells, levels_of, shifts};
 use contacts::material_pairs::PairTable;
 use contacts::neighbours::Neighbours;
-use motion::chunks::chunk_count;
+use motion::chunks::{Loads, chunk_count};
 use motion::grains::{Grains, SortKey};
 use motion::verlet::{Bounds, ChunkMotion, drift, kick};
 
@@ -31,8 +31,7 @@ struct Bed {
     contacts: Contacts,
     keys: Vec<SortKey>,
     order: Vec<u32>,
-    force: Vec<Vector3<f64>>,
-    torque: Vec<Vector3<f64>>,
+    loads: Loads,
     motion: Vec<ChunkMotion>,
     /// Bound on any grain's displacement since the lists were built [m].
     travel: f64,
@@ -53,11 +52,11 @@ impl Bed {
             contacts: Contacts { table, features, neighbours, walls: None },
             keys: Vec::new(),
             order: Vec::new(),
-            force: vec![Vector3::zeros(); count],
-            torque: vec![Vector3::zeros(); count],
+            loads: Loads::default(),
             motion: vec![ChunkMotion::default(); chunk_count(count)],
             travel: 0.0,
         };
+        bed.loads.resize(count, features.rotation());
         bed.list();
         bed.push_and_kick(0.0);
         bed
@@ -93,9 +92,10 @@ impl Bed {
     }
 
     fn push_and_kick(&mut self, step: f64) {
-        self.contacts.push_grains(&self.grains, step, None, &mut self.force, &mut self.torque);
+        self.contacts.push_grains(&self.grains, step, None, &mut self.loads);
         let neighbours = &self.contacts.neighbours;
-        kick(&mut self.grains, |k| neighbours.pushes(k), step, &mut self.force, &mut self.torque);
+        let gravity = Vector3::zeros();
+        kick(&mut self.grains, gravity, |k| neighbours.pushes(k), step, &mut self.loads);
     }
 }
 

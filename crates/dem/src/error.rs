@@ -11,20 +11,49 @@ pub enum DemError {
     /// A value of the set-up is impossible.
     #[error("{0}")]
     Setup(String),
-    /// Two grains overlap too much at the start.
+    /// Grains overlap each other or walls too much at the start.
     #[error(
-        "grains {id_i} and {id_j} overlap by {overlap_m:e} m at the start, more than {limit_m:e} m \
-         (half the smaller radius); move them apart or set allow_overlap = true"
+        "{count} overlap(s) at the start are above a hundredth of a radius; the largest is \
+         {overlap_m:.3e} m, {share:.3} of a radius, of grain {id} and {partner}; move them apart, or set \
+         particles.allow_overlap = true if that is meant"
     )]
     Overlap {
-        /// Id of one grain.
-        id_i: u64,
-        /// Id of the other.
-        id_j: u64,
+        /// Number of contacts that overlap too much.
+        count: usize,
+        /// Id of the grain of the largest.
+        id: u64,
+        /// Grain or wall that it overlaps.
+        partner: String,
         /// Overlap [m].
         overlap_m: f64,
-        /// Largest overlap accepted [m].
-        limit_m: f64,
+        /// Overlap over the smaller radius.
+        share: f64,
+    },
+    /// A contact has become too deep to be sound.
+    #[error(
+        "at t = {time_s:e} s grain {id} (at ({:.4e}, {:.4e}, {:.4e}) m with ({:.3e}, {:.3e}, {:.3e}) m/s) \
+         overlaps {partner} by {overlap_m:.3e} m, {share:.2} of its radius: more than {limit:.2}; the motion \
+         is no longer sound, and the grain may end on the other side: make the grains stiffer (young_Pa), \
+         time.step_s smaller, or check what presses on this grain",
+        position_m.x, position_m.y, position_m.z, velocity_m_s.x, velocity_m_s.y, velocity_m_s.z
+    )]
+    TooDeep {
+        /// Id of the grain.
+        id: u64,
+        /// Position of the grain [m].
+        position_m: Vector3<f64>,
+        /// Velocity of the grain [m/s].
+        velocity_m_s: Vector3<f64>,
+        /// Grain or wall that it overlaps.
+        partner: String,
+        /// Overlap [m].
+        overlap_m: f64,
+        /// Overlap over the smaller radius.
+        share: f64,
+        /// Largest share allowed.
+        limit: f64,
+        /// Simulated time [s].
+        time_s: f64,
     },
     /// Two grains have the same centre.
     #[error("grains {id_i} and {id_j} have the same centre, so their contact has no direction; move one")]
@@ -33,21 +62,6 @@ pub enum DemError {
         id_i: u64,
         /// Id of the other.
         id_j: u64,
-    },
-    /// A grain is too deep in a wall at the start.
-    #[error(
-        "grain {id} overlaps wall '{wall}' by {overlap_m:e} m at the start, more than {limit_m:e} m \
-         (half its radius); move it or set allow_overlap = true"
-    )]
-    WallOverlap {
-        /// Id of the grain.
-        id: u64,
-        /// Name of the wall.
-        wall: String,
-        /// Overlap [m].
-        overlap_m: f64,
-        /// Largest overlap accepted [m].
-        limit_m: f64,
     },
     /// The step is beyond a stability guard.
     #[error(

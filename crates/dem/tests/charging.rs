@@ -204,6 +204,7 @@ fn breakdown_field_ends_the_charging() {
     let mut scene = setup(vec![start], solid(1e5, 1.0), 1e-8);
     scene.materials.push(Material { work_function_ev: Some(4.5 - 1.0), ..solid(1e5, 1.0) });
     scene.walls = vec![Wall { material: amberfield_core::MaterialId(1), ..wall }];
+    scene.time.allow_overlap = true;
     let mut simulation = Simulation::new(transfer(scene, settings)).expect("a good scene");
     run(&mut simulation, 10_000);
     let charge = simulation.particles().charge[0];

@@ -135,6 +135,7 @@ fn rayleigh_guard_is_within_the_edge_for_a_grain_that_rocks_between_two() {
     // Pressed a hundredth of a radius into heavy ones on either side, without friction or damping.
     let mut scene = held(&[10.0 + DISPLACED, 10.0 - 1.99, 10.0 + 1.99], Boundary::Open, 0.0);
     scene.field = None;
+    scene.time.allow_overlap = true;
     scene.materials[0].restitution = 1.0;
     let edge = edge_over("rayleigh", &scene);
     assert!(edge > 1.0, "{edge}");

@@ -8,6 +8,7 @@ pub mod beetstra_drag;
 pub mod charge_transfer;
 pub mod contact_area;
 pub mod coulomb_friction;
+pub mod damped_step;
 pub mod di_felice_drag;
 pub mod dielectric_breakdown;
 pub mod drag;

@@ -5,8 +5,6 @@ use amberfield_core::{Axis, Vector3};
 use amberfield_dem::{ElectricEnergy, Energies, Simulation};
 use amberfield_scene::Scene;
 
-/// Largest allowed overlap over the smaller radius.
-const DEEPEST: f64 = 0.5;
 /// Largest allowed ratio of the kinetic energy to all energy that could have been released. It is wide
 /// because the energy in the field of electrodes is counted by half.
 const ENERGY: f64 = 10.0;
@@ -32,8 +30,6 @@ pub(crate) struct Health {
 /// Facts that a scene permits, so that they are no sign of an unsound run.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Allowed {
-    /// Switch for deep overlaps.
-    overlap: bool,
     /// Switch for energy from outside: charging contacts, limited forces, a gas, or a force along a periodic
     /// axis, which does work in each period.
     work: bool,
@@ -53,10 +49,7 @@ impl Allowed {
         let limited = field.is_some_and(|field| field.force_limit.is_some());
         let charging =
             scene.electric_field.as_ref().is_some_and(|field| field.enable_collision_charge_transfer);
-        Self {
-            overlap: scene.time.as_ref().is_some_and(|time| time.allow_overlap),
-            work: round || limited || scene.gas.is_some() || charging,
-        }
+        Self { work: round || limited || scene.gas.is_some() || charging }
     }
 }
 
@@ -84,19 +77,6 @@ impl Health {
         let time_s = simulation.time_s();
         if let Some(id) = simulation.not_finite() {
             return Err(unsound(format!("the position or velocity of grain {id} is not a number"), time_s));
-        }
-        if let Some(deepest) = simulation.deepest().filter(|d| !self.allowed.overlap && d.share > DEEPEST) {
-            let other = deepest.other.map_or_else(|| "a wall".to_owned(), |id| format!("grain {id}"));
-            return Err(unsound(
-                format!(
-                    "grain {} {} overlaps {other} by {:.3e} m, {:.2} of its radius: more than {DEEPEST}",
-                    deepest.id,
-                    whereabouts(simulation, deepest.id),
-                    deepest.overlap_m,
-                    deepest.share
-                ),
-                time_s,
-            ));
         }
         self.highest = self.highest.max(potential(energies));
         if self.is_too_fast(energies) {

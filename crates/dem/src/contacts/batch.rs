@@ -5,7 +5,7 @@ use crate::contacts::law::{Contact, History, respond};
 use crate::contacts::material_pairs::PairConstants;
 use amberfield_core::Vector3;
 use amberfield_laws::contact_area;
-use nalgebra::SimdValue;
+use nalgebra::{SimdPartialOrd, SimdValue};
 use simba::simd::WideF64x4;
 use std::f64::consts::PI;
 
@@ -47,12 +47,16 @@ impl Vectors {
 pub(crate) struct Batch {
     /// Offset from the centre of i to that of j [m].
     pub(crate) offset: Vectors,
-    /// v_i − v_j of the centres [m/s].
+    /// v_i − v_j of the centres in the middle of the step [m/s].
     pub(crate) velocity: Vectors,
+    /// v_i − v_j of the centres as forecast for the end of the step [m/s].
+    pub(crate) forecast: Vectors,
     /// Radii of i and j [m].
     pub(crate) radius: [Lanes; 2],
     /// 1/m of i and j [1/kg].
     pub(crate) inverse_mass: [Lanes; 2],
+    /// Γ_i + Γ_j: rates at which all contacts of i and j slowed them in the last step [1/s].
+    pub(crate) slowing: Lanes,
     /// ω of i and j [rad/s].
     pub(crate) angular: [Vectors; 2],
     /// Tangential spring [N].
@@ -67,6 +71,10 @@ pub(crate) struct Batch {
     pub(crate) force: Vectors,
     /// Torques on i and j [N·m].
     pub(crate) torque: [Vectors; 2],
+    /// Largest damping coefficient in any direction [N·s/m].
+    pub(crate) damping: Lanes,
+    /// Overlap over the smaller radius.
+    pub(crate) depth: Lanes,
 }
 
 impl Batch {
@@ -76,8 +84,10 @@ impl Batch {
         Self {
             offset: none,
             velocity: none,
+            forecast: none,
             radius: [zero; 2],
             inverse_mass: [zero; 2],
+            slowing: zero,
             angular: [none; 2],
             spring: none,
             contact_radius: zero,
@@ -85,6 +95,8 @@ impl Batch {
             pair: pair.map(|number| [number; BATCH]),
             force: none,
             torque: [none; 2],
+            damping: zero,
+            depth: zero,
         }
     }
 
@@ -115,11 +127,13 @@ impl Batch {
             overlap,
             normal: offset * (WideF64x4::ONE / distance),
             velocity: self.velocity.load(),
+            forecast: self.forecast.load(),
             spin: Vector3::zeros(),
             turning: Vector3::zeros(),
             radius: a * b / (a + b),
             inverse_mass: inverse_i + inverse_j,
             inverse_moment: WideF64x4::ZERO,
+            slowing: self.slowing.into(),
         };
         if FRICTION || ROLLING {
             let (angular_i, angular_j) = (self.angular[0].load(), self.angular[1].load());
@@ -136,6 +150,10 @@ impl Batch {
         let step = WideF64x4::splat(step);
         let response = respond::<_, FRICTION, ROLLING, DAMPING>(&contact, &pair, step, &mut history);
         self.force = Vectors::store(response.force);
+        self.depth = (overlap / a.simd_min(b)).into_arr();
+        if DAMPING || ROLLING {
+            self.damping = response.damping.into_arr();
+        }
         if FRICTION {
             self.spring = Vectors::store(history.spring);
             self.contact_radius = history.contact_radius.into_arr();

@@ -1,26 +1,29 @@
 //! One contact: force and torque from overlap, relative motion and history.
 //!
-//! The tangential spring is kept as a force, advanced by −S_t v_t Δt with the slip v_t at the end of the step
-//! (first order: a damping of ½ S_t Δt, which vanishes with the step), and turned with the contact. While the
-//! contact unloads it shrinks with the contact radius √(R*δ), so that no energy is made by stretching a
-//! spring at high load and releasing it at low load (Thornton, Cummins & Cleary, Powder Technol. 233, 30
-//! (2013)). The normal damping is kept to the end of the contact (δ = 0), where it pulls slightly: that is
-//! what makes the coefficient of restitution exact; friction sees no negative load.
+//! Velocities are those of the middle of the step. The tangential spring is kept as a force, advanced by −S_t
+//! v_t Δt, which is the slip of the step exactly, and turned with the contact. Dashpots act as far as the
+//! step bears it (`amberfield_laws::damped_step`). While the contact unloads it shrinks with the contact
+//! radius √(R*δ), so that no energy is made by stretching a spring at high load and releasing it at low load
+//! (Thornton, Cummins & Cleary, Powder Technol. 233, 30 (2013)). The normal damping is kept to the end of the
+//! contact (δ = 0), where it pulls slightly: that is what makes the coefficient of restitution exact;
+//! friction sees no negative load.
 //!
 //! Numbers are one contact's, or those of several side by side: there is no branch in the law.
 
 use crate::contacts::material_pairs::PairConstants;
 use crate::contacts::memory::Spring;
 use amberfield_core::Vector3;
-use amberfield_laws::rolling_friction;
+use amberfield_laws::{damped_step, rolling_friction};
 use nalgebra::SimdRealField;
 
 /// Geometry and motion of one contact of body i with body j; n points from i to j.
 pub(crate) struct Contact<T> {
     pub(crate) overlap: T,
     pub(crate) normal: Vector3<T>,
-    /// v_i − v_j of the centres.
+    /// v_i − v_j of the centres in the middle of the step.
     pub(crate) velocity: Vector3<T>,
+    /// v_i − v_j of the centres as forecast for the end of the step.
+    pub(crate) forecast: Vector3<T>,
     /// a_i ω_i + a_j ω_j, a the distance from centre to contact.
     pub(crate) spin: Vector3<T>,
     /// ω_i − ω_j.
@@ -31,6 +34,8 @@ pub(crate) struct Contact<T> {
     pub(crate) inverse_mass: T,
     /// Σ 1/(m r²) of the bodies.
     pub(crate) inverse_moment: T,
+    /// Γ_i + Γ_j: rates at which all contacts of the bodies slowed them in the last step [1/s].
+    pub(crate) slowing: T,
 }
 
 /// Memory of a contact.
@@ -66,8 +71,12 @@ pub(crate) struct Response<T> {
     pub(crate) twist: Vector3<T>,
     /// Rolling torque on i; the opposite on j.
     pub(crate) rolling: Vector3<T>,
+    /// M_c: largest damping coefficient in any direction [N·s/m].
+    pub(crate) damping: T,
 }
 
+/// Inertia of a sphere about its centre over m r².
+const SPHERE_INERTIA: f64 = 2.0 / 5.0;
 /// Inertia of a sphere about its contact over m r².
 const CONTACT_INERTIA: f64 = 7.0 / 5.0;
 
@@ -82,18 +91,28 @@ pub(crate) fn respond<T, const FRICTION: bool, const ROLLING: bool, const DAMPIN
 where
     T: SimdRealField<Element = f64> + Copy,
 {
-    let Contact { overlap, normal, velocity, .. } = *contact;
+    let Contact { overlap, normal, velocity, radius, .. } = *contact;
     let (zero, one) = (T::zero(), T::one());
-    let contact_radius = (overlap * contact.radius).simd_sqrt();
+    let contact_radius = (overlap * radius).simd_sqrt();
+    let dashpots = if DAMPING || ROLLING {
+        Dashpots::of::<FRICTION, ROLLING>(contact, pair, contact_radius, step)
+    } else {
+        Dashpots { normal: zero, tangential: zero, rolling: zero, forecast: zero, largest: zero }
+    };
     let approach = velocity.dot(&normal);
-    let damping =
-        if DAMPING { pair.damping * (contact_radius / contact.inverse_mass).simd_sqrt() } else { zero };
-    let load = pair.hertz * contact_radius * overlap + damping * approach;
-    let mut response = Response { force: normal * -load, twist: Vector3::zeros(), rolling: Vector3::zeros() };
+    let later = contact.forecast.dot(&normal);
+    let damped = approach + dashpots.forecast * (later - approach);
+    let load = pair.hertz * contact_radius * overlap + dashpots.normal * damped;
+    let mut response = Response {
+        force: normal * -load,
+        twist: Vector3::zeros(),
+        rolling: Vector3::zeros(),
+        damping: dashpots.largest,
+    };
     if FRICTION {
         let sliding = velocity - normal * approach + contact.spin.cross(&normal);
         let stiffness = pair.tangential * contact_radius;
-        let dashpot = sliding * (damping * pair.tangential_ratio);
+        let dashpot = sliding * dashpots.tangential;
         let unloading = contact_radius.simd_lt(history.contact_radius);
         let shrunk = (contact_radius / history.contact_radius).select(unloading, one);
         let elastic = turned(history.spring, &normal) * shrunk - sliding * (stiffness * step);
@@ -110,17 +129,72 @@ where
     }
     if ROLLING {
         let turning = contact.turning;
-        let radius = contact.radius;
         let stiffness = rolling_friction::stiffness(pair.normal * contact_radius, pair.rolling, radius);
-        let dashpot =
-            rolling_friction::damping(T::splat(CONTACT_INERTIA) / contact.inverse_moment, stiffness);
         let bound = rolling_friction::largest(pair.rolling, radius, load);
-        let torque =
-            rolling_friction::advance(history.rolling, turning * step, turning, stiffness, dashpot, bound);
+        let torque = rolling_friction::advance(
+            history.rolling,
+            turning * step,
+            turning,
+            stiffness,
+            dashpots.rolling,
+            bound,
+        );
         history.rolling = torque.spring;
         response.rolling = torque.total;
     }
     response
+}
+
+/// Damping coefficients of a contact in a step.
+struct Dashpots<T> {
+    /// γ_n [N·s/m].
+    normal: T,
+    /// γ_t [N·s/m].
+    tangential: T,
+    /// C_r [N·m·s].
+    rolling: T,
+    /// Part of the forecast in the velocity that γ_n sees.
+    forecast: T,
+    /// M_c [N·s/m].
+    largest: T,
+}
+
+impl<T: SimdRealField<Element = f64> + Copy> Dashpots<T> {
+    /// Damping coefficients of a contact radius [m], as far as a step [s] bears them.
+    #[inline(always)]
+    fn of<const FRICTION: bool, const ROLLING: bool>(
+        contact: &Contact<T>,
+        pair: &PairConstants<T>,
+        contact_radius: T,
+        step: T,
+    ) -> Self {
+        let Contact { radius, inverse_mass, inverse_moment, slowing, .. } = *contact;
+        let zero = T::zero();
+        let normal = pair.damping * (contact_radius / inverse_mass).simd_sqrt();
+        let tangential = if FRICTION { normal * pair.tangential_ratio } else { zero };
+        let rolling = if ROLLING {
+            let stiffness = rolling_friction::stiffness(pair.normal * contact_radius, pair.rolling, radius);
+            rolling_friction::damping(T::splat(CONTACT_INERTIA) / inverse_moment, stiffness)
+        } else {
+            zero
+        };
+        let turning = if ROLLING { rolling * (inverse_moment / inverse_mass) } else { zero };
+        let largest = damped_step::largest(normal, tangential, turning * T::splat(1.0 / SPHERE_INERTIA));
+        let per_mass = step * inverse_mass;
+        let stiffness = pair.normal * contact_radius * per_mass * step;
+        let others = (slowing * step - largest * per_mass).simd_max(zero);
+        let surface = T::splat(damped_step::SURFACE);
+        let bearable = damped_step::bearable(normal * per_mass, others);
+        let bearable_sliding = damped_step::bearable(tangential * surface * per_mass, others);
+        let bearable_turning = damped_step::bearable(largest * per_mass, others);
+        Self {
+            normal: normal * damped_step::share(bearable, stiffness),
+            tangential: tangential * damped_step::share(bearable_sliding, zero),
+            rolling: rolling * damped_step::share(bearable_turning, zero),
+            forecast: damped_step::forecast(bearable),
+            largest,
+        }
+    }
 }
 
 /// The vector turned into the plane across `normal`, its length kept.

@@ -12,8 +12,9 @@ pub(crate) mod neighbours;
 pub(crate) mod pairs;
 pub(crate) mod walls;
 
+use crate::motion::chunks::Loads;
 use crate::motion::grains::Grains;
-use amberfield_core::{Domain, Vector3};
+use amberfield_core::Domain;
 use material_pairs::{Features, PairTable};
 use memory::{ContactsState, Follow, WallHistory};
 use neighbours::Neighbours;
@@ -33,18 +34,39 @@ pub(crate) struct Contacts {
     pub(crate) walls: Option<ContactWalls>,
 }
 
+/// Overlaps over the smaller radius.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Depths {
+    /// Largest of grains with each other.
+    pub(crate) grains: f64,
+    /// Largest of grains with walls.
+    pub(crate) walls: f64,
+}
+
 impl Contacts {
-    /// Sums the forces [N] and torques [N·m] of grains on each other into `force` and `torque`, which are
-    /// overwritten; what acts on other chunks waits in the outboxes. `step` [s] advances the springs.
+    /// Sums what grains do to each other into `loads`, which are overwritten; what acts on other chunks waits
+    /// in the outboxes. `step` [s] advances the springs.
     pub(crate) fn push_grains(
         &mut self,
         grains: &Grains,
         step: f64,
         follow: Option<Follow>,
-        force: &mut [Vector3<f64>],
-        torque: &mut [Vector3<f64>],
+        loads: &mut Loads,
     ) {
-        pair_forces(grains, &mut self.neighbours, &self.table, step, follow, force, torque);
+        pair_forces(grains, &mut self.neighbours, &self.table, step, follow, loads);
+    }
+
+    /// Adds what walls do to grains; `step` [s] advances the springs.
+    pub(crate) fn push_off_walls(&mut self, grains: &Grains, step: f64, loads: &mut Loads) {
+        if let Some(walls) = &mut self.walls {
+            walls.forces(grains, &self.table, self.features, step, loads);
+        }
+    }
+
+    /// Largest overlaps over the smaller radius at the last evaluation.
+    pub(crate) fn depths(&self) -> Depths {
+        let grains = self.neighbours.lists.iter().map(|list| list.deepest).fold(0.0, f64::max);
+        Depths { grains, walls: self.walls.as_ref().map_or(0.0, ContactWalls::deepest) }
     }
 
     /// Number of touching contacts, of grains and with walls, at the last evaluation.

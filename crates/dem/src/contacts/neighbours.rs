@@ -46,6 +46,8 @@ pub(crate) struct ChunkList {
     pub(crate) filled: Vec<bool>,
     /// Touching pairs of the last evaluation.
     pub(crate) contacts: usize,
+    /// Largest overlap of them over the smaller radius.
+    pub(crate) deepest: f64,
 }
 
 /// A listed pair.

@@ -5,7 +5,7 @@ use crate::contacts::cells::{INDEX_BITS, INDEX_MASK};
 use crate::contacts::material_pairs::PairTable;
 use crate::contacts::memory::{Follow, Spring};
 use crate::contacts::neighbours::{ChunkList, Hit, Neighbours};
-use crate::motion::chunks::{CHUNK, Push, chunk_count, for_each_chunk, is_parallel};
+use crate::motion::chunks::{CHUNK, ChunkLoads, Loads, NO_PUSH, Push, for_each_load};
 use crate::motion::grains::Grains;
 use amberfield_core::Vector3;
 
@@ -18,25 +18,23 @@ struct Scene<'a> {
     follow: Option<Follow>,
 }
 
-/// Computes the forces and torques that chunks make on their own grains into `force` and `torque`
-/// (overwritten), and on others into the outboxes. `step` [s] advances the springs. Contact areas are
-/// followed if anyone wants to know them.
+/// Computes what chunks do to their own grains into `loads` (overwritten), and to others into the outboxes.
+/// `step` [s] advances the springs. Contact areas are followed if anyone wants to know them.
 pub(crate) fn pair_forces(
     grains: &Grains,
     neighbours: &mut Neighbours,
     table: &PairTable,
     step: f64,
     follow: Option<Follow>,
-    force: &mut [Vector3<f64>],
-    torque: &mut [Vector3<f64>],
+    loads: &mut Loads,
 ) {
     let features = neighbours.features;
     let scene = Scene { grains, shifts: &neighbours.shifts, table, step, follow };
     let periodic = neighbours.shifts.iter().flatten().any(|shift| *shift != 0.0);
-    let lists = &mut neighbours.lists;
+    let lists = &mut neighbours.lists[..];
     macro_rules! run {
         ($f:literal, $r:literal, $d:literal, $p:literal) => {
-            run::<$f, $r, $d, $p>(&scene, lists, force, torque)
+            for_each_load(lists, loads, |k, list, loads| chunk::<$f, $r, $d, $p>(&scene, k, list, loads))
         };
     }
     macro_rules! periodic {
@@ -53,38 +51,6 @@ pub(crate) fn pair_forces(
         (true, false, true) => periodic!(true, false, true),
         (true, true, false) => periodic!(true, true, false),
         (true, true, true) => periodic!(true, true, true),
-    }
-}
-
-fn run<const FRICTION: bool, const ROLLING: bool, const DAMPING: bool, const PERIODIC: bool>(
-    scene: &Scene<'_>,
-    lists: &mut [ChunkList],
-    force: &mut [Vector3<f64>],
-    torque: &mut [Vector3<f64>],
-) {
-    let count = scene.grains.len();
-    let (parallel, chunks) = (is_parallel(count), chunk_count(count));
-    if FRICTION || ROLLING {
-        for_each_chunk!(parallel, chunks, (lists / 1, force / CHUNK, torque / CHUNK), |k: usize,
-                                                                                       (
-            list,
-            force,
-            torque,
-        ): (
-            &mut [ChunkList],
-            &mut [Vector3<f64>],
-            &mut [Vector3<f64>]
-        )| {
-            chunk::<FRICTION, ROLLING, DAMPING, PERIODIC>(scene, k, &mut list[0], force, torque);
-        });
-    } else {
-        for_each_chunk!(parallel, chunks, (lists / 1, force / CHUNK), |k: usize,
-                                                                       (list, force): (
-            &mut [ChunkList],
-            &mut [Vector3<f64>]
-        )| {
-            chunk::<FRICTION, ROLLING, DAMPING, PERIODIC>(scene, k, &mut list[0], force, &mut []);
-        });
     }
 }
 
@@ -122,7 +88,7 @@ fn offset_of<const PERIODIC: bool>(scene: &Scene<'_>, a: &[f64; 4], b: &[f64; 4]
 
 /// Reads the grains and the history of a touching entry into a lane of a batch.
 #[inline(always)]
-fn read<const FRICTION: bool, const ROLLING: bool, const PERIODIC: bool>(
+fn read<const FRICTION: bool, const ROLLING: bool, const DAMPING: bool, const PERIODIC: bool>(
     scene: &Scene<'_>,
     list: &ChunkList,
     entry: usize,
@@ -141,6 +107,10 @@ fn read<const FRICTION: bool, const ROLLING: bool, const PERIODIC: bool>(
         (grains.inverse_mass[i], grains.inverse_mass[j]);
     if scene.table.is_mixed() {
         batch.pair.set(lane, scene.table.get(grains.material[i], grains.material[j]));
+    }
+    if DAMPING || ROLLING {
+        batch.forecast.set(lane, grains.forecast[i] - grains.forecast[j]);
+        batch.slowing[lane] = grains.slowing[i] + grains.slowing[j];
     }
     if FRICTION || ROLLING {
         batch.angular[0].set(lane, grains.angular[i]);
@@ -162,22 +132,22 @@ fn chunk<const FRICTION: bool, const ROLLING: bool, const DAMPING: bool, const P
     scene: &Scene<'_>,
     k: usize,
     list: &mut ChunkList,
-    force: &mut [Vector3<f64>],
-    torque: &mut [Vector3<f64>],
+    mut loads: ChunkLoads<'_>,
 ) {
     let first = k * CHUNK;
-    force.fill(Vector3::zeros());
-    torque.fill(Vector3::zeros());
+    loads.force.fill(Vector3::zeros());
+    loads.torque.fill(Vector3::zeros());
+    loads.slowing.fill(0.0);
     list.filled.fill(false);
     let found = find_hits::<PERIODIC>(scene, first, list);
-    (list.contacts, list.begun) = (found, 0);
+    (list.contacts, list.begun, list.deepest) = (found, 0, 0.0);
     let mut batch = Batch::new(*scene.table.get(0, 0));
     for start in (0..found).step_by(BATCH) {
         let size = BATCH.min(found - start);
         for lane in 0..size {
             let Hit { entry, local, .. } = list.hits[start + lane];
             let i = first + local as usize;
-            read::<FRICTION, ROLLING, PERIODIC>(scene, list, entry as usize, i, &mut batch, lane);
+            read::<FRICTION, ROLLING, DAMPING, PERIODIC>(scene, list, entry as usize, i, &mut batch, lane);
         }
         batch.respond::<FRICTION, ROLLING, DAMPING>(scene.step);
         if let Some(follow) = scene.follow {
@@ -186,26 +156,26 @@ fn chunk<const FRICTION: bool, const ROLLING: bool, const DAMPING: bool, const P
             }
         }
         for lane in 0..size {
-            write::<FRICTION, ROLLING>(list, start + lane, first, &batch, lane, force, torque);
+            write::<FRICTION, ROLLING, DAMPING>(list, start + lane, first, &batch, lane, &mut loads);
         }
     }
 }
 
 /// Adds up what a lane's contact does, and keeps its history.
 #[inline(always)]
-fn write<const FRICTION: bool, const ROLLING: bool>(
+fn write<const FRICTION: bool, const ROLLING: bool, const DAMPING: bool>(
     list: &mut ChunkList,
     hit: usize,
     first: usize,
     batch: &Batch,
     lane: usize,
-    force: &mut [Vector3<f64>],
-    torque: &mut [Vector3<f64>],
+    loads: &mut ChunkLoads<'_>,
 ) {
     let Hit { entry, local, slot } = list.hits[hit];
     let (entry, local) = (entry as usize, local as usize);
     let j = (list.partner[entry] & INDEX_MASK) as usize;
     list.touching[entry] = true;
+    list.deepest = list.deepest.max(batch.depth[lane]);
     if FRICTION {
         let force = batch.spring.get(lane).into();
         list.spring[entry] = Spring { force, contact_radius: batch.contact_radius[lane] };
@@ -214,16 +184,24 @@ fn write<const FRICTION: bool, const ROLLING: bool>(
         list.rolling[entry] = batch.rolling.get(lane).into();
     }
     let on_i = batch.force.get(lane);
-    let mut push = Push { force: -on_i, torque: Vector3::zeros() };
-    force[local] += on_i;
+    let mut push = Push { force: -on_i, ..NO_PUSH };
+    loads.force[local] += on_i;
     if FRICTION || ROLLING {
-        torque[local] += batch.torque[0].get(lane);
+        loads.torque[local] += batch.torque[0].get(lane);
         push.torque = batch.torque[1].get(lane);
     }
-    if let Some(force_j) = force.get_mut(j.wrapping_sub(first)) {
+    if DAMPING || ROLLING {
+        loads.slowing[local] += batch.damping[lane] * batch.inverse_mass[0][lane];
+        push.slowing = batch.damping[lane] * batch.inverse_mass[1][lane];
+    }
+    let local_j = j.wrapping_sub(first);
+    if let Some(force_j) = loads.force.get_mut(local_j) {
         *force_j += push.force;
         if FRICTION || ROLLING {
-            torque[j - first] += push.torque;
+            loads.torque[local_j] += push.torque;
+        }
+        if DAMPING || ROLLING {
+            loads.slowing[local_j] += push.slowing;
         }
     } else {
         list.outbox[slot as usize] = push;

@@ -76,7 +76,7 @@ impl FlowingGas {
     ) -> Result<(), DemError> {
         let view = GrainsView {
             centre: &grains.centre,
-            velocity: &grains.velocity,
+            velocity: &grains.forecast,
             angular: &grains.angular,
             inverse_mass: &grains.inverse_mass,
         };
@@ -84,9 +84,10 @@ impl FlowingGas {
         Ok(self.exchange.exchange(domain, &view, interval_s, number as f64 * step_s)?)
     }
 
-    /// Adds the forces on the grains at their present velocities [N], and books a step's [s] impulse.
+    /// Adds the forces on the grains at the velocities forecast for the end of the step [N], and books a
+    /// step's [s] impulse.
     pub(crate) fn add_forces(&mut self, grains: &Grains, step: f64, total: &mut [Vector3<f64>]) {
-        self.exchange.add_forces(&grains.velocity, step, total);
+        self.exchange.add_forces(&grains.forecast, step, total);
     }
 
     /// Takes in a new order of the grains.

@@ -71,7 +71,7 @@ impl GasStage {
         }
     }
 
-    /// Adds the forces on the grains at their present velocities [N], for a step [s].
+    /// Adds the forces on the grains at the velocities forecast for the end of the step [N], for a step [s].
     pub(crate) fn add_forces(&mut self, grains: &Grains, step: f64, total: &mut [Vector3<f64>]) {
         match self {
             Self::Uniform(gas) => gas.add_forces(grains, total),

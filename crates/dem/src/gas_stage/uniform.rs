@@ -35,13 +35,13 @@ impl UniformGas {
         self.gas.drag.name()
     }
 
-    /// Adds the forces on the grains at their present velocities [N].
+    /// Adds the forces on the grains at the velocities forecast for the end of the step [N].
     pub(crate) fn add_forces(&self, grains: &Grains, total: &mut [Vector3<f64>]) {
         let Gas { density_kg_m3: density, velocity_m_s: velocity, .. } = self.gas;
         let spins = self.gas.magnus_lift && !grains.angular.is_empty();
         let add = |(i, total): (usize, &mut Vector3<f64>)| {
             let diameter = 2.0 * grains.centre[i][3];
-            let slip = velocity - grains.velocity[i];
+            let slip = velocity - grains.forecast[i];
             let displaced = density * PI / 6.0 * diameter.powi(3);
             *total += slip * self.coefficient(diameter, slip.norm()) - self.gravity * displaced;
             if spins {

@@ -25,14 +25,18 @@ pub(crate) struct Grains {
     pub(crate) original: Vec<Original>,
     /// Centre and radius [m]; periodic coordinates are wrapped at rebuilds only.
     pub(crate) centre: Vec<[f64; 4]>,
-    /// Velocity [m/s]; during a step predicted to its end.
+    /// Velocity [m/s]; during a step that of its middle.
     pub(crate) velocity: Vec<Vector3<f64>>,
-    /// Angular velocity [rad/s], likewise.
+    /// Velocity forecast in a step for its end, from the forces before [m/s]; no state.
+    pub(crate) forecast: Vec<Vector3<f64>>,
+    /// Angular velocity [rad/s]; during a step that of its middle.
     pub(crate) angular: Vec<Vector3<f64>>,
     /// Force of the last evaluation without gravity [N].
     pub(crate) force: Vec<Vector3<f64>>,
     /// Torque of the last evaluation [N·m]; empty when nothing can turn a grain.
     pub(crate) torque: Vec<Vector3<f64>>,
+    /// Rates Γ at which all contacts of a grain slowed it at the last evaluation [1/s].
+    pub(crate) slowing: Vec<f64>,
     /// 1/m [1/kg].
     pub(crate) inverse_mass: Vec<f64>,
     /// Material index.
@@ -58,6 +62,8 @@ pub(crate) struct GrainsState {
     pub(crate) force: Vec<Vector3<f64>>,
     /// Torque of the last evaluation [N·m]; empty when nothing can turn a grain.
     pub(crate) torque: Vec<Vector3<f64>>,
+    /// Rates at which all contacts of a grain slowed it at the last evaluation [1/s].
+    pub(crate) slowing: Vec<f64>,
 }
 
 /// Arrays that reordering writes into, kept so that rebuilds do not allocate.
@@ -83,9 +89,11 @@ impl Grains {
                 })
                 .collect(),
             velocity: particles.velocity.clone(),
+            forecast: particles.velocity.clone(),
             angular: particles.angular_velocity.clone(),
             force: vec![Vector3::zeros(); count],
             torque: vec![Vector3::zeros(); if rotation { count } else { 0 }],
+            slowing: vec![0.0; count],
             inverse_mass: (0..count).map(|i| 1.0 / particles.mass(i)).collect(),
             material: particles.material.iter().map(|m| m.0).collect(),
             level,
@@ -111,16 +119,19 @@ impl Grains {
             angular: self.angular.clone(),
             force: self.force.clone(),
             torque: self.torque.clone(),
+            slowing: self.slowing.clone(),
         }
     }
 
     /// Moves as a state says; the grains are in its order already.
     pub(crate) fn restore(&mut self, state: GrainsState) {
         self.place(&state.centre);
+        self.forecast.clone_from(&state.velocity);
         self.velocity = state.velocity;
         self.angular = state.angular;
         self.force = state.force;
         self.torque = state.torque;
+        self.slowing = state.slowing;
     }
 
     /// Puts the grains at other centres [m].
@@ -155,11 +166,13 @@ impl Grains {
         pick(&mut self.original, order, &mut spare.originals);
         pick(&mut self.centre, order, &mut spare.quads);
         pick(&mut self.velocity, order, &mut spare.vectors);
+        pick(&mut self.forecast, order, &mut spare.vectors);
         pick(&mut self.angular, order, &mut spare.vectors);
         pick(&mut self.force, order, &mut spare.vectors);
         if !self.torque.is_empty() {
             pick(&mut self.torque, order, &mut spare.vectors);
         }
+        pick(&mut self.slowing, order, &mut spare.reals);
         pick(&mut self.inverse_mass, order, &mut spare.reals);
         pick(&mut self.material, order, &mut spare.materials);
         pick(&mut self.level, order, &mut spare.levels);

@@ -1,11 +1,11 @@
 //! Velocity Verlet, in two passes around the forces.
 //!
-//! First pass: x += Δt v + ½Δt² a, v += Δt a (a of the last forces): the velocity predicted to the end of the
-//! step, which damping and friction see, so that the scheme stays of second order for them too. Second pass:
-//! v += ½Δt (a_new − a_old), which is velocity Verlet to the last term. Angular velocity likewise; a sphere
+//! First pass: v += ½Δt a (a of the last forces), x += Δt v: the velocity of the middle of the step, by which
+//! surfaces slip; v + ½Δt a is its forecast for the end of the step, which a gas and, as far as that is
+//! stable, the damping of contacts see. Second pass: v += ½Δt a_new. Angular velocity likewise; a sphere
 //! needs no orientation.
 
-use crate::motion::chunks::{CHUNK, Push, chunk_count, for_each_chunk, is_parallel};
+use crate::motion::chunks::{CHUNK, Loads, Push, chunk_count, for_each_chunk, is_parallel};
 use crate::motion::grains::Grains;
 use amberfield_core::{Side, Vector3};
 use rayon::prelude::*;
@@ -18,6 +18,8 @@ const SPHERE_INERTIA: f64 = 0.4;
 pub(crate) struct ChunkMotion {
     /// Largest squared speed of the drift [m²/s²].
     speed2: f64,
+    /// Largest squared speed over radius [1/s²].
+    pace2: f64,
     /// Whether a grain left the box.
     outside: bool,
 }
@@ -27,6 +29,8 @@ pub(crate) struct ChunkMotion {
 pub(crate) struct Motion {
     /// Largest speed of the drift [m/s].
     pub(crate) speed: f64,
+    /// Largest speed over radius of the drift [1/s].
+    pub(crate) pace: f64,
     /// Whether a grain left the box.
     pub(crate) outside: bool,
 }
@@ -72,7 +76,7 @@ impl Bounds {
     }
 }
 
-/// Moves the grains, in the first pass, and predicts their velocities to the end of the step.
+/// Moves the grains, in the first pass; their velocities are those of the middle of the step then.
 pub(crate) fn drift(
     grains: &mut Grains,
     gravity: Vector3<f64>,
@@ -82,39 +86,46 @@ pub(crate) fn drift(
 ) -> Motion {
     let count = grains.len();
     let (parallel, chunks) = (is_parallel(count), chunk_count(count));
-    let Grains { centre, velocity, angular, force, torque, inverse_mass, .. } = grains;
+    let Grains { centre, velocity, forecast, angular, force, torque, inverse_mass, .. } = grains;
     let half = 0.5 * step;
-    for_each_chunk!(parallel, chunks, (centre / CHUNK, velocity / CHUNK, found / 1), |k: usize,
-                                                                                      (
-        centre,
-        velocity,
-        found,
-    ): (
-        &mut [[f64; 4]],
-        &mut [Vector3<f64>],
-        &mut [ChunkMotion]
-    )| {
-        let first = k * CHUNK;
-        let (mut speed2, mut inside) = (0.0_f64, true);
-        let length = centre.len();
-        let (force, inverse_mass) = (&force[first..first + length], &inverse_mass[first..first + length]);
-        for (((c, v), f), &im) in centre.iter_mut().zip(velocity).zip(force).zip(inverse_mass) {
-            let kick = (f * im + gravity) * half;
-            let middle = *v + kick;
-            c[0] += middle.x * step;
-            c[1] += middle.y * step;
-            c[2] += middle.z * step;
-            *v = middle + kick;
-            speed2 = speed2.max(middle.norm_squared());
-            inside &= bounds.holds(0, c[0]) & bounds.holds(1, c[1]) & bounds.holds(2, c[2]);
+    for_each_chunk!(
+        parallel,
+        chunks,
+        (centre / CHUNK, velocity / CHUNK, forecast / CHUNK, found / 1),
+        |k: usize,
+         (centre, velocity, forecast, found): (
+            &mut [[f64; 4]],
+            &mut [Vector3<f64>],
+            &mut [Vector3<f64>],
+            &mut [ChunkMotion]
+        )| {
+            let first = k * CHUNK;
+            let (mut speed2, mut pace2, mut inside) = (0.0_f64, 0.0_f64, true);
+            let length = centre.len();
+            let (force, inverse_mass) = (&force[first..first + length], &inverse_mass[first..first + length]);
+            let moving = centre.iter_mut().zip(velocity).zip(forecast);
+            for (((c, v), later), (f, &im)) in moving.zip(force.iter().zip(inverse_mass)) {
+                let kick = (f * im + gravity) * half;
+                let middle = *v + kick;
+                c[0] += middle.x * step;
+                c[1] += middle.y * step;
+                c[2] += middle.z * step;
+                *v = middle;
+                *later = middle + kick;
+                let square = middle.norm_squared();
+                speed2 = speed2.max(square);
+                pace2 = pace2.max(square / (c[3] * c[3]));
+                inside &= bounds.holds(0, c[0]) & bounds.holds(1, c[1]) & bounds.holds(2, c[2]);
+            }
+            found[0] = ChunkMotion { speed2, pace2, outside: !inside };
         }
-        found[0] = ChunkMotion { speed2, outside: !inside };
-    });
+    );
     if !torque.is_empty() {
-        turn(parallel, angular, |i| torque[i] * (step * inverse_inertia(inverse_mass[i], &centre[i])));
+        turn(parallel, angular, |i| torque[i] * (half * inverse_inertia(inverse_mass[i], &centre[i])));
     }
     Motion {
         speed: found[..chunks].iter().map(|m| m.speed2).fold(0.0, f64::max).sqrt(),
+        pace: found[..chunks].iter().map(|m| m.pace2).fold(0.0, f64::max).sqrt(),
         outside: found[..chunks].iter().any(|m| m.outside),
     }
 }
@@ -136,57 +147,58 @@ fn turn(parallel: bool, angular: &mut [Vector3<f64>], change: impl Fn(usize) -> 
     }
 }
 
-/// Corrects the velocities, in the second pass, by the new forces.
+/// Finishes the velocities, in the second pass, with the new forces.
 ///
 /// `pushes` gives what other chunks do to the grains of chunk k: index in the chunk, and push. It is added to
-/// `force` [N] and `torque` [N·m], which hold the new values and are swapped with the grains'.
+/// `loads`, which hold the new values and are swapped with the grains'.
 pub(crate) fn kick<'a, P: Iterator<Item = (usize, &'a Push)>>(
     grains: &mut Grains,
+    gravity: Vector3<f64>,
     pushes: impl Fn(usize) -> P + Sync,
     step: f64,
-    force: &mut Vec<Vector3<f64>>,
-    torque: &mut Vec<Vector3<f64>>,
+    loads: &mut Loads,
 ) {
-    let count = grains.len();
-    let (parallel, chunks) = (is_parallel(count), chunk_count(count));
     let half = 0.5 * step;
-    let rotation = !grains.torque.is_empty();
-    let Grains { centre, velocity, angular, force: old, torque: old_torque, inverse_mass, .. } = grains;
+    let Grains { centre, velocity, angular, force, torque, slowing, inverse_mass, .. } = grains;
+    let (centre, inverse_mass) = (&centre[..], &inverse_mass[..]);
+    let chunks = chunk_count(velocity.len());
+    let parallel = is_parallel(velocity.len());
     {
-        let (velocity, force) = (&mut velocity[..], &mut force[..]);
-        for_each_chunk!(parallel, chunks, (velocity / CHUNK, force / CHUNK), |k: usize,
-                                                                              (velocity, force): (
+        let Loads { force, slowing, .. } = &mut *loads;
+        let (velocity, force, slowing) = (&mut velocity[..], &mut force[..], &mut slowing[..]);
+        for_each_chunk!(
+            parallel,
+            chunks,
+            (velocity / CHUNK, force / CHUNK, slowing / CHUNK),
+            |k: usize, (velocity, force, slowing): (&mut [Vector3<f64>], &mut [Vector3<f64>], &mut [f64])| {
+                for (local, push) in pushes(k) {
+                    force[local] += push.force;
+                    slowing[local] += push.slowing;
+                }
+                let first = k * CHUNK;
+                for (n, (v, f)) in velocity.iter_mut().zip(&*force).enumerate() {
+                    *v += (f * inverse_mass[first + n] + gravity) * half;
+                }
+            }
+        );
+    }
+    if !torque.is_empty() {
+        let (angular, new) = (&mut angular[..], &mut loads.torque[..]);
+        for_each_chunk!(parallel, chunks, (angular / CHUNK, new / CHUNK), |k: usize,
+                                                                           (angular, new): (
             &mut [Vector3<f64>],
             &mut [Vector3<f64>]
         )| {
             for (local, push) in pushes(k) {
-                force[local] += push.force;
+                new[local] += push.torque;
             }
-            let first = k * CHUNK;
-            for (n, (v, f)) in velocity.iter_mut().zip(&*force).enumerate() {
-                *v += (f - old[first + n]) * (half * inverse_mass[first + n]);
-            }
-        });
-    }
-    if rotation {
-        let (angular, torque) = (&mut angular[..], &mut torque[..]);
-        for_each_chunk!(parallel, chunks, (angular / CHUNK, torque / CHUNK), |k: usize,
-                                                                              (angular, torque): (
-            &mut [Vector3<f64>],
-            &mut [Vector3<f64>]
-        )| {
-            for (local, push) in pushes(k) {
-                torque[local] += push.torque;
-            }
-            let first = k * CHUNK;
-            for (n, (w, t)) in angular.iter_mut().zip(&*torque).enumerate() {
-                let i = first + n;
-                *w += (t - old_torque[i]) * (half * inverse_inertia(inverse_mass[i], &centre[i]));
+            for (n, (w, t)) in angular.iter_mut().zip(&*new).enumerate() {
+                let i = k * CHUNK + n;
+                *w += t * (half * inverse_inertia(inverse_mass[i], &centre[i]));
             }
         });
+        std::mem::swap(torque, &mut loads.torque);
     }
-    std::mem::swap(&mut grains.force, force);
-    if rotation {
-        std::mem::swap(&mut grains.torque, torque);
-    }
+    std::mem::swap(force, &mut loads.force);
+    std::mem::swap(slowing, &mut loads.slowing);
 }

@@ -4,6 +4,7 @@ use super::state::State;
 use crate::contacts::Contacts;
 use crate::contacts::cells::INDEX_MASK;
 use crate::contacts::material_pairs::PairTable;
+use crate::contacts::neighbours::Listed;
 use crate::error::DemError;
 use crate::motion::grains::Grains;
 use crate::setup::Setup;
@@ -151,43 +152,17 @@ pub(crate) fn check_periods(setup: &Setup, skin: f64) -> Result<(), DemError> {
     Ok(())
 }
 
-/// Overlaps of grains with each other at the start.
-pub(crate) fn check_overlaps(
+/// Grains with the same centre, whose contact has no direction.
+pub(crate) fn check_centres(
     grains: &Grains,
     contacts: &Contacts,
     particles: &Particles,
-    allow_overlap: bool,
 ) -> Result<(), DemError> {
     let id = |i: usize| particles.id[grains.original[i].index()];
-    for pair in contacts.neighbours.pairs() {
-        let distance = pair.distance(grains, &contacts.neighbours.shifts);
-        let (a, b) = (grains.centre[pair.i][3], grains.centre[pair.j][3]);
+    let same = |pair: &Listed| pair.distance(grains, &contacts.neighbours.shifts) == 0.0;
+    contacts.neighbours.pairs().find(same).map_or(Ok(()), |pair| {
         let (id_i, id_j) = (id(pair.i).min(id(pair.j)), id(pair.i).max(id(pair.j)));
-        if distance == 0.0 {
-            return Err(DemError::Coincident { id_i, id_j });
-        }
-        let (overlap_m, limit_m) = (a + b - distance, 0.5 * a.min(b));
-        if overlap_m > limit_m && !allow_overlap {
-            return Err(DemError::Overlap { id_i, id_j, overlap_m, limit_m });
-        }
-    }
-    Ok(())
-}
-
-/// Overlaps of grains with walls at the start.
-pub(crate) fn check_wall_overlaps(
-    grains: &Grains,
-    contacts: &Contacts,
-    particles: &Particles,
-    allow_overlap: bool,
-) -> Result<(), DemError> {
-    let walls = contacts.walls.as_ref().filter(|_| !allow_overlap);
-    let Some(deep) = walls.and_then(|walls| walls.too_deep(grains)) else { return Ok(()) };
-    Err(DemError::WallOverlap {
-        id: particles.id[grains.original[deep.grain].index()],
-        wall: deep.wall,
-        overlap_m: deep.overlap,
-        limit_m: deep.limit,
+        Err(DemError::Coincident { id_i, id_j })
     })
 }
 
@@ -209,7 +184,13 @@ pub(crate) fn check_state(setup: &Setup, state: &State) -> Result<(), DemError> 
     if charging.as_ref().map(|charging| charging.charge.len()) != transfers.then_some(total) {
         return misfit("its charging does not match the scene's");
     }
-    let lengths = [grains.centre.len(), grains.velocity.len(), grains.angular.len(), grains.force.len()];
+    let lengths = [
+        grains.centre.len(),
+        grains.velocity.len(),
+        grains.angular.len(),
+        grains.force.len(),
+        grains.slowing.len(),
+    ];
     if lengths.iter().any(|&n| n != count) || contacts.reference.len() != count {
         return misfit("its arrays differ in length");
     }

@@ -90,7 +90,7 @@ impl Simulation {
     pub(super) fn add_electric_forces_at_start(&mut self) {
         let Progress { step_s, skin_m, .. } = self.progress;
         if let Some(field) = &mut self.field {
-            field.add_forces(&self.grains, skin_m, step_s, &mut self.scratch.force);
+            field.add_forces(&self.grains, skin_m, step_s, &mut self.scratch.loads.force);
         }
     }
 
@@ -124,8 +124,7 @@ impl Simulation {
             let (grains, particles) = (&self.grains, &self.particles);
             let bound = electric_stiffness_bound(grains, particles, &field.member, field.permittivity());
             self.limits.set_electric(bound, field.plasma_limit);
-            let Progress { step_s, speed, .. } = self.progress;
-            if self.limits.broken(step_s, speed, self.progress.time_s()).is_some() {
+            if self.limits.broken(&self.progress).is_some() {
                 self.update_electric_limits();
             }
         }
@@ -139,8 +138,7 @@ impl Simulation {
         if !new {
             return Ok(());
         }
-        let Progress { step_s, speed, .. } = self.progress;
-        self.limits.watch(step_s, speed, self.progress.time_s(), self.time.allow_unstable)
+        self.limits.watch(&self.progress, self.time.allow_unstable)
     }
 
     /// Computes the electric guards of the present pairs.

@@ -1,5 +1,6 @@
 //! Limits on the time step: computed at the start, watched while running.
 
+use super::state::Progress;
 use crate::contacts::material_pairs::PairTable;
 use crate::error::DemError;
 use crate::gas_stage::{FlowLimits, UniformGas};
@@ -13,6 +14,9 @@ pub(crate) const AUTO_FRACTION: f64 = 0.2;
 /// up to 2/π of the contact time of a linear spring; a quarter leaves four steps in a collision.
 const CONTACT_TIME_FRACTION: f64 = 0.25;
 
+/// Largest way of a grain in a step over its radius: a longer one could lead through a wall unseen.
+const WAY_IN_A_STEP: f64 = 0.5;
+
 /// Name of the guard on the interval between exchanges with a gas: grains must not be held to one slip for
 /// longer than it lasts.
 const GAS_INTERVAL: &str = "gas interval";
@@ -20,7 +24,8 @@ const GAS_INTERVAL: &str = "gas interval";
 /// A limit on the time step.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Guard {
-    /// Name: `rayleigh`, `hertz`, `gas response`, `gas interval`, `electric pair`, `wall image` or `plasma`.
+    /// Name: `rayleigh`, `hertz`, `travel`, `gas response`, `gas interval`, `electric pair`, `wall image` or
+    /// `plasma`.
     pub name: &'static str,
     /// Largest step [s]; infinite when nothing limits it at present.
     pub limit_s: f64,
@@ -96,14 +101,8 @@ impl Limits {
     }
 
     /// Fails where a step breaks a guard; where that is allowed, warns of it once.
-    pub(crate) fn watch(
-        &mut self,
-        step: f64,
-        speed: f64,
-        time_s: f64,
-        allow_unstable: bool,
-    ) -> Result<(), DemError> {
-        let Some(broken) = self.broken(step, speed, time_s) else { return Ok(()) };
+    pub(crate) fn watch(&mut self, progress: &Progress, allow_unstable: bool) -> Result<(), DemError> {
+        let Some(broken) = self.broken(progress) else { return Ok(()) };
         if !allow_unstable {
             return Err(broken);
         }
@@ -114,8 +113,14 @@ impl Limits {
         Ok(())
     }
 
-    /// All guards for a step and the grains' largest speed [m/s] (two of them head-on).
-    pub(crate) fn guards(&self, step: f64, speed: f64) -> impl Iterator<Item = Guard> + use<> {
+    /// Whether a grain moves too far in a step [s], at a largest speed over radius [1/s].
+    pub(crate) fn is_too_fast(&self, step: f64, pace: f64) -> bool {
+        step * pace > WAY_IN_A_STEP
+    }
+
+    /// All guards for the step and the grains' largest speed (two of them head-on).
+    pub(crate) fn guards(&self, progress: &Progress) -> impl Iterator<Item = Guard> + use<> {
+        let Progress { step_s: step, speed, pace, .. } = *progress;
         let hertz = CONTACT_TIME_FRACTION * self.hertz * (2.0 * speed).powf(-0.2);
         let electric = self
             .electric
@@ -124,7 +129,7 @@ impl Limits {
         let flow = self
             .flow
             .map(|f| [("gas response", f.response_s), (GAS_INTERVAL, f.response_s / f.steps as f64)]);
-        [("rayleigh", self.rayleigh), ("hertz", hertz)]
+        [("rayleigh", self.rayleigh), ("hertz", hertz), ("travel", WAY_IN_A_STEP / pace)]
             .into_iter()
             .chain(gas)
             .chain(flow.into_iter().flatten())
@@ -133,14 +138,15 @@ impl Limits {
     }
 
     /// The step that `auto` stands for [s].
-    pub(crate) fn auto_step(&self, speed: f64) -> f64 {
-        let tightest = self.guards(1.0, speed).map(|g| g.limit_s).fold(f64::INFINITY, f64::min);
+    pub(crate) fn auto_step(&self, progress: &Progress) -> f64 {
+        let tightest = self.guards(progress).map(|g| g.limit_s).fold(f64::INFINITY, f64::min);
         AUTO_FRACTION * tightest
     }
 
     /// The guard that a step breaks, if any.
-    pub(crate) fn broken(&self, step: f64, speed: f64, time_s: f64) -> Option<DemError> {
-        let tightest = self.guards(step, speed).min_by(|a, b| a.limit_s.total_cmp(&b.limit_s))?;
+    pub(crate) fn broken(&self, progress: &Progress) -> Option<DemError> {
+        let (step, time_s) = (progress.step_s, progress.time_s());
+        let tightest = self.guards(progress).min_by(|a, b| a.limit_s.total_cmp(&b.limit_s))?;
         // `!(a <= b)`: a limit that is not a number is broken too.
         let holds = step <= tightest.limit_s;
         if let (false, GAS_INTERVAL, Some(FlowLimits { steps, response_s })) =

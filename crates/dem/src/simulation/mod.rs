@@ -6,22 +6,23 @@ pub(crate) mod energy;
 mod exits;
 pub(crate) mod guards;
 mod observe;
+mod overlaps;
 mod plan;
 mod start;
 pub(crate) mod state;
 pub(crate) mod timing;
 
-pub use observe::Deepest;
+pub use overlaps::Deepest;
 
 use crate::charging::Charging;
-use crate::contacts::Contacts;
+use crate::contacts::{Contacts, Depths};
 use crate::error::DemError;
 use crate::field_stage::{Extras, FieldStage};
 use crate::gas_stage::GasStage;
-use crate::motion::chunks::chunk_count;
+use crate::motion::chunks::{Loads, chunk_count};
 use crate::motion::grains::{Grains, SortKey};
 use crate::motion::verlet::{Bounds, ChunkMotion, drift, kick};
-use amberfield_core::{Domain, Particles, Plan, TimeSettings, Vector3};
+use amberfield_core::{Domain, Particles, Plan, TimeSettings};
 use guards::Limits;
 use state::{Progress, State};
 use timing::{Stage, StageClock};
@@ -40,7 +41,7 @@ const HALF_SKIN: f64 = 0.499_999;
 /// 4. *Lists*: wrap periodic axes, sort grains in space, list neighbours anew, where a grain may have used
 ///    up half the skin; look at the guards ("Time step").
 /// 5. *Grains*: contact forces of grains on each other, F_n and F_t ("Motion").
-/// 6. *Walls*: contact forces of walls, by the same law.
+/// 6. *Walls*: contact forces of walls, by the same law; overlaps are watched.
 /// 7. *Gas*: drag, buoyancy and lift, after an exchange with a gas that flows where one is due ("Gas").
 /// 8. *Charging*: contact areas A are followed; what they grew by moves charge, dT/dA ("Charge transfer").
 /// 9. *Field*: E is evaluated where it is due ("Electric field"), else extrapolated; qE is added.
@@ -66,6 +67,8 @@ pub struct Simulation {
     charging: Option<Charging>,
     field: Option<FieldStage>,
     limits: Limits,
+    /// Largest overlaps that the run may have at present.
+    allowed: Depths,
     scratch: Scratch,
     /// State before a step in which another process may be lost.
     rescued: Option<State>,
@@ -75,10 +78,8 @@ pub struct Simulation {
 /// Memory in which a step works; nothing in it is state.
 #[derive(Debug, Default)]
 struct Scratch {
-    /// Forces in the making [N].
-    force: Vec<Vector3<f64>>,
-    /// Torques in the making [N·m]; empty where nothing can turn a grain.
-    torque: Vec<Vector3<f64>>,
+    /// Forces, torques and dampings in the making.
+    loads: Loads,
     /// Findings of the drift, by chunk.
     motion: Vec<ChunkMotion>,
     /// Keys of the sort.
@@ -103,6 +104,7 @@ impl Simulation {
         self.renew_lists(removed)?;
         self.push_grains(step_s);
         self.push_off_walls(step_s);
+        self.watch_overlaps()?;
         let exchanged = self.exchange_with_gas()?;
         self.add_gas_forces(step_s);
         self.charge_contacts();
@@ -135,7 +137,7 @@ impl Simulation {
         let gravity = self.time.gravity_m_s2;
         let step_s = self.progress.step_s;
         let motion = drift(&mut self.grains, gravity, step_s, &self.bounds, &mut self.scratch.motion);
-        self.progress.speed = motion.speed;
+        (self.progress.speed, self.progress.pace) = (motion.speed, motion.pace);
         motion.outside
     }
 
@@ -144,8 +146,11 @@ impl Simulation {
     fn renew_lists(&mut self, removed: bool) -> Result<(), DemError> {
         self.watch.lap(Stage::Integrate);
         self.progress.travel += self.progress.step_s * self.progress.speed;
-        if removed || self.has_used_up_skin() {
+        let used_up = self.has_used_up_skin();
+        if removed || used_up {
             self.rebuild();
+        }
+        if removed || used_up || self.limits.is_too_fast(self.progress.step_s, self.progress.pace) {
             self.watch_guards()?;
         }
         self.watch.lap(Stage::Neighbours);
@@ -202,17 +207,13 @@ impl Simulation {
     fn push_grains(&mut self, step: f64) {
         let step_index = self.progress.step_index;
         let follow = self.charging.as_ref().map(|charging| charging.follow(step_index));
-        let Scratch { force, torque, .. } = &mut self.scratch;
-        self.contacts.push_grains(&self.grains, step, follow, force, torque);
+        self.contacts.push_grains(&self.grains, step, follow, &mut self.scratch.loads);
         self.watch.lap(Stage::Contacts);
     }
 
     /// Adds the contact forces of walls, for springs that advance by `step` [s].
     fn push_off_walls(&mut self, step: f64) {
-        let Contacts { table, features, walls, .. } = &mut self.contacts;
-        let Some(walls) = walls else { return };
-        let Scratch { force, torque, .. } = &mut self.scratch;
-        walls.forces(&self.grains, table, *features, step, force, torque);
+        self.contacts.push_off_walls(&self.grains, step, &mut self.scratch.loads);
         self.watch.lap(Stage::Walls);
     }
 
@@ -229,15 +230,15 @@ impl Simulation {
     /// Adds the forces of a gas, whose impulse is booked for `step` [s].
     fn add_gas_forces(&mut self, step: f64) {
         let Some(gas) = &mut self.gas else { return };
-        gas.add_forces(&self.grains, step, &mut self.scratch.force);
+        gas.add_forces(&self.grains, step, &mut self.scratch.loads.force);
         self.watch.lap(Stage::Gas);
     }
 
     /// Finishes the velocities with the new forces, for a step of `step` [s].
     fn kick(&mut self, step: f64) {
         let neighbours = &self.contacts.neighbours;
-        let Scratch { force, torque, .. } = &mut self.scratch;
-        kick(&mut self.grains, |k| neighbours.pushes(k), step, force, torque);
+        let (gravity, loads) = (self.time.gravity_m_s2, &mut self.scratch.loads);
+        kick(&mut self.grains, gravity, |k| neighbours.pushes(k), step, loads);
         self.watch.lap(Stage::Integrate);
     }
 
@@ -245,8 +246,7 @@ impl Simulation {
     fn resize_scratch(&mut self) {
         let count = self.grains.len();
         let turns = !self.grains.torque.is_empty();
-        self.scratch.force.resize(count, Vector3::zeros());
-        self.scratch.torque.resize(if turns { count } else { 0 }, Vector3::zeros());
+        self.scratch.loads.resize(count, turns);
         self.scratch.motion.resize(chunk_count(count), ChunkMotion::default());
     }
 }

@@ -4,24 +4,10 @@ use super::Simulation;
 use super::energy::{self, ElectricEnergy, Energies};
 use super::guards::Guard;
 use super::timing::STAGE_NAMES;
-use crate::contacts::walls::ContactWalls;
 use crate::error::DemError;
 use crate::field_stage::{FieldStage, Intervals, Limited};
 use amberfield_core::{Particles, Plan, Vector3};
 use amberfield_field::ElectricField;
-
-/// A contact with a large overlap.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Deepest {
-    /// Id of the grain.
-    pub id: u64,
-    /// Id of the other grain; `None` for a wall.
-    pub other: Option<u64>,
-    /// Overlap [m].
-    pub overlap_m: f64,
-    /// Overlap over the smaller radius.
-    pub share: f64,
-}
 
 impl Simulation {
     /// Exchange of grains with a gas that flows; `None` without one.
@@ -125,30 +111,6 @@ impl Simulation {
         })
     }
 
-    /// The contact with the largest overlap over the smaller radius; `None` without contacts.
-    #[must_use]
-    pub fn deepest(&self) -> Option<Deepest> {
-        let grains = &self.grains;
-        let id = |i: usize| self.particles.id[grains.original[i].index()];
-        let mut deepest: Option<Deepest> = None;
-        let mut look = |found: Deepest| {
-            if deepest.is_none_or(|known| found.share > known.share) {
-                deepest = Some(found);
-            }
-        };
-        for pair in self.contacts.neighbours.touching() {
-            let (a, b) = (grains.centre[pair.i][3], grains.centre[pair.j][3]);
-            let overlap_m = a + b - pair.offset(grains, &self.contacts.neighbours.shifts).norm();
-            let (id, other) = (id(pair.i), Some(id(pair.j)));
-            look(Deepest { id, other, overlap_m, share: overlap_m / a.min(b) });
-        }
-        for touching in self.contacts.walls.iter().flat_map(ContactWalls::touching) {
-            let (i, overlap_m) = (touching.grain, touching.overlap);
-            look(Deepest { id: id(i), other: None, overlap_m, share: overlap_m / grains.centre[i][3] });
-        }
-        deepest
-    }
-
     /// Id and speed [m/s] of the fastest grain.
     #[must_use]
     pub fn fastest(&self) -> Option<(u64, f64)> {
@@ -207,7 +169,7 @@ impl Simulation {
         if let (Some(stiffness), Some(field)) = (self.electric_stiffness(), &self.field) {
             limits.set_electric(stiffness, field.plasma_limit);
         }
-        limits.guards(self.progress.step_s, self.progress.speed).collect()
+        limits.guards(&self.progress).collect()
     }
 
     /// The field; `None` without a field stage.

@@ -3,13 +3,13 @@
 use super::guards::Limits;
 use super::state::{Progress, State};
 use super::timing::StageClock;
-use super::{Scratch, Simulation, checks};
+use super::{Scratch, Simulation, checks, overlaps};
 use crate::charging::Charging;
-use crate::contacts::Contacts;
 use crate::contacts::cells::{LinkedCells, levels_of, shifts};
 use crate::contacts::material_pairs::{Features, PairTable};
 use crate::contacts::neighbours::Neighbours;
 use crate::contacts::walls::ContactWalls;
+use crate::contacts::{Contacts, Depths};
 use crate::error::DemError;
 use crate::field_stage::FieldStage;
 use crate::gas_stage::GasStage;
@@ -34,9 +34,10 @@ impl Simulation {
         checks::check_periods(&setup, skin)?;
         let mut run = Self::assemble(setup, skin, None)?;
         run.rebuild();
-        let allow = run.time.allow_overlap;
-        checks::check_overlaps(&run.grains, &run.contacts, &run.particles, allow)?;
-        checks::check_wall_overlaps(&run.grains, &run.contacts, &run.particles, allow)?;
+        checks::check_centres(&run.grains, &run.contacts, &run.particles)?;
+        run.contacts.push_grains(&run.grains, AT_START, None, &mut run.scratch.loads);
+        run.push_off_walls(AT_START);
+        run.check_overlaps()?;
         run.choose_step()?;
         run.forces_at_start()?;
         Ok(run)
@@ -63,6 +64,7 @@ impl Simulation {
         }
         run.grains.restore(state.grains);
         run.progress = state.progress;
+        run.allowed = overlaps::allowed(run.depths(), run.time.allow_overlap);
         run.resize_scratch();
         run.update_electric_limits();
         run.set_step_of_gas();
@@ -133,6 +135,7 @@ impl Simulation {
                 skin_m,
                 travel: 0.0,
                 speed: particles.velocity.iter().map(|v| v.norm()).fold(0.0, f64::max),
+                pace: pace(&particles),
             },
             grains: Grains::new(&particles, level, features.rotation()),
             limits: Limits::new(&particles, &materials, &contacts.table, uniform_gas),
@@ -144,6 +147,7 @@ impl Simulation {
             gas,
             charging,
             field,
+            allowed: Depths { grains: f64::INFINITY, walls: f64::INFINITY },
             scratch: Scratch::default(),
             rescued: None,
             watch: StageClock::default(),
@@ -156,10 +160,9 @@ impl Simulation {
     /// automatic step needs the limit.
     fn choose_step(&mut self) -> Result<(), DemError> {
         self.update_electric_limits();
-        let speed = self.progress.speed;
         self.progress.step_s = match self.time.step {
             Step::Seconds(step) => step,
-            Step::Auto => self.limits.auto_step(speed),
+            Step::Auto => self.limits.auto_step(&self.progress),
         };
         if !self.progress.step_s.is_finite() {
             return Err(DemError::Setup(
@@ -169,7 +172,7 @@ impl Simulation {
         if self.field.is_some() {
             self.evaluate_field()?;
             self.update_electric_limits();
-            let shorter = self.limits.auto_step(speed);
+            let shorter = self.limits.auto_step(&self.progress);
             if self.time.step == Step::Auto && shorter < self.progress.step_s {
                 self.progress.step_s = shorter;
                 self.evaluate_field()?;
@@ -223,6 +226,12 @@ fn field_stage(
 /// Whether any member of a field is charged.
 fn is_charged(field: &FieldStageSetup, particles: &Particles) -> bool {
     field.member.iter().zip(&particles.charge).any(|(member, charge)| *member && *charge != 0.0)
+}
+
+/// Largest speed over radius [1/s].
+fn pace(particles: &Particles) -> f64 {
+    let motion = particles.velocity.iter().zip(&particles.radius);
+    motion.map(|(velocity, radius)| velocity.norm() / radius).fold(0.0, f64::max)
 }
 
 /// The box that grains may not leave: infinite along periodic axes.
@@ -284,7 +293,7 @@ mod tests {
                 skin: Skin::Auto,
                 allow_unstable: false,
                 on_exit: OnExit::Stop,
-                allow_overlap: false,
+                allow_overlap: true,
             },
             gas: None,
             field: None,
@@ -301,7 +310,7 @@ mod tests {
         [
             lists.iter().map(|l| l.spring.capacity()).sum(),
             lists.iter().map(|l| l.rolling.capacity()).sum(),
-            run.grains.torque.capacity() + run.scratch.torque.capacity(),
+            run.grains.torque.capacity() + run.scratch.loads.torque.capacity(),
         ]
     }
 

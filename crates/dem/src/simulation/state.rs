@@ -21,6 +21,8 @@ pub(crate) struct Progress {
     pub(crate) travel: f64,
     /// Largest speed of the last drift [m/s].
     pub(crate) speed: f64,
+    /// Largest speed over radius of the last drift [1/s].
+    pub(crate) pace: f64,
 }
 
 impl Progress {

@@ -4,29 +4,35 @@ use super::{ChunkWalls, Shape, Solid, WallContact, touches};
 use crate::contacts::law::{Contact, History, respond};
 use crate::contacts::material_pairs::PairTable;
 use crate::contacts::walls::mesh::{Found, MOST_CONTACTS};
-use crate::motion::chunks::CHUNK;
+use crate::motion::chunks::{CHUNK, ChunkLoads};
 use crate::motion::grains::Grains;
 use amberfield_core::Vector3;
 
 /// Cosine of the largest turn between two steps for which a contact is still the same (60°).
 const SAME_CONTACT: f64 = 0.5;
 
+/// Data that every chunk reads.
+#[derive(Clone, Copy)]
+pub(super) struct Scene<'a> {
+    pub(super) solids: &'a [Solid],
+    pub(super) shifts: &'a [[f64; 3]; 32],
+    pub(super) grains: &'a Grains,
+    pub(super) table: &'a PairTable,
+    /// Step by which springs advance [s].
+    pub(super) step: f64,
+}
+
 impl ChunkWalls {
-    #[expect(clippy::too_many_arguments, reason = "the arrays of one chunk, split for the borrow checker")]
-    /// Adds the forces [N] and torques [N·m] of walls on the grains of chunk `k`, for springs that advance by
-    /// `step` [s].
+    /// Adds what walls do to the grains of chunk `k`.
     pub(super) fn forces<const FRICTION: bool, const ROLLING: bool, const DAMPING: bool>(
         &mut self,
         k: usize,
-        solids: &[Solid],
-        shifts: &[[f64; 3]; 32],
-        grains: &Grains,
-        table: &PairTable,
-        step: f64,
-        force: &mut [Vector3<f64>],
-        torque: &mut [Vector3<f64>],
+        scene: &Scene<'_>,
+        loads: ChunkLoads<'_>,
     ) {
-        let Self { entries, triangles, contacts, charging: memory, scratch } = self;
+        let &Scene { solids, shifts, grains, table, step } = scene;
+        let Self { entries, triangles, contacts, charging: memory, scratch, deepest } = self;
+        *deepest = 0.0;
         for entry in entries {
             let local = entry.local as usize;
             let i = k * CHUNK + local;
@@ -59,9 +65,13 @@ impl ChunkWalls {
                 let mut history = History::stored(wall_contact.spring, wall_contact.rolling);
                 let response = respond::<_, FRICTION, ROLLING, DAMPING>(&contact, pair, step, &mut history);
                 (wall_contact.spring, wall_contact.rolling) = history.to_store();
-                force[local] += response.force;
+                *deepest = deepest.max(wall_contact.overlap / radius);
+                loads.force[local] += response.force;
                 if FRICTION || ROLLING {
-                    torque[local] += response.twist * arm + response.rolling;
+                    loads.torque[local] += response.twist * arm + response.rolling;
+                }
+                if DAMPING || ROLLING {
+                    loads.slowing[local] += response.damping * grains.inverse_mass[i];
                 }
             }
         }
@@ -82,11 +92,13 @@ fn contact_of<const FRICTION: bool, const ROLLING: bool>(
         overlap: found.overlap,
         normal: found.normal,
         velocity: grains.velocity[i],
+        forecast: grains.forecast[i],
         spin: turning * arm,
         turning,
         radius,
         inverse_mass,
         inverse_moment: inverse_mass / (radius * radius),
+        slowing: grains.slowing[i],
     };
     (contact, arm)
 }

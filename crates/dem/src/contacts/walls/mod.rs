@@ -10,9 +10,9 @@ pub(crate) use touches::{Surface, Touch, WallSlot};
 
 use crate::contacts::material_pairs::{Features, PairTable};
 use crate::contacts::memory::{Memory, Spring, WallHistory};
-use crate::contacts::walls::mesh::{ClosestPoint, Found, MOST_CONTACTS, MeshWall};
+use crate::contacts::walls::mesh::{ClosestPoint, MeshWall};
 use crate::contacts::walls::solids::solids_of;
-use crate::motion::chunks::{CHUNK, chunk_count, for_each_chunk, is_parallel};
+use crate::motion::chunks::{CHUNK, Loads, chunk_count, for_each_chunk, for_each_load, is_parallel};
 use crate::motion::grains::Grains;
 use amberfield_core::{Domain, Vector3, Wall, WallCharging};
 use std::ops::Range;
@@ -43,24 +43,13 @@ struct Part {
     bounds_field: bool,
 }
 
-/// A grain that overlaps a wall too much.
-#[derive(Debug)]
-pub(crate) struct TooDeep {
+/// A touching contact with a wall, for those who look on.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct TouchingWall<'a> {
     /// Sorted index of the grain.
     pub(crate) grain: usize,
     /// Name of the wall.
-    pub(crate) wall: String,
-    /// Overlap [m].
-    pub(crate) overlap: f64,
-    /// Largest overlap accepted [m].
-    pub(crate) limit: f64,
-}
-
-/// A touching contact with a wall, for those who look on.
-#[derive(Clone, Copy, Debug)]
-pub(crate) struct TouchingWall {
-    /// Sorted index of the grain.
-    pub(crate) grain: usize,
+    pub(crate) name: &'a str,
     /// Material of the wall.
     pub(crate) material: u16,
     /// Overlap [m].
@@ -112,6 +101,8 @@ pub(crate) struct ChunkWalls {
     /// Charging of the contacts; empty without charge transfer.
     charging: Vec<Memory>,
     scratch: Vec<ClosestPoint>,
+    /// Largest overlap over the grain's radius at the last evaluation.
+    deepest: f64,
 }
 
 /// All walls and what is near them.
@@ -172,49 +163,21 @@ impl ContactWalls {
         out
     }
 
-    /// Adds the walls' forces and torques.
+    /// Adds what the walls do to grains.
     pub(crate) fn forces(
         &mut self,
         grains: &Grains,
         table: &PairTable,
         features: Features,
         step: f64,
-        force: &mut [Vector3<f64>],
-        torque: &mut [Vector3<f64>],
+        loads: &mut Loads,
     ) {
-        let near = &mut self.chunks;
-        let (solids, shifts) = (&self.solids[..], &self.shifts);
+        let near = &mut self.chunks[..];
+        let scene = forces::Scene { solids: &self.solids, shifts: &self.shifts, grains, table, step };
         macro_rules! run {
-            ($f:literal, $r:literal, $d:literal) => {{
-                let body = |k: usize, near: &mut ChunkWalls, force: &mut [_], torque: &mut [_]| {
-                    near.forces::<$f, $r, $d>(k, solids, shifts, grains, table, step, force, torque);
-                };
-                let (parallel, chunks) = (is_parallel(grains.len()), chunk_count(grains.len()));
-                if $f || $r {
-                    for_each_chunk!(
-                        parallel,
-                        chunks,
-                        (near / 1, force / CHUNK, torque / CHUNK),
-                        |k: usize,
-                         (near, force, torque): (
-                            &mut [ChunkWalls],
-                            &mut [Vector3<f64>],
-                            &mut [Vector3<f64>]
-                        )| body(k, &mut near[0], force, torque)
-                    );
-                } else {
-                    for_each_chunk!(parallel, chunks, (near / 1, force / CHUNK), |k: usize,
-                                                                                  (near, force): (
-                        &mut [ChunkWalls],
-                        &mut [Vector3<f64>]
-                    )| body(
-                        k,
-                        &mut near[0],
-                        force,
-                        &mut []
-                    ));
-                }
-            }};
+            ($f:literal, $r:literal, $d:literal) => {
+                for_each_load(near, loads, |k, near, loads| near.forces::<$f, $r, $d>(k, &scene, loads))
+            };
         }
         match (features.friction, features.rolling, features.damping) {
             (false, false, false) => run!(false, false, false),
@@ -228,23 +191,32 @@ impl ContactWalls {
         }
     }
 
+    /// Largest overlap over the grain's radius at the last evaluation.
+    pub(crate) fn deepest(&self) -> f64 {
+        self.chunks.iter().map(|chunk| chunk.deepest).fold(0.0, f64::max)
+    }
+
     /// Number of touching contacts.
     pub(crate) fn contacts(&self) -> usize {
         self.chunks.iter().flat_map(|c| &c.entries).map(|e| e.count as usize).sum()
     }
 
     /// Every touching contact, in order.
-    pub(crate) fn touching(&self) -> impl Iterator<Item = TouchingWall> + '_ {
+    pub(crate) fn touching(&self) -> impl Iterator<Item = TouchingWall<'_>> {
         self.chunks.iter().enumerate().flat_map(move |(k, chunk)| {
             chunk.entries.iter().flat_map(move |entry| {
                 let first = entry.contacts as usize;
                 let solid = &self.solids[entry.solid as usize];
-                chunk.contacts[first..first + entry.count as usize].iter().map(move |contact| TouchingWall {
-                    grain: k * CHUNK + entry.local as usize,
-                    material: solid.part(contact.triangle).material,
-                    overlap: contact.overlap,
-                    spring: contact.spring,
-                    rolling: contact.rolling,
+                chunk.contacts[first..first + entry.count as usize].iter().map(move |contact| {
+                    let part = solid.part(contact.triangle);
+                    TouchingWall {
+                        grain: k * CHUNK + entry.local as usize,
+                        name: &part.name,
+                        material: part.material,
+                        overlap: contact.overlap,
+                        spring: contact.spring,
+                        rolling: contact.rolling,
+                    }
                 })
             })
         })
@@ -262,19 +234,6 @@ impl ContactWalls {
             }
         })
     }
-
-    /// The first grain that overlaps a wall by more than half its radius.
-    pub(crate) fn too_deep(&self, grains: &Grains) -> Option<TooDeep> {
-        (0..grains.len()).find_map(|grain| {
-            let (centre, radius) = (grains.position(grain), grains.centre[grain][3]);
-            let limit = 0.5 * radius;
-            self.solids.iter().find_map(|solid| {
-                let Found { overlap, triangle, .. } = solid.deepest(centre, radius);
-                let wall = || solid.part(triangle).name.clone();
-                (overlap > limit).then(|| TooDeep { grain, wall: wall(), overlap, limit })
-            })
-        })
-    }
 }
 
 impl Solid {
@@ -283,24 +242,6 @@ impl Solid {
         match &self.shape {
             Shape::Plane { .. } => &self.parts[0],
             Shape::Mesh(mesh) => &self.parts[mesh.surface_of(triangle)],
-        }
-    }
-
-    /// Deepest contact with a grain at `centre` [m]; its overlap is zero or negative where none touches.
-    fn deepest(&self, centre: Vector3<f64>, radius: f64) -> Found {
-        match &self.shape {
-            Shape::Plane { point, normal } => {
-                Found { normal: -normal, overlap: radius - (centre - point).dot(normal), triangle: 0 }
-            }
-            Shape::Mesh(mesh) => {
-                let mut near = Vec::new();
-                mesh.within(centre, radius, &mut near);
-                let mut found = [Found::default(); MOST_CONTACTS];
-                let pairs = near.iter().map(|&t| (t, centre));
-                // The deepest comes first; without any the overlap stays zero.
-                mesh.contacts(radius, pairs, &mut Vec::new(), &mut found);
-                found[0]
-            }
         }
     }
 }
