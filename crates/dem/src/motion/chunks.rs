@@ -9,6 +9,9 @@ use amberfield_core::Vector3;
 /// Grains per chunk.
 pub(crate) const CHUNK: usize = 1024;
 
+/// Vectors of the grains of a chunk.
+pub(crate) type Vectors<'a> = &'a mut [Vector3<f64>];
+
 /// Force, torque and damping that one chunk hands over to a grain of another.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Push {
@@ -117,13 +120,11 @@ pub(crate) fn for_each_load<T: Send>(
             parallel,
             chunks,
             (lists / 1, force / CHUNK, torque / CHUNK, slowing / CHUNK),
-            |k: usize,
-             (list, force, torque, slowing): (
-                &mut [T],
-                &mut [Vector3<f64>],
-                &mut [Vector3<f64>],
-                &mut [f64]
-            )| body(k, &mut list[0], ChunkLoads { force, torque, slowing })
+            |k: usize, (list, force, torque, slowing): (&mut [T], Vectors<'_>, Vectors<'_>, &mut [f64])| body(
+                k,
+                &mut list[0],
+                ChunkLoads { force, torque, slowing }
+            )
         );
     }
 }

@@ -5,7 +5,7 @@
 //! stable, the damping of contacts see. Second pass: v += ½Δt a_new. Angular velocity likewise; a sphere
 //! needs no orientation.
 
-use crate::motion::chunks::{CHUNK, Loads, Push, chunk_count, for_each_chunk, is_parallel};
+use crate::motion::chunks::{CHUNK, Loads, Push, Vectors, chunk_count, for_each_chunk, is_parallel};
 use crate::motion::grains::Grains;
 use amberfield_core::{Side, Vector3};
 use rayon::prelude::*;
@@ -95,8 +95,8 @@ pub(crate) fn drift(
         |k: usize,
          (centre, velocity, forecast, found): (
             &mut [[f64; 4]],
-            &mut [Vector3<f64>],
-            &mut [Vector3<f64>],
+            Vectors<'_>,
+            Vectors<'_>,
             &mut [ChunkMotion]
         )| {
             let first = k * CHUNK;
