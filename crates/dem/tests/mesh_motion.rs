@@ -10,6 +10,8 @@ use common::{RADIUS, floor, grain, material, mesh_floor, run, setup, wall};
 const SAME_PATH: f64 = 1e-11;
 /// Energy that a second-order integrator keeps at 200 steps in a collision.
 const ENERGY: f64 = 1e-3;
+/// Energy that it keeps over the creases of a trough (8e-6 seen).
+const ENERGY_ON_WALLS: f64 = 2e-5;
 
 fn mesh(vertices: Vec<Vector3<f64>>, triangles: Vec<[u32; 3]>) -> Wall {
     wall(WallShape::Mesh(TriangleMesh { vertices, triangles }))
@@ -159,17 +161,17 @@ fn energy_along(ball: Grain, walls: Vec<Wall>, steps: u64) -> (f64, usize, Grain
 #[test]
 fn trough_and_hill_of_facets_keep_energy() {
     let radius = 8.0 * RADIUS;
-    // A trough along y whose lowest line is at z = 0, with facets of 6° (one contact at a crease) and of 20°
-    // (two), and facets much smaller than the ball.
-    for (cells, contacts) in [(30, 1), (9, 2), (240, 1)] {
+    // A trough along y whose lowest line is at z = 0, with facets of 0.75° to 20°, whose creases have two
+    // contacts.
+    for cells in [9, 18, 30, 60, 90, 119, 240] {
         let (vertices, triangles) = sheet(cells, 12, |u, v| {
             let angle = std::f64::consts::PI * (u - 0.5);
             [radius * angle.sin(), 0.06 * v - 0.03, radius * (1.0 - angle.cos())]
         });
         let ball = grain(1, [0.3e-3, -2e-3, RADIUS * 1.3], [0.35, 0.1, -0.02]);
         let (worst, most, end) = energy_along(ball, vec![mesh(vertices, triangles)], 20_000);
-        assert!(most <= contacts, "{cells} facets: {most} contacts");
-        assert!(worst < ENERGY, "{cells} facets: {worst:e}");
+        assert!(most <= 2, "{cells} facets: {most} contacts");
+        assert!(worst < ENERGY_ON_WALLS, "{cells} facets: {worst:e}");
         assert!(end.position.xz().norm() < 2.0 * radius && end.position.z > 0.5 * RADIUS, "{end:?}");
     }
     // Over the top of a hill.

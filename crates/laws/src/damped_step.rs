@@ -9,7 +9,9 @@
 //! *Stable for any packing.* For one body v_½ decays if g f (1 + θ) + k/2 < 2, g = γΔt/m*; here g f (1 + θ) ≤
 //! λ. For many, with Γ the sum of M/m over all contacts of a body and t = Γ_j/Γ_i,
 //!
-//!     γ (v_i − v_j)² ≤ γ [(1 + t) v_i² + (1 + 1/t) v_j²] = (Γ_i + Γ_j) [γ v_i²/Γ_i + γ v_j²/Γ_j],
+//! ```text
+//! γ (v_i − v_j)² ≤ γ [(1 + t) v_i² + (1 + 1/t) v_j²] = (Γ_i + Γ_j) [γ v_i²/Γ_i + γ v_j²/Γ_j],
+//! ```
 //!
 //! and f (1 + θ) ≤ λ/[Δt (Γ_i + Γ_j)], so that the sum over all contacts is at most λ/Δt Σ m v². The rest up
 //! to 2/Δt is for springs. Forces at rest do not change, and as Δt → 0 f = θ = 1.

@@ -95,13 +95,13 @@ pub(crate) struct PairHistory {
 pub(crate) struct WallHistory {
     /// Grain.
     pub(crate) grain: Original,
-    /// Solid: a plane, or all surfaces of triangles.
-    pub(crate) solid: u32,
     /// Direction from the grain to the wall.
     pub(crate) normal: [f64; 3],
     /// Overlap [m].
     pub(crate) overlap: f64,
-    /// Triangle of a mesh that is touched.
+    /// Overlap with the line where the contact joins a deeper one [m].
+    pub(crate) joined: f64,
+    /// Triangle or plane that is touched.
     pub(crate) triangle: u32,
     /// Tangential spring.
     pub(crate) spring: Spring,

@@ -62,6 +62,7 @@ pub(crate) fn contact(grains: &Grains, contacts: &Contacts) -> f64 {
             features: *features,
             radius: a[3] * b[3] / (a[3] + b[3]),
             overlap: (a[3] + b[3] - distance).max(0.0),
+            joined: 0.0,
         };
         let spring = list.spring.get(touching.entry).copied().unwrap_or_default();
         let rolling = list.rolling.get(touching.entry).copied().unwrap_or_default();
@@ -73,6 +74,7 @@ pub(crate) fn contact(grains: &Grains, contacts: &Contacts) -> f64 {
             features: *features,
             radius: grains.centre[touching.grain][3],
             overlap: touching.overlap,
+            joined: touching.joined,
         };
         sum += springs.energy(&touching.spring, &touching.rolling);
     }
@@ -85,12 +87,18 @@ struct Springs<'a> {
     features: Features,
     radius: f64,
     overlap: f64,
+    /// Overlap with the line where the contact joins a deeper one, whose energy is not its own.
+    joined: f64,
 }
 
 impl Springs<'_> {
     fn energy(&self, spring: &Spring, rolling: &[f64; 3]) -> f64 {
         let contact_radius = (self.radius * self.overlap).sqrt();
         let mut energy = 0.4 * self.pair.hertz * contact_radius * self.overlap * self.overlap;
+        if self.joined > 0.0 {
+            let whole = (self.overlap.powf(1.5) + self.joined.powf(1.5)).cbrt().powi(5);
+            energy = 0.4 * self.pair.hertz * self.radius.sqrt() * (whole - self.joined.powf(2.5));
+        }
         if self.features.friction && contact_radius > 0.0 {
             let force2 = spring.force.iter().map(|f| f * f).sum::<f64>();
             energy += 0.5 * force2 / (self.pair.tangential * contact_radius);

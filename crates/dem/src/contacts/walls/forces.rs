@@ -1,9 +1,10 @@
 //! Forces of walls on the grains of a chunk, and contacts that are the same from step to step.
 
-use super::{ChunkWalls, Shape, Solid, WallContact, touches};
+use super::parts::Part;
+use super::{ChunkWalls, WallContact, touches};
 use crate::contacts::law::{Contact, History, respond};
-use crate::contacts::material_pairs::PairTable;
-use crate::contacts::walls::mesh::{Found, MOST_CONTACTS};
+use crate::contacts::material_pairs::{PairConstants, PairTable};
+use crate::contacts::walls::surfaces::{Found, MOST_CONTACTS, Surfaces};
 use crate::motion::chunks::{CHUNK, ChunkLoads};
 use crate::motion::grains::Grains;
 use amberfield_core::Vector3;
@@ -14,7 +15,8 @@ const SAME_CONTACT: f64 = 0.5;
 /// Data that every chunk reads.
 #[derive(Clone, Copy)]
 pub(super) struct Scene<'a> {
-    pub(super) solids: &'a [Solid],
+    pub(super) surfaces: &'a Surfaces,
+    pub(super) parts: &'a [Part],
     pub(super) shifts: &'a [[f64; 3]; 32],
     pub(super) grains: &'a Grains,
     pub(super) table: &'a PairTable,
@@ -30,43 +32,34 @@ impl ChunkWalls {
         scene: &Scene<'_>,
         loads: ChunkLoads<'_>,
     ) {
-        let &Scene { solids, shifts, grains, table, step } = scene;
+        let &Scene { surfaces, parts, shifts, grains, table, step } = scene;
         let Self { entries, triangles, contacts, charging: memory, scratch, deepest } = self;
         *deepest = 0.0;
         for entry in entries {
             let local = entry.local as usize;
             let i = k * CHUNK + local;
             let (centre, radius) = (grains.position(i), grains.centre[i][3]);
-            let solid = &solids[entry.solid as usize];
             let mut found = [Found::default(); MOST_CONTACTS];
-            let count = match &solid.shape {
-                Shape::Plane { point, normal } => {
-                    let overlap = radius - (centre - point).dot(normal);
-                    found[0] = Found { normal: -normal, overlap, triangle: 0 };
-                    usize::from(overlap > 0.0)
-                }
-                Shape::Mesh(mesh) => {
-                    let range = entry.triangles.start as usize..entry.triangles.end as usize;
-                    let pairs = triangles[range]
-                        .iter()
-                        .map(|near| (near.triangle, centre + Vector3::from(shifts[near.shift as usize])));
-                    mesh.contacts(radius, pairs, scratch, &mut found)
-                }
-            };
+            let range = entry.triangles.start as usize..entry.triangles.end as usize;
+            let near = triangles[range]
+                .iter()
+                .map(|near| (near.triangle, centre + Vector3::from(shifts[near.shift as usize])));
+            let count = surfaces.contacts(radius, near, scratch, &mut found);
             let kept = &mut contacts[entry.contacts as usize..];
             let from = renew(kept, entry.count as usize, &found[..count]);
             if !memory.is_empty() {
                 touches::renew(&mut memory[entry.contacts as usize..], &from[..count]);
             }
             entry.count = count as u32;
-            for wall_contact in &mut kept[..count] {
-                let pair = table.get(grains.material[i], solid.part(wall_contact.triangle).material);
+            for (wall_contact, found) in kept[..count].iter_mut().zip(&found) {
+                let part = &parts[surfaces.surface_of(wall_contact.triangle)];
+                let pair = table.get(grains.material[i], part.material);
                 let (contact, arm) = contact_of::<FRICTION, ROLLING>(grains, i, wall_contact);
                 let mut history = History::stored(wall_contact.spring, wall_contact.rolling);
                 let response = respond::<_, FRICTION, ROLLING, DAMPING>(&contact, pair, step, &mut history);
                 (wall_contact.spring, wall_contact.rolling) = history.to_store();
                 *deepest = deepest.max(wall_contact.overlap / radius);
-                loads.force[local] += response.force;
+                loads.force[local] += response.force - lean(pair, radius, found);
                 if FRICTION || ROLLING {
                     loads.torque[local] += response.twist * arm + response.rolling;
                 }
@@ -76,6 +69,13 @@ impl ChunkWalls {
             }
         }
     }
+}
+
+/// Force that a contact lacks where it joins a deeper one: it pushes away from its own place and pulls to
+/// where they join [N].
+#[inline(always)]
+fn lean(pair: &PairConstants<f64>, radius: f64, found: &Found) -> Vector3<f64> {
+    found.lean * (pair.hertz * (radius * found.joined).sqrt() * found.joined)
 }
 
 /// Geometry and motion of a grain's contact with a wall at rest, and the centre's distance from it.
@@ -111,8 +111,8 @@ fn renew(kept: &mut [WallContact], old_count: usize, found: &[Found]) -> [Option
     let mut unused = [true; MOST_CONTACTS];
     let mut from = [None; MOST_CONTACTS];
     for ((kept, found), from) in kept.iter_mut().zip(found).zip(&mut from) {
-        let Found { normal, overlap, triangle } = *found;
-        *kept = WallContact { normal, overlap, triangle, ..WallContact::default() };
+        let Found { normal, overlap, joined, triangle, .. } = *found;
+        *kept = WallContact { normal, overlap, joined, triangle, ..WallContact::default() };
         *from = best_match(&old[..old_count], &unused, &normal);
         if let Some(m) = *from {
             unused[m] = false;

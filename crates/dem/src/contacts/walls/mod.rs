@@ -1,47 +1,21 @@
 //! Contacts with plane and mesh walls.
 
 mod forces;
-pub(crate) mod mesh;
 mod near;
-mod solids;
+mod parts;
+pub(crate) mod surfaces;
 mod touches;
 
 pub(crate) use touches::{Surface, Touch, WallSlot};
 
 use crate::contacts::material_pairs::{Features, PairTable};
 use crate::contacts::memory::{Memory, Spring, WallHistory};
-use crate::contacts::walls::mesh::{ClosestPoint, MeshWall};
-use crate::contacts::walls::solids::solids_of;
+use crate::contacts::walls::parts::{Part, surfaces_of};
+use crate::contacts::walls::surfaces::{ClosestPoint, Surfaces};
 use crate::motion::chunks::{CHUNK, Loads, chunk_count, for_each_chunk, for_each_load, is_parallel};
 use crate::motion::grains::Grains;
-use amberfield_core::{Domain, Vector3, Wall, WallCharging};
+use amberfield_core::{Domain, Vector3, Wall};
 use std::ops::Range;
-
-/// Shape of a wall.
-#[derive(Debug)]
-enum Shape {
-    Plane { point: Vector3<f64>, normal: Vector3<f64> },
-    Mesh(Box<MeshWall>),
-}
-
-/// A body that grains touch: a plane, or all surfaces of triangles together.
-#[derive(Debug)]
-struct Solid {
-    shape: Shape,
-    /// Walls of the scene that it is made of: the plane, or one for each surface.
-    parts: Vec<Part>,
-}
-
-/// A wall of the scene as part of a solid.
-#[derive(Debug)]
-struct Part {
-    /// Number of the wall in the scene.
-    wall: u32,
-    name: String,
-    material: u16,
-    charging: WallCharging,
-    bounds_field: bool,
-}
 
 /// A touching contact with a wall, for those who look on.
 #[derive(Clone, Copy, Debug)]
@@ -52,8 +26,9 @@ pub(crate) struct TouchingWall<'a> {
     pub(crate) name: &'a str,
     /// Material of the wall.
     pub(crate) material: u16,
-    /// Overlap [m].
+    /// Overlap, and that with the line where the contact joins a deeper one, as in [`surfaces::Found`] [m].
     pub(crate) overlap: f64,
+    pub(crate) joined: f64,
     /// Tangential spring.
     pub(crate) spring: Spring,
     /// Rolling torque [N·m].
@@ -64,7 +39,9 @@ pub(crate) struct TouchingWall<'a> {
 #[derive(Clone, Copy, Debug, Default)]
 struct WallContact {
     normal: Vector3<f64>,
+    /// Overlap, and that with the line where the contact joins a deeper one, as in [`surfaces::Found`] [m].
     overlap: f64,
+    joined: f64,
     triangle: u32,
     spring: Spring,
     rolling: [f64; 3],
@@ -75,8 +52,7 @@ struct WallContact {
 struct Entry {
     /// Grain in the chunk.
     local: u32,
-    solid: u32,
-    /// Triangles near the grain, with shift codes.
+    /// Triangles and planes near the grain, with shift codes.
     triangles: Range<u32>,
     /// First of the entry's contacts.
     contacts: u32,
@@ -84,7 +60,7 @@ struct Entry {
     count: u32,
 }
 
-/// A triangle near a grain, or near its periodic image.
+/// A triangle or plane near a grain, or near its periodic image.
 #[derive(Clone, Copy, Debug)]
 struct NearTriangle {
     triangle: u32,
@@ -108,7 +84,9 @@ pub(crate) struct ChunkWalls {
 /// All walls and what is near them.
 #[derive(Debug)]
 pub(crate) struct ContactWalls {
-    solids: Vec<Solid>,
+    surfaces: Surfaces,
+    /// Wall of each surface.
+    parts: Vec<Part>,
     shifts: [[f64; 3]; 32],
     /// Whether contacts move charge.
     charge: bool,
@@ -117,15 +95,16 @@ pub(crate) struct ContactWalls {
 
 impl ContactWalls {
     pub(crate) fn new(walls: &[Wall], shifts: [[f64; 3]; 32], charge: bool) -> Result<Self, String> {
-        Ok(Self { solids: solids_of(walls)?, shifts, charge, chunks: Vec::new() })
+        let (surfaces, parts) = surfaces_of(walls)?;
+        Ok(Self { surfaces, parts, shifts, charge, chunks: Vec::new() })
     }
 
     /// Finds the grains near walls; histories stay with their grain and wall.
     pub(crate) fn build(&mut self, domain: &Domain, grains: &Grains, skin: f64, histories: &[WallHistory]) {
         let chunks = chunk_count(grains.len());
         self.chunks.resize_with(chunks, ChunkWalls::default);
-        let Self { solids, shifts, charge, chunks: near } = self;
-        let search = near::Search { solids, charge: *charge, shifts, domain, grains, skin, histories };
+        let Self { surfaces, shifts, charge, chunks: near, .. } = self;
+        let search = near::Search { surfaces, charge: *charge, shifts, domain, grains, skin, histories };
         let mut marks = vec![(); chunks];
         for_each_chunk!(is_parallel(grains.len()), chunks, (near / 1, marks / 1), |k: usize,
                                                                                    (near, _): (
@@ -136,7 +115,7 @@ impl ContactWalls {
         });
     }
 
-    /// Histories of touching contacts, sorted by grain and solid.
+    /// Histories of touching contacts, sorted by grain.
     pub(crate) fn histories(&self, grains: &Grains) -> Vec<WallHistory> {
         let mut out = Vec::new();
         for (k, chunk) in self.chunks.iter().enumerate() {
@@ -147,9 +126,9 @@ impl ContactWalls {
                     let contact = &chunk.contacts[number];
                     WallHistory {
                         grain: original,
-                        solid: entry.solid,
                         normal: contact.normal.into(),
                         overlap: contact.overlap,
+                        joined: contact.joined,
                         triangle: contact.triangle,
                         spring: contact.spring,
                         rolling: contact.rolling,
@@ -158,8 +137,8 @@ impl ContactWalls {
                 }));
             }
         }
-        // Stable: several contacts of one grain with one solid keep their order.
-        out.sort_by_key(|h| (h.grain, h.solid));
+        // Stable: several contacts of one grain keep their order.
+        out.sort_by_key(|h| h.grain);
         out
     }
 
@@ -173,7 +152,8 @@ impl ContactWalls {
         loads: &mut Loads,
     ) {
         let near = &mut self.chunks[..];
-        let scene = forces::Scene { solids: &self.solids, shifts: &self.shifts, grains, table, step };
+        let Self { surfaces, parts, shifts, .. } = self;
+        let scene = forces::Scene { surfaces, parts, shifts, grains, table, step };
         macro_rules! run {
             ($f:literal, $r:literal, $d:literal) => {
                 for_each_load(near, loads, |k, near, loads| near.forces::<$f, $r, $d>(k, &scene, loads))
@@ -206,14 +186,14 @@ impl ContactWalls {
         self.chunks.iter().enumerate().flat_map(move |(k, chunk)| {
             chunk.entries.iter().flat_map(move |entry| {
                 let first = entry.contacts as usize;
-                let solid = &self.solids[entry.solid as usize];
                 chunk.contacts[first..first + entry.count as usize].iter().map(move |contact| {
-                    let part = solid.part(contact.triangle);
+                    let part = self.part(contact.triangle);
                     TouchingWall {
                         grain: k * CHUNK + entry.local as usize,
                         name: &part.name,
                         material: part.material,
                         overlap: contact.overlap,
+                        joined: contact.joined,
                         spring: contact.spring,
                         rolling: contact.rolling,
                     }
@@ -226,22 +206,13 @@ impl ContactWalls {
     /// grains.
     pub(crate) fn covers(&self, place: Vector3<f64>, distance: f64) -> bool {
         let mut near = Vec::new();
-        self.solids.iter().any(|solid| match &solid.shape {
-            Shape::Plane { point, normal } => (place - point).dot(normal) <= distance,
-            Shape::Mesh(mesh) => {
-                mesh.within(place, distance, &mut near);
-                !near.is_empty()
-            }
-        })
+        self.surfaces.within(place, distance, &mut near);
+        self.surfaces.planes_within(place, distance, &mut near);
+        !near.is_empty()
     }
-}
 
-impl Solid {
-    /// Wall that a triangle of the solid, or its plane, belongs to.
-    fn part(&self, triangle: u32) -> &Part {
-        match &self.shape {
-            Shape::Plane { .. } => &self.parts[0],
-            Shape::Mesh(mesh) => &self.parts[mesh.surface_of(triangle)],
-        }
+    /// Wall that a triangle or plane belongs to.
+    fn part(&self, number: u32) -> &Part {
+        &self.parts[self.surfaces.surface_of(number)]
     }
 }

@@ -1,16 +1,16 @@
 //! Search for the grains near walls, and the histories that they keep.
 
-use super::{ChunkWalls, Entry, NearTriangle, Shape, Solid, WallContact};
+use super::{ChunkWalls, Entry, NearTriangle, WallContact};
 use crate::contacts::cells::NO_SHIFT;
 use crate::contacts::memory::{Memory, WallHistory};
-use crate::contacts::walls::mesh::MOST_CONTACTS;
+use crate::contacts::walls::surfaces::{MOST_CONTACTS, Surfaces};
 use crate::motion::chunks::CHUNK;
 use crate::motion::grains::Grains;
 use amberfield_core::{Axis, Domain, Vector3};
 
 /// Everything that a search for grains near walls reads.
 pub(super) struct Search<'a> {
-    pub(super) solids: &'a [Solid],
+    pub(super) surfaces: &'a Surfaces,
     /// Whether contacts move charge.
     pub(super) charge: bool,
     pub(super) shifts: &'a [[f64; 3]; 32],
@@ -18,14 +18,14 @@ pub(super) struct Search<'a> {
     pub(super) grains: &'a Grains,
     /// Distance from a wall within which a grain is near it [m].
     pub(super) skin: f64,
-    /// Histories of the contacts before, sorted by grain and wall.
+    /// Histories of the contacts before, sorted by grain.
     pub(super) histories: &'a [WallHistory],
 }
 
 impl ChunkWalls {
     /// Finds the walls near the grains of chunk `k`, and gives contacts the histories that they had.
     pub(super) fn fill(&mut self, k: usize, search: &Search<'_>) {
-        let &Search { solids, charge, shifts, domain, grains, skin, histories } = search;
+        let &Search { surfaces, charge, shifts, domain, grains, skin, histories } = search;
         self.entries.clear();
         self.triangles.clear();
         self.contacts.clear();
@@ -34,52 +34,46 @@ impl ChunkWalls {
         let mut most = 0;
         for i in k * CHUNK..grains.len().min((k + 1) * CHUNK) {
             let (centre, reach) = (grains.position(i), grains.centre[i][3] + skin);
-            for (number, solid) in solids.iter().enumerate() {
-                let number = number as u32;
-                let first = self.triangles.len();
-                let room = match &solid.shape {
-                    Shape::Plane { point, normal } => usize::from((centre - point).dot(normal) < reach),
-                    Shape::Mesh(mesh) => {
-                        for (code, image) in images(domain, shifts, centre, reach) {
-                            near.clear();
-                            mesh.within(image, reach, &mut near);
-                            let found = near.iter().map(|&triangle| NearTriangle { triangle, shift: code });
-                            self.triangles.extend(found);
-                        }
-                        if self.triangles.len() > first { MOST_CONTACTS } else { 0 }
-                    }
-                };
-                most = most.max(self.triangles.len() - first);
-                if room > 0 {
-                    let contacts = self.contacts.len();
-                    self.contacts.resize(contacts + room, WallContact::default());
-                    self.charging.resize(if charge { contacts + room } else { 0 }, Memory::default());
-                    let original = grains.original[i];
-                    let from = histories.partition_point(|h| (h.grain, h.solid) < (original, number));
-                    let mut count = 0;
-                    let same = histories[from..].iter().take_while(|h| h.grain == original);
-                    for h in same.take_while(|h| h.solid == number).take(room) {
-                        self.contacts[contacts + count] = WallContact {
-                            normal: h.normal.into(),
-                            overlap: h.overlap,
-                            triangle: h.triangle,
-                            spring: h.spring,
-                            rolling: h.rolling,
-                        };
-                        if charge {
-                            self.charging[contacts + count] = h.charging;
-                        }
-                        count += 1;
-                    }
-                    self.entries.push(Entry {
-                        local: (i - k * CHUNK) as u32,
-                        solid: number,
-                        triangles: first as u32..self.triangles.len() as u32,
-                        contacts: contacts as u32,
-                        count: count as u32,
-                    });
+            let first = self.triangles.len();
+            for (shift, image) in images(domain, shifts, centre, reach) {
+                near.clear();
+                surfaces.within(image, reach, &mut near);
+                if shift == NO_SHIFT {
+                    surfaces.planes_within(centre, reach, &mut near);
                 }
+                self.triangles.extend(near.iter().map(|&triangle| NearTriangle { triangle, shift }));
             }
+            let count = self.triangles.len() - first;
+            most = most.max(count);
+            if count == 0 {
+                continue;
+            }
+            let (contacts, room) = (self.contacts.len(), count.min(MOST_CONTACTS));
+            self.contacts.resize(contacts + room, WallContact::default());
+            self.charging.resize(if charge { contacts + room } else { 0 }, Memory::default());
+            let original = grains.original[i];
+            let from = histories.partition_point(|h| h.grain < original);
+            let mut touching = 0;
+            for h in histories[from..].iter().take_while(|h| h.grain == original).take(room) {
+                self.contacts[contacts + touching] = WallContact {
+                    normal: h.normal.into(),
+                    overlap: h.overlap,
+                    joined: h.joined,
+                    triangle: h.triangle,
+                    spring: h.spring,
+                    rolling: h.rolling,
+                };
+                if charge {
+                    self.charging[contacts + touching] = h.charging;
+                }
+                touching += 1;
+            }
+            self.entries.push(Entry {
+                local: (i - k * CHUNK) as u32,
+                triangles: first as u32..self.triangles.len() as u32,
+                contacts: contacts as u32,
+                count: touching as u32,
+            });
         }
         self.scratch.clear();
         self.scratch.reserve(most);

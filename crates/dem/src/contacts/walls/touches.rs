@@ -1,8 +1,8 @@
 //! Touching contacts with walls, one by one, for those who follow and charge them.
 
-use super::{ContactWalls, Shape};
+use super::ContactWalls;
 use crate::contacts::memory::{Follow, Memory};
-use crate::contacts::walls::mesh::MOST_CONTACTS;
+use crate::contacts::walls::surfaces::{MOST_CONTACTS, Plane};
 use crate::motion::chunks::CHUNK;
 use crate::motion::grains::Grains;
 use amberfield_core::{Vector3, WallCharging};
@@ -25,8 +25,6 @@ pub(crate) struct Touch {
     pub(crate) grain: usize,
     /// Wall of the scene.
     pub(crate) wall: u32,
-    /// Solid that the wall is a part of.
-    solid: u32,
     pub(crate) material: u16,
     pub(crate) charging: WallCharging,
     pub(crate) bounds_field: bool,
@@ -76,16 +74,14 @@ impl ContactWalls {
     pub(crate) fn touches<'a>(&'a self, grains: &'a Grains) -> impl DoubleEndedIterator<Item = Touch> + 'a {
         self.chunks.iter().enumerate().flat_map(move |(k, chunk)| {
             chunk.entries.iter().flat_map(move |entry| {
-                let solid = &self.solids[entry.solid as usize];
                 (entry.contacts..entry.contacts + entry.count).filter_map(move |number| {
                     let contact = &chunk.contacts[number as usize];
                     let grain = k * CHUNK + entry.local as usize;
-                    let part = solid.part(contact.triangle);
+                    let part = self.part(contact.triangle);
                     (part.charging != WallCharging::None).then(|| Touch {
                         slot: WallSlot { chunk: k as u32, contact: number },
                         grain,
                         wall: part.wall,
-                        solid: entry.solid,
                         material: part.material,
                         charging: part.charging,
                         bounds_field: part.bounds_field,
@@ -106,10 +102,11 @@ impl ContactWalls {
 
     /// Surface that a contact touches.
     pub(crate) fn surface(&self, touch: &Touch) -> Surface {
-        match &self.solids[touch.solid as usize].shape {
-            Shape::Plane { point, normal } => Surface::Plane { point: *point, normal: *normal },
-            Shape::Mesh(mesh) => {
-                Surface::Triangle { number: touch.triangle, corners: mesh.corners(touch.triangle) }
+        match self.surfaces.plane(touch.triangle) {
+            Some(&Plane { point, normal }) => Surface::Plane { point, normal },
+            None => {
+                let corners = self.surfaces.corners(touch.triangle);
+                Surface::Triangle { number: touch.triangle, corners }
             }
         }
     }
