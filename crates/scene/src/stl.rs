@@ -20,6 +20,10 @@ const BINARY_HEADER: usize = HEADER_TEXT + 4;
 const BINARY_TRIANGLE: usize = 50;
 /// Longest line of text [bytes]. The library keeps each word of a line, and no vertex needs so many.
 const LONGEST_LINE: usize = 1000;
+/// First bytes of a file that gzip has compressed.
+const GZIP: [u8; 2] = [0x1f, 0x8b];
+/// Length of the beginning of a file in which text has no zero byte [bytes].
+const BEGINNING: usize = 1000;
 /// Largest coordinate [m], as elsewhere in a scene.
 const LARGEST_COORDINATE: f64 = 1e6;
 /// Sine of the smallest angle of a triangle that counts as having an area.
@@ -49,6 +53,10 @@ struct BadTriangle {
 /// # Errors
 /// Files that are no STL, cut short, or hold values that are not finite; files without a triangle.
 pub(crate) fn read_stl(file: &str, bytes: &[u8], scale: f64) -> Result<Surface, SceneError> {
+    if bytes.starts_with(&GZIP) {
+        let problem = "is compressed with gzip; unpack it (gunzip) and name the STL file";
+        return Err(SceneError::file(file, problem));
+    }
     let corners = if is_binary(bytes) { read_binary(file, bytes)? } else { read_text(file, bytes)? };
     let mut mesh = TriangleMesh::default();
     let mut index_of: HashMap<[u64; 3], u32> = HashMap::new();
@@ -107,8 +115,10 @@ fn is_binary(bytes: &[u8]) -> bool {
     match promised(bytes) {
         Some(count) if BINARY_HEADER + count * BINARY_TRIANGLE == bytes.len() => true,
         _ => {
-            let text = bytes.strip_prefix(b"\xef\xbb\xbf").unwrap_or(bytes);
-            !text.trim_ascii_start().starts_with(b"solid")
+            let text = bytes.strip_prefix(b"\xef\xbb\xbf").unwrap_or(bytes).trim_ascii_start();
+            let is_solid = text.get(..5).is_some_and(|word| word.eq_ignore_ascii_case(b"solid"));
+            // Bytes may follow the triangles; counts and normals of a binary file have zero bytes.
+            !is_solid || bytes[..bytes.len().min(BEGINNING)].contains(&0)
         }
     }
 }
@@ -148,20 +158,16 @@ fn read_binary(file: &str, bytes: &[u8]) -> Result<Vec<Vector3<f64>>, SceneError
 
 /// Reads the corners of all triangles of a text file, three for each triangle [unit of the file].
 ///
-/// The library is given one line at a time, so that the line of a mistake is known. Names of solids are left
-/// out, since there may be several in a file and the library ends at the first. Normals are left out too,
-/// since they are not used and some exporters write NaN.
+/// The library is given one statement at a time, so that the line of a mistake is known. Names of solids are
+/// left out, since there may be several in a file and the library ends at the first, and since they may be in
+/// any encoding. Normals are left out too, since they are not used and some exporters write NaN.
 fn read_text(file: &str, bytes: &[u8]) -> Result<Vec<Vector3<f64>>, SceneError> {
-    let text = crate::source::decode(file, bytes)?;
+    let text = String::from_utf8_lossy(bytes.strip_prefix(b"\xef\xbb\xbf").unwrap_or(bytes));
+    let Statements { text, lines } = statements(&text);
     let number = Cell::new(0_usize);
-    let facets = text.split_inclusive('\n').enumerate().filter_map(|(index, line)| {
+    let facets = text.split_inclusive('\n').enumerate().map(|(index, line)| {
         number.set(index + 1);
-        match line.split_ascii_whitespace().next() {
-            Some("solid" | "endsolid") | None => None,
-            Some("facet") => Some("facet normal 0 0 0\n"),
-            Some(_) if line.len() > LONGEST_LINE => Some("a line too long\n"),
-            Some(_) => Some(line),
-        }
+        if line.len() > LONGEST_LINE { "a line too long\n" } else { line }
     });
     let end = std::iter::once("endsolid\n").inspect(|_| number.set(0));
     let pieces = ["solid \n"].into_iter().chain(facets).chain(["\n"]).chain(end).map(str::as_bytes);
@@ -173,13 +179,83 @@ fn read_text(file: &str, bytes: &[u8]) -> Result<Vec<Vector3<f64>>, SceneError> 
                 format!("triangle {triangle} does not end; the file is cut short, export it again"),
             );
         };
-        let line = text.lines().nth(index).unwrap_or_default().trim();
+        let line = text.lines().nth(index).unwrap_or_default();
         SceneError::data(
             file,
-            index as u64 + 1,
+            lines.get(index).copied().unwrap_or_default(),
             format!("\"{}\" in triangle {triangle}: {}; repair the file", shorten(line), shorten(&reason)),
         )
     })
+}
+
+/// Statements of a text file, one a line.
+struct Statements {
+    /// Statements with keywords in lower case, without names and normals.
+    text: String,
+    /// Line of the file in which each begins, from 1.
+    lines: Vec<u64>,
+}
+
+/// Words that begin a statement.
+const KEYWORDS: [&str; 7] = ["facet", "outer", "vertex", "endloop", "endfacet", "solid", "endsolid"];
+
+/// Puts each statement on a line of its own: exporters write keywords in any case, end lines in any way, or put
+/// all into one line.
+fn statements(text: &str) -> Statements {
+    let mut found = Statements { text: String::with_capacity(text.len()), lines: Vec::new() };
+    let keyword = |word: &str| KEYWORDS.into_iter().find(|known| word.eq_ignore_ascii_case(known));
+    let mut words = words(text).peekable();
+    while let Some((line, word)) = words.next() {
+        let known = keyword(word);
+        if matches!(known, Some("solid" | "endsolid")) {
+            // A name ends with its line, or where a facet begins.
+            while let Some((other, word)) = words.peek()
+                && (*other == line || keyword(word).is_none())
+                && !word.eq_ignore_ascii_case("facet")
+            {
+                words.next();
+            }
+            continue;
+        }
+        found.lines.push(line);
+        found.text.push_str(known.unwrap_or(word));
+        if known == Some("facet") {
+            found.text.push_str(" normal 0 0 0");
+        }
+        // A statement ends with its line, unless that cuts it.
+        let (mut taken, whole) = (0, words_after(known));
+        let belongs = |other: u64, word: &str, taken: usize| {
+            keyword(word).is_none() && (other == line || taken < whole)
+        };
+        while let Some((_, word)) = words.next_if(|(other, word)| belongs(*other, word, taken)) {
+            taken += 1;
+            if known == Some("outer") {
+                found.text.push(' ');
+                found.text.push_str(&word.to_ascii_lowercase());
+            } else if known != Some("facet") {
+                found.text.push(' ');
+                found.text.push_str(word);
+            }
+        }
+        found.text.push('\n');
+    }
+    found
+}
+
+/// Number of words after a keyword.
+fn words_after(keyword: Option<&str>) -> usize {
+    match keyword {
+        Some("facet") => 4,
+        Some("vertex") => 3,
+        Some("outer") => 1,
+        _ => 0,
+    }
+}
+
+/// Words of a text with their lines, from 1; lines end with LF, CR or both.
+fn words(text: &str) -> impl Iterator<Item = (u64, &str)> {
+    let lines = text.split('\n').flat_map(|line| line.strip_suffix('\r').unwrap_or(line).split('\r'));
+    (1..).zip(lines).flat_map(|(number, line)| line.split_ascii_whitespace().map(move |word| (number, word)))
 }
 
 /// Reads the corners of all triangles, three for each.
@@ -272,6 +348,45 @@ mod tests {
         let both = format!("\u{feff}{FACET}endsolid a\n\n{other}endsolid\n");
         let Surface { mesh, .. } = read_stl("w.stl", both.as_bytes(), 1.0).unwrap();
         assert_eq!((mesh.vertices.len(), mesh.triangles.len()), (4, 2));
+    }
+
+    #[test]
+    fn dialects_of_text_agree() {
+        let plain = format!("{FACET}endsolid a\n");
+        let known = read_stl("w.stl", plain.as_bytes(), 1.0).unwrap().mesh;
+        let named = |name: &[u8]| {
+            let mut bytes = plain.clone().into_bytes();
+            bytes.splice(6..7, name.iter().copied());
+            bytes
+        };
+        for (dialect, bytes) in [
+            ("upper case", plain.to_uppercase().into_bytes()),
+            ("one line", plain.replace('\n', " ").into_bytes()),
+            ("CR", plain.replace('\n', "\r").into_bytes()),
+            ("CR LF", plain.replace('\n', "\r\n").into_bytes()),
+            ("tabs and blank lines", plain.replace('\n', "\n\n\t").into_bytes()),
+            ("a Latin-1 name", named(b"Beh\xe4lter")),
+            ("a name of several words", named(b"a solid b 1 2 3")),
+            ("no name", plain.replace(" a\n", "\n").into_bytes()),
+            ("two in one line", format!("{plain}{plain}").replace('\n', " ").into_bytes()),
+        ] {
+            let found = read_stl("w.stl", &bytes, 1.0).unwrap_or_else(|error| panic!("{dialect}: {error}"));
+            assert_eq!(found.mesh.vertices, known.vertices, "{dialect}");
+        }
+    }
+
+    #[test]
+    fn binary_that_begins_with_solid_may_end_late() {
+        let mut bytes = binary(&[[0., 0., 0., 1., 0., 0., 0., 1., 0.]]);
+        bytes[..10].copy_from_slice(b"solid part");
+        bytes.extend(b"made by a program");
+        assert_eq!(read_stl("w.stl", &bytes, 1.0).unwrap().mesh.triangles.len(), 1);
+    }
+
+    #[test]
+    fn compressed_files_are_named() {
+        let message = read_stl("w.stl.gz", &[0x1f, 0x8b, 8, 0], 1.0).unwrap_err().to_string();
+        assert!(message.contains("w.stl.gz") && message.contains("gunzip"), "{message}");
     }
 
     #[test]
