@@ -13,6 +13,16 @@ pub struct TriangleMesh {
     pub triangles: Vec<[u32; 3]>,
 }
 
+impl TriangleMesh {
+    /// Lower and upper corner of the box around the vertices [m]; `None` without vertices.
+    #[must_use]
+    pub fn bounds(&self) -> Option<[Vector3<f64>; 2]> {
+        let first = *self.vertices.first()?;
+        let around = |[low, high]: [Vector3<f64>; 2], x: &Vector3<f64>| [low.inf(x), high.sup(x)];
+        Some(self.vertices.iter().fold([first; 2], around))
+    }
+}
+
 /// Geometry of a wall.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(rename_all = "snake_case")]

@@ -11,7 +11,7 @@ pub(crate) const RADIUS: Range = Range::closed(1e-12, 1e3);
 /// Radii of particles that need no size [m].
 pub(crate) const RADIUS_OR_POINT: Range = Range::closed(0.0, 1e3);
 /// Densities [kg/m³].
-pub(crate) const DENSITY: Range = Range::closed(1e-6, 1e6);
+pub(crate) const DENSITY: Range = Range::closed(1e-6, 1e9);
 /// Young's moduli [Pa].
 pub(crate) const YOUNG: Range = Range::closed(1e-3, 1e15);
 /// Charges [C]; the range is wide, since textbooks and test sets use unit charges.

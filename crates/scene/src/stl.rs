@@ -199,8 +199,8 @@ struct Statements {
 /// Words that begin a statement.
 const KEYWORDS: [&str; 7] = ["facet", "outer", "vertex", "endloop", "endfacet", "solid", "endsolid"];
 
-/// Puts each statement on a line of its own: exporters write keywords in any case, end lines in any way, or put
-/// all into one line.
+/// Puts each statement on a line of its own: exporters write keywords in any case, end lines in any way, or
+/// put all into one line.
 fn statements(text: &str) -> Statements {
     let mut found = Statements { text: String::with_capacity(text.len()), lines: Vec::new() };
     let keyword = |word: &str| KEYWORDS.into_iter().find(|known| word.eq_ignore_ascii_case(known));

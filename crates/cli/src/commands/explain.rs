@@ -8,7 +8,7 @@ use crate::run::{
     setup_of,
 };
 use crate::{machine, plan_text};
-use amberfield_core::{Axis, Boundary, Domain, Side};
+use amberfield_core::{Axis, Boundary, Domain, Side, WallShape};
 use amberfield_dem::Simulation;
 use amberfield_field::ElectricField;
 use amberfield_field::far::Connect;
@@ -53,6 +53,13 @@ fn print_scene(name: &str, scene: &Scene) {
         particles.net_charge()
     ));
     line(format_args!("walls: {}, materials: {}", scene.walls.len(), scene.materials.len()));
+    for wall in &scene.walls {
+        if let WallShape::Mesh(mesh) = &wall.shape
+            && let Some([low, high]) = mesh.bounds()
+        {
+            line(format_args!("  {}: {:?} to {:?} m", wall.name, low.as_slice(), high.as_slice()));
+        }
+    }
     if let Some(domain) = &scene.domain {
         let (min, max) = (domain.min(), domain.max());
         line(format_args!("domain: {:?} to {:?} m; {}", min.as_slice(), max.as_slice(), faces(domain)));

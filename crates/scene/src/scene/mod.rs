@@ -10,6 +10,7 @@ mod particles;
 mod read;
 mod time;
 mod together;
+mod unusual;
 mod walls;
 
 pub use description::{

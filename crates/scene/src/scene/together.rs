@@ -1,6 +1,7 @@
 //! Checks of sections against each other.
 
 use super::description::{Purpose, Scene};
+use super::unusual::unusual_values;
 use crate::SceneError;
 use crate::error::{Problems, shorten};
 use crate::tree::{SceneTable, nearest};
@@ -174,8 +175,10 @@ fn check_charge_transfer(document: &SceneTable<'_>, scene: &Scene) -> Result<(),
     Ok(())
 }
 
-/// Adds warnings about keys that have no effect or cost much time.
+/// Adds warnings about keys that have no effect or cost much time, and about unusual values.
 fn warn(scene: &mut Scene) {
+    let unusual = unusual_values(scene);
+    scene.warnings.extend(unusual);
     let count = scene.particles.len();
     let method = scene.electric_field.as_ref().map(|field| field.field.method);
     if method == Some(Method::Direct) && count > MANY_FOR_DIRECT {
