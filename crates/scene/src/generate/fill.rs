@@ -83,7 +83,7 @@ pub(super) fn fill(
                 jammed = true;
                 (0..MOST_WALL_TRIES).find_map(|_| region.draw(radius, random)).ok_or_else(|| {
                     format!(
-                        "no place in the region is a radius of {radius:e} m away from every plane wall; \
+                        "no place in the region is a radius of {radius:e} m away from every wall; \
                          move the region or the walls"
                     )
                 })?

@@ -7,5 +7,6 @@ mod grid;
 mod region;
 mod relax;
 mod spec;
+mod surfaces;
 
 pub(crate) use spec::{GenerateContext, generate};

@@ -1,12 +1,13 @@
 //! Region in which grains are placed.
 
 use super::spec::GenerateContext;
+use super::surfaces::Surfaces;
 use crate::SceneError;
 use crate::limits::{COORDINATE, LENGTH};
 use crate::tree::{Range, SceneTable, Value};
 use amberfield_core::{Axis, Domain, Wall, WallShape};
 use nalgebra::Vector3;
-use rand::RngExt;
+use rand::{RngExt, SeedableRng};
 use rand_chacha::ChaCha8Rng;
 use std::f64::consts::PI;
 
@@ -14,6 +15,9 @@ use std::f64::consts::PI;
 const CLEARANCE: f64 = 1e-6;
 /// Share of the domain's size by which a region may reach out of the domain, because of rounding.
 const SLACK: f64 = 1e-9;
+
+/// Number of places at which it is asked on which side of a closed surface a region lies.
+const PLACES: usize = 200;
 
 /// Shape of a region; lengths in [m].
 #[derive(Clone, Debug)]
@@ -42,6 +46,7 @@ pub(super) struct Region {
     /// Flag of an axis along which the region is one period of the domain.
     pub(super) periodic: [bool; 3],
     planes: Vec<BoundingPlane>,
+    surfaces: Surfaces,
 }
 
 /// Reads the key `region`.
@@ -143,7 +148,18 @@ impl Region {
                 WallShape::Mesh(_) => None,
             })
             .collect();
-        Ok(Self { shape, min, max, periodic, planes })
+        let meshes = || {
+            walls
+                .iter()
+                .filter_map(|wall| if let WallShape::Mesh(mesh) = &wall.shape { Some(mesh) } else { None })
+        };
+        let mut region =
+            Self { shape, min, max, periodic, planes, surfaces: Surfaces::new([].into_iter(), &[]) };
+        // Places all over the region, always the same ones.
+        let mut random = ChaCha8Rng::seed_from_u64(0);
+        let places: Vec<_> = (0..PLACES).filter_map(|_| region.draw(0.0, &mut random)).collect();
+        region.surfaces = Surfaces::new(meshes(), &places);
+        Ok(region)
     }
 
     /// Volume [m³], walls not subtracted.
@@ -183,7 +199,9 @@ impl Region {
 
     /// Tells whether a grain of a radius [m] may have its centre at a point [m].
     pub(super) fn allows(&self, point: &Vector3<f64>, radius: f64) -> bool {
-        (self.nearest_allowed(*point, radius, 0.5 * CLEARANCE) - point).amax() <= 0.4 * CLEARANCE * radius
+        let nearest = self.nearest_allowed(*point, radius, 0.5 * CLEARANCE);
+        (nearest - point).amax() <= 0.4 * CLEARANCE * radius
+            && self.surfaces.allow(point, radius * (1.0 + 0.1 * CLEARANCE))
     }
 
     /// Moves a point [m] to where a grain of a radius [m] touches neither faces nor walls.
@@ -200,6 +218,7 @@ impl Region {
                 point += normal * (inset - distance);
             }
         }
+        point = self.surfaces.push_off(point, inset);
         match &self.shape {
             RegionShape::Box { min, max } => {
                 for axis in 0..3 {

@@ -31,7 +31,7 @@ pub(crate) struct GenerateContext<'a> {
     pub(crate) domain: &'a Domain,
     /// Materials by name.
     pub(crate) materials: &'a Materials,
-    /// Walls; grains keep clear of the plane walls among them.
+    /// Walls; grains keep clear of them, and of what lies behind closed ones.
     pub(crate) walls: &'a [Wall],
     /// Reader of the files that the generator names.
     pub(crate) source: &'a mut SceneSource,

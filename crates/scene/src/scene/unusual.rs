@@ -26,7 +26,7 @@ pub(super) fn unusual_values(scene: &Scene) -> Vec<String> {
         if let Some(work) = material.work_function_ev.filter(|work| !WORK_FUNCTION.contains(work)) {
             let name = &material.name;
             found.push(format!(
-                "material \"{name}\": work_function_eV = {work} is none of a solid (1 to 10 eV); check the unit"
+                "material \"{name}\": work_function_eV = {work} is outside 1 to 10 eV; check the unit"
             ));
         }
     }

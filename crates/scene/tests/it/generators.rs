@@ -133,5 +133,63 @@ fn impossible_fills_are_refused_with_numbers() {
         assert!(message.contains(part), "{message}");
     }
     let sealed = "[[walls]]\nplane = { point_m = [0, 0, 1e-2], normal = [0, 0, 1] }\n";
-    assert!(scene("count = 1\nradius_m = 1e-4", sealed).unwrap_err().contains("plane wall"));
+    assert!(scene("count = 1\nradius_m = 1e-4", sealed).unwrap_err().contains("every wall"));
+}
+
+/// Closed tube along z of a radius and half a height [m], as text of an STL file; open without its lids.
+fn tube(radius: f64, half: f64, lids: bool) -> String {
+    let sides = 32;
+    let at = |k: usize, z: f64| {
+        let angle = 2.0 * std::f64::consts::PI * (k % sides) as f64 / sides as f64;
+        [5e-3 + radius * angle.cos(), 5e-3 + radius * angle.sin(), 5e-3 + z]
+    };
+    let mut text = "solid tube\n".to_owned();
+    let mut facet = |corners: [[f64; 3]; 3]| {
+        text += "facet normal 0 0 0\nouter loop\n";
+        for [x, y, z] in corners {
+            text += &format!("vertex {x:e} {y:e} {z:e}\n");
+        }
+        text += "endloop\nendfacet\n";
+    };
+    for k in 0..sides {
+        facet([at(k, -half), at(k + 1, -half), at(k + 1, half)]);
+        facet([at(k, -half), at(k + 1, half), at(k, half)]);
+        for z in [-half, half].into_iter().filter(|_| lids) {
+            facet([[5e-3, 5e-3, 5e-3 + z], at(k, z), at(k + 1, z)]);
+        }
+    }
+    text + "endsolid\n"
+}
+
+#[test]
+fn grains_keep_clear_of_surfaces_and_of_what_is_behind_closed_ones() {
+    let radius = 2e-4;
+    // A drum around most of the region, a drum that is an obstacle, and an open tube.
+    for (outer, half, lids, inside) in
+        [(4.6e-3, 4.6e-3, true, Some(true)), (2e-3, 2e-3, true, Some(false)), (3e-3, 3e-3, false, None)]
+    {
+        // The last one jams in the drum: overlaps are removed there.
+        for count in [300, 1500, 7000].into_iter().filter(|count| *count < 7000 || inside == Some(true)) {
+            let folder = Folder::good();
+            folder.write("tube.stl", tube(outer, half, lids));
+            let generate = format!("material = \"glass\"\ncount = {count}\nradius_m = {radius}\nseed = 3\n");
+            let walls = "[[walls]]\nstl = \"tube.stl\"\nmaterial = \"glass\"\n";
+            folder.write("scene.toml", format!("{SCENE}{walls}\n[particles.generate]\n{generate}"));
+            let scene = folder.read(&[]).expect("a good scene");
+            for centre in &scene.particles.position {
+                let across = (centre.x - 5e-3).hypot(centre.y - 5e-3);
+                let along = (centre.z - 5e-3).abs();
+                // Chords are nearer to the axis by half of a percent.
+                let is_inside = across < outer - 0.999 * radius && along < half - 0.999 * radius;
+                let off = (across - outer).max(0.0).hypot((along - half).max(0.0));
+                let is_outside = off > 0.99 * radius - 0.005 * outer && off > 0.0;
+                let is_good = match inside {
+                    Some(true) => is_inside,
+                    Some(false) => is_outside,
+                    None => (across - outer).abs() > radius * 0.99 - 0.005 * outer || along > half,
+                };
+                assert!(is_good, "{outer} {lids} {count}: {centre:?}");
+            }
+        }
+    }
 }
