@@ -72,6 +72,23 @@ impl CellShapes {
         Self::new(mesh, points, first, corners)
     }
 
+    /// Shapes of the same faces, the corners of each in order around the normal away from its cell.
+    pub(crate) fn turned_outwards(&self, mesh: &FarMesh) -> Self {
+        let mut turned = self.clone();
+        let cells =
+            (0..mesh.cell_count()).flat_map(|cell| vec![mesh.centres()[cell]; mesh.faces_of(cell).len()]);
+        for (face, cell) in cells.enumerate() {
+            let (corners, centre) = (self.corners(face), self.centre(face));
+            let to = |corner: u32| self.points[corner as usize] - centre;
+            let pairs = corners.iter().zip(corners.iter().cycle().skip(1));
+            let area: Vector3<f64> = pairs.map(|(&one, &next)| to(one).cross(&to(next))).sum();
+            if area.dot(&(centre - cell)) < 0.0 {
+                turned.corners[self.first(face)..self.first(face + 1)].reverse();
+            }
+        }
+        turned
+    }
+
     /// Points [m]; corners are places among them.
     pub(crate) fn points(&self) -> &[Vector3<f64>] {
         &self.points

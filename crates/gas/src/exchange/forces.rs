@@ -5,11 +5,14 @@ use crate::mapping::CHUNK;
 use amberfield_core::{Gas, GasModel, Vector3};
 use amberfield_laws::particle_reynolds::Slip;
 use amberfield_laws::{drag, magnus_lift, saffman_lift, self_disturbance};
+use nalgebra::Matrix3;
 use rayon::prelude::*;
 use std::f64::consts::PI;
 
 /// Rounds in which drag and the wind that a grain makes for itself are brought together.
 const ROUNDS: u32 = 3;
+/// Change of their quotient at which they are together.
+const SETTLED: f64 = 1e-5;
 /// Most of its slip that a grain's own wind may take.
 const MOST_WIND: f64 = 0.6;
 
@@ -24,9 +27,10 @@ struct Itself {
 }
 
 impl Itself {
-    /// Part of a grain of a volume [m³] in a share of the volume, over which it is spread by Gaussians [m].
-    fn new(solid: f64, volume: f64, spread: f64) -> Self {
-        let own = volume / ((2.0 * PI).powf(1.5) * spread.powi(3));
+    /// Part of a grain of a volume [m³] in a share of the volume, over which it is spread by a Gaussian of a
+    /// variance [m²].
+    fn new(solid: f64, volume: f64, variance: &Matrix3<f64>) -> Self {
+        let own = volume / ((2.0 * PI).powi(3) * variance.determinant()).sqrt();
         let share = if solid > 0.0 { (own / solid).min(1.0) } else { 1.0 };
         // Slope 1 where it is alone, so that an error of its own share counts once; of third order in a bed.
         let alone = share * share * share * (3.0 - 2.0 * share);
@@ -45,18 +49,18 @@ struct AtGrain {
 }
 
 impl Exchange {
-    /// Sets drag and lift of every grain in the flow known so far, and their sums by cell.
-    pub(super) fn resist(&mut self, grains: &GrainsView<'_>, interval_s: f64) {
+    /// Sets drag and lift of every grain in the flow known so far, and their sums by cell; books what grains
+    /// got, by its sums at the nodes.
+    pub(super) fn resist(&mut self, grains: &GrainsView<'_>, interval_s: f64, got: &[[f64; 4]]) {
         self.smooth_flow();
-        let flow = self.mapping.of_grains(&self.shares, &self.smooth);
         let vorticity =
             if self.flow.saffman_lift { self.gathered(&self.values.vorticity) } else { Vec::new() };
-        let voids: Vec<[f64; 1]> = self.void_fraction.iter().map(|&void| [void]).collect();
-        let voids = self.mapping.gather_near(&self.shares, &voids);
+        let flow = self.mapping.of_grains(&self.shares, &self.flow_and_void());
         let one = |i: usize| {
+            let [x, y, z, void_fraction] = flow[i];
             let flow = AtGrain {
-                void_fraction: voids[i][0],
-                velocity: Vector3::new(flow[i][0], flow[i][1], flow[i][2]),
+                void_fraction,
+                velocity: Vector3::new(x, y, z),
                 vorticity: vorticity.get(i).copied().unwrap_or_default(),
             };
             self.resistance(grains, i, &flow)
@@ -70,11 +74,28 @@ impl Exchange {
             [held.drag, source.x, source.y, source.z]
         };
         let given: Vec<[f64; 4]> = self.held.iter().zip(grains.velocity).map(gives).collect();
-        let volumes = self.solver.mesh().volumes();
-        for (cell, [drag, x, y, z]) in self.mapping.spread(&self.shares, &given).into_iter().enumerate() {
+        let given = self.mapping.at_nodes(&self.shares, &given);
+        // Both in one go: smoothing takes much of the time.
+        let none = [0.0; 4];
+        let both = given.iter().enumerate().map(|(node, &[a, b, c, d])| {
+            let [e, f, g, h] = *got.get(node).unwrap_or(&none);
+            [a, b, c, d, e, f, g, h]
+        });
+        let both = self.mapping.to_cells(&both.collect::<Vec<_>>());
+        for (cell, [drag, x, y, z, got_drag, got_x, got_y, got_z]) in both.into_iter().enumerate() {
+            if !got.is_empty() {
+                self.book(cell, got_drag, Vector3::new(got_x, got_y, got_z));
+            }
             self.drag[cell] = drag;
-            self.source[cell] = Vector3::new(x, y, z) - self.owed[cell] / (interval_s * volumes[cell]);
+            self.source[cell] = Vector3::new(x, y, z) - self.owed[cell] / (interval_s * self.volumes()[cell]);
         }
+    }
+
+    /// Smooth velocity of the gas [m/s] and void fraction at the nodes.
+    fn flow_and_void(&self) -> Vec<[f64; 4]> {
+        let voids: Vec<[f64; 1]> = self.void_fraction.iter().map(|&void| [void]).collect();
+        let voids = self.mapping.near(&voids);
+        self.smooth.iter().zip(voids).map(|(&[x, y, z, ..], [void])| [x, y, z, void]).collect()
     }
 
     /// Drag coefficient β of a grain, and its lift L in `push`.
@@ -83,8 +104,9 @@ impl Exchange {
         let AtGrain { void_fraction, vorticity, .. } = *flow;
         let diameter = 2.0 * grains.centre[i][3];
         let slip = flow.velocity - grains.velocity[i];
-        let [of_void, of_flow] = self.mapping.spreads_of_one(self.cells[i], diameter);
-        let itself = Itself::new(1.0 - void_fraction, sphere(diameter), of_void);
+        let [of_void, of_flow] = self.mapping.variances_of_one(self.cells[i], diameter);
+        let itself = Itself::new(1.0 - void_fraction, sphere(diameter), &of_void);
+        let spread = spread_of_wind(&of_flow, &slip);
         let void_fraction = 1.0 - itself.others;
         let beta = |speed: f64| {
             let known = Slip { speed, void_fraction, diameter, density, viscosity };
@@ -94,8 +116,12 @@ impl Exchange {
         let mut larger = 1.0;
         for _ in 0..ROUNDS {
             let speed = larger * slip.norm();
-            let wind = self_disturbance::per_force(speed, of_flow, density, viscosity);
+            let wind = self_disturbance::per_force(speed, spread, density, viscosity);
+            let before = larger;
             larger = 1.0 / (1.0 - (itself.alone * wind * beta(speed)).min(MOST_WIND));
+            if (larger - before).abs() < SETTLED {
+                break;
+            }
         }
         let over = match self.flow.model {
             GasModel::A => larger,
@@ -150,4 +176,12 @@ impl Exchange {
             .map(Vector3::from)
             .collect()
     }
+}
+
+/// Spread [m] of a force across a slip, from its variance [m²]: how far it reaches along the slip does not
+/// matter for a wake.
+fn spread_of_wind(variance: &Matrix3<f64>, slip: &Vector3<f64>) -> f64 {
+    let direction = slip.try_normalize(0.0).unwrap_or_else(Vector3::z);
+    let along = direction.dot(&(variance * direction));
+    (0.5 * (variance.trace() - along)).sqrt()
 }

@@ -1,7 +1,9 @@
 //! Booking of what grains got of the gas, by the cells whose gas they got it of.
 
 use super::{Exchange, Held};
+use crate::mapping::CHUNK;
 use amberfield_core::Vector3;
+use rayon::prelude::*;
 use serde::{Deserialize, Serialize};
 
 /// Grain that is no longer there, and what it got since the exchange.
@@ -23,10 +25,10 @@ impl Exchange {
         if self.held.is_empty() && self.gone.is_empty() {
             return Vec::new();
         }
+        let all: Vec<[f64; 4]> =
+            (0..self.held.len()).into_par_iter().with_min_len(CHUNK).map(|i| self.got(i)).collect();
         let mut got = vec![[0.0; 4]; self.places.len()];
-        for (i, held) in self.held.iter().enumerate() {
-            got[held.slot as usize] = self.got(i);
-        }
+        self.held.iter().zip(all).for_each(|(held, of_grain)| got[held.slot as usize] = of_grain);
         for gone in self.gone.drain(..) {
             got[gone.slot as usize] = gone.got;
         }

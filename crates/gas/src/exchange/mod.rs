@@ -179,13 +179,13 @@ impl Exchange {
         let got = self.got_at_nodes();
         self.take()?;
         self.place(domain, grains);
-        self.fill_cells(&got, grains);
+        self.fill_cells(grains);
         if self.values.velocity.is_empty() {
             // The flow as it is at the start.
             self.ask(0.0, time_s)?;
             self.take()?;
         }
-        self.resist(grains, interval_s);
+        self.resist(grains, interval_s, &got);
         self.ask(interval_s, time_s)?;
         if !self.flow.overlap {
             self.take()?;
@@ -310,25 +310,15 @@ impl Exchange {
         let places = self.places.iter().zip(&self.cells).zip(&diameters);
         let grains: Vec<Placed> =
             places.map(|((&centre, &cell), &diameter)| Placed { centre, diameter, cell }).collect();
-        self.shares = self.mapping.place(self.solver.mesh(), &grains);
+        self.mapping.place(self.solver.mesh(), &grains, &mut self.shares);
         self.diameters = diameters;
     }
 
-    /// Fills in the void fraction ε of every cell, and books there what grains got, by sums at the nodes.
-    fn fill_cells(&mut self, got: &[[f64; 4]], grains: &GrainsView<'_>) {
+    /// Fills in the void fraction ε of every cell.
+    fn fill_cells(&mut self, grains: &GrainsView<'_>) {
         let solids: Vec<[f64; 1]> = grains.centre.iter().map(|c| [sphere(2.0 * c[3])]).collect();
-        let solids = self.mapping.at_nodes(&self.shares, &solids);
-        // Both in one go: smoothing takes most of the time.
-        let sums: Vec<[f64; 5]> = match got {
-            [] => solids.iter().map(|&[solid]| [0.0, 0.0, 0.0, 0.0, solid]).collect(),
-            _ => got.iter().zip(&solids).map(|(&[a, b, c, d], &[solid])| [a, b, c, d, solid]).collect(),
-        };
-        for (cell, [drag, x, y, z, solid]) in self.mapping.to_cells(&sums).into_iter().enumerate() {
-            self.void_fraction[cell] = 1.0 - solid;
-            if !got.is_empty() {
-                self.book(cell, drag, Vector3::new(x, y, z));
-            }
-        }
+        let solids = self.mapping.spread(&self.shares, &solids);
+        self.void_fraction.iter_mut().zip(solids).for_each(|(void, [solid])| *void = 1.0 - solid);
         let mut clipped = 0;
         for void in self.void_fraction.iter_mut().filter(|void| **void < LEAST_VOID) {
             *void = LEAST_VOID;

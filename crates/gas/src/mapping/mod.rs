@@ -16,7 +16,8 @@ use crate::GasError;
 use crate::shapes::CellShapes;
 use amberfield_core::Vector3;
 use amberfield_field::far::FarMesh;
-use nodes::{AtNodes, Nodes};
+use nalgebra::Matrix3;
+use nodes::{Nodes, OfNodes};
 use rayon::prelude::*;
 use smoothing::Smoothing;
 use sparse::{Rows, add};
@@ -24,26 +25,30 @@ use sparse::{Rows, add};
 /// Least smoothing length over the largest diameter. Gas laws know many grains, not one: a grain in cells
 /// smaller than itself is spread over some eighty times its volume.
 const OVER_DIAMETER: f64 = 3.3;
-/// Least spread σ_f over the distance of two cells' centres. The nodes spread a grain over some 0.4 already.
-const OVER_CELL: f64 = 0.6;
-/// Variance along an axis, over the square of a cell's size, of where the cells are that the nodes give a
-/// grain to: that of linear functions.
-const OF_NODES: f64 = 1.0 / 6.0;
 /// Spread σ along an axis over the smoothing length: that of (1 − s²)³ over a ball.
 const SPREAD: f64 = 0.301_511_344_577_763_6;
 /// Places at which a grain is looked for, over its diameter from its centre: its centre, and four corners of
 /// a cube. Along every axis these are three in a row, so that layers of grains that lie as far apart as in a
 /// bed make no waves in cells of about their distance.
 const BESIDE: f64 = 0.42;
-const CORNERS: [[f64; 3]; 4] = [[1.0, 1.0, 1.0], [1.0, -1.0, -1.0], [-1.0, 1.0, -1.0], [-1.0, -1.0, 1.0]];
-/// Share of a grain at its centre; the corners have the rest.
-const AT_CENTRE: f64 = 1.0 / 3.0;
+const PLACES: [[f64; 3]; 5] =
+    [[0.0; 3], [1.0, 1.0, 1.0], [1.0, -1.0, -1.0], [-1.0, 1.0, -1.0], [-1.0, -1.0, 1.0]];
+/// Shares of a grain at these places.
+const SHARES: [f64; 5] = [1.0 / 3.0, 1.0 / 6.0, 1.0 / 6.0, 1.0 / 6.0, 1.0 / 6.0];
+/// Variance of the places along an axis, over the square of the diameter.
+const OF_PLACES: f64 = 2.0 / 3.0 * BESIDE * BESIDE;
+/// Variance of a Gaussian that is as dense in its middle as what diffusion makes, over the variance of this,
+/// whose polynomials are flatter.
+const FLATTER: f64 = 1.07;
 /// Least size of all cells over the largest diameter at which a grain's centre is enough.
 const LARGE: f64 = 8.0;
 /// Grains that one thread takes at a time.
 pub(crate) const CHUNK: usize = 1024;
-/// Most parts in which grains are summed side by side.
-const MOST_PARTS: usize = 8;
+/// Grains whose places are found and kept together.
+const PART: usize = 256;
+/// Most sums of grains at nodes side by side, and how many of them there are over grains for a node.
+const MOST_SUMS: usize = 8;
+const OVER_NODES: usize = 1;
 
 /// Shares of grains in the cells of a mesh.
 #[derive(Clone, Debug)]
@@ -52,6 +57,8 @@ pub struct Mapping {
     /// Whether all cells are large beside grains.
     is_coarse: bool,
     volumes: Vec<f64>,
+    /// Variance by cell that diffusion adds [m²].
+    diffused: Vec<Matrix3<f64>>,
     nodes: Nodes,
     /// Volume of each node that is a cell's, by cell [m³].
     of_cells: Rows,
@@ -61,26 +68,57 @@ pub struct Mapping {
 /// Places of many grains among the nodes.
 #[derive(Clone, Debug, Default)]
 pub(crate) struct Places {
-    /// Number of the first node of each grain; one more than there are grains.
-    first: Vec<u32>,
-    nodes: Vec<u32>,
-    /// Weights of the nodes; those of a grain add up to one.
-    weights: Vec<f64>,
+    /// Grains in order, [`PART`] at a time.
+    parts: Vec<Part>,
+}
+
+/// Places of some grains among the nodes.
+#[derive(Clone, Debug, Default)]
+struct Part {
+    /// Number of entries up to the end of each grain's.
+    ends: Vec<u32>,
+    /// Nodes and their weights; those of a grain add up to one.
+    entries: Vec<(u32, f64)>,
 }
 
 impl Places {
     /// Number of grains.
     fn len(&self) -> usize {
-        self.first.len() - 1
+        self.parts.iter().map(|part| part.ends.len()).sum()
+    }
+}
+
+impl Part {
+    /// Nodes and weights of its grains, one after the other.
+    fn grains(&self) -> impl Iterator<Item = &[(u32, f64)]> {
+        let mut begin = 0;
+        self.ends
+            .iter()
+            .map(move |&end| &self.entries[std::mem::replace(&mut begin, end as usize)..end as usize])
     }
 
-    /// Nodes and weights of a grain.
-    fn of(&self, grain: usize) -> impl Iterator<Item = (usize, f64)> {
-        let entries = self.first[grain] as usize..self.first[grain + 1] as usize;
-        self.nodes[entries.clone()]
-            .iter()
-            .map(|&node| node as usize)
-            .zip(self.weights[entries].iter().copied())
+    /// Finds the places of grains anew.
+    fn fill(&mut self, mapping: &Mapping, mesh: &FarMesh, grains: &[Placed]) {
+        let Self { ends, entries } = self;
+        ends.clear();
+        entries.clear();
+        // Entries of nodes that were given something last, by the last bits of their numbers.
+        let mut known = [0; 256];
+        let mut of_nodes = OfNodes::default();
+        for grain in grains {
+            let begin = entries.len();
+            mapping.place_one(mesh, grain, &mut of_nodes, &mut |node, weight| {
+                let known: &mut usize = &mut known[node as usize % 256];
+                match entries[begin..].get_mut(known.wrapping_sub(begin)) {
+                    Some(entry) if entry.0 == node => entry.1 += weight,
+                    _ => {
+                        *known = entries.len();
+                        entries.push((node, weight));
+                    }
+                }
+            });
+            ends.push(entries.len() as u32);
+        }
     }
 }
 
@@ -120,9 +158,10 @@ impl Mapping {
         let volumes = mesh.volumes().to_vec();
         let smallest = volumes.iter().copied().fold(f64::INFINITY, f64::min).cbrt();
         let is_coarse = smallest > LARGE * largest_diameter;
-        let conductances = nodes.conductances(SPREAD * length, OVER_CELL);
+        let conductances = nodes.conductances(SPREAD * length);
+        let diffused = nodes.diffused(SPREAD * length);
         let smoothing = Smoothing::new(&nodes.volumes_of_nodes, conductances);
-        Ok(Self { length, is_coarse, smoothing, volumes, nodes, of_cells })
+        Ok(Self { length, is_coarse, smoothing, volumes, diffused, nodes, of_cells })
     }
 
     /// Length over which grains are smoothed where cells are small [m].
@@ -131,92 +170,79 @@ impl Mapping {
         self.length
     }
 
-    /// Standard deviations [m] along an axis over which a lone grain of a diameter [m] in a cell is spread:
-    /// that of the void fraction which it finds where it is, and that of its force and of the flow which it
-    /// feels, both together. They hold far from walls; in cells of several sizes they are estimates.
-    pub(crate) fn spreads_of_one(&self, cell: u32, diameter: f64) -> [f64; 2] {
-        let size = self.volumes[cell as usize].cbrt();
-        let beside = if self.is_coarse { 0.0 } else { BESIDE * diameter };
-        // Of the places beside the centre, and of linear functions between nodes half a cell apart.
-        let mut placed = (1.0 - AT_CENTRE) * beside * beside + OF_NODES * size * size;
-        let smoothed = (SPREAD * self.length).max(OVER_CELL * size).powi(2);
-        let void = smoothed + 2.0 * placed;
-        placed += smoothed;
-        [void.sqrt(), (2.0 * placed).sqrt()]
+    /// Variances [m²] of a lone grain of a diameter [m] in a cell: that of the void fraction which it finds
+    /// where it is, and that of its force and of the flow which it feels, both together.
+    ///
+    /// They hold far from walls; in cells of several sizes they are estimates.
+    pub(crate) fn variances_of_one(&self, cell: u32, diameter: f64) -> [Matrix3<f64>; 2] {
+        let of_places = if self.is_coarse { 0.0 } else { OF_PLACES * diameter * diameter };
+        let placed = Matrix3::from_diagonal_element(of_places) + self.nodes.variances[cell as usize];
+        let diffused = self.diffused[cell as usize] * FLATTER;
+        [placed * 2.0 + diffused, (placed + diffused) * 2.0]
     }
 
-    /// Finds the places of grains among the cells of `mesh`.
-    pub(crate) fn place(&self, mesh: &FarMesh, grains: &[Placed]) -> Places {
-        let parts: Vec<(Vec<u32>, Vec<u32>, Vec<f64>)> = grains
-            .par_chunks(CHUNK / 4)
-            .map(|grains| {
-                let (mut counts, mut nodes, mut weights) = (Vec::new(), Vec::new(), Vec::new());
-                for grain in grains {
-                    let begin = nodes.len();
-                    self.place_one(mesh, grain, &mut |node, weight| match nodes[begin..]
-                        .iter()
-                        .position(|&known| known == node)
-                    {
-                        Some(place) => weights[begin + place] += weight,
-                        None => {
-                            nodes.push(node);
-                            weights.push(weight);
-                        }
-                    });
-                    counts.push((nodes.len() - begin) as u32);
-                }
-                (counts, nodes, weights)
-            })
-            .collect();
-        let mut places = Places { first: vec![0], ..Places::default() };
-        for (counts, nodes, weights) in parts {
-            for count in counts {
-                places.first.push(places.first[places.first.len() - 1] + count);
-            }
-            places.nodes.extend(nodes);
-            places.weights.extend(weights);
-        }
-        places
+    /// Finds the places of grains among the cells of `mesh`, into what held others.
+    pub(crate) fn place(&self, mesh: &FarMesh, grains: &[Placed], places: &mut Places) {
+        places.parts.resize_with(grains.len().div_ceil(PART), Part::default);
+        let parts = places.parts.par_iter_mut().zip(grains.par_chunks(PART));
+        parts.for_each(|(part, grains)| part.fill(self, mesh, grains));
     }
 
     /// Gives a grain's nodes and weights, some more than once.
-    fn place_one(&self, mesh: &FarMesh, grain: &Placed, give: &mut impl FnMut(u32, f64)) {
-        let mut add = |AtNodes { nodes, weights }: AtNodes, share: f64| {
-            nodes.into_iter().zip(weights).for_each(|(node, weight)| give(node, share * weight));
+    fn place_one(
+        &self,
+        mesh: &FarMesh,
+        grain: &Placed,
+        of_nodes: &mut OfNodes,
+        give: &mut impl FnMut(u32, f64),
+    ) {
+        let at = |place: [f64; 3]| {
+            let beside = Vector3::from(place) * (BESIDE * grain.diameter);
+            self.nodes.at(mesh, &(grain.centre + beside), grain.cell)
         };
-        if self.is_coarse {
-            return add(self.nodes.at(mesh, &grain.centre, grain.cell), 1.0);
-        }
-        add(self.nodes.at(mesh, &grain.centre, grain.cell), AT_CENTRE);
-        let share = (1.0 - AT_CENTRE) / CORNERS.len() as f64;
-        for corner in CORNERS {
-            let beside = grain.centre + Vector3::from(corner) * (BESIDE * grain.diameter);
-            add(self.nodes.at(mesh, &beside, grain.cell), share);
+        let (in_centre, in_all);
+        let (places, shares) = if self.is_coarse {
+            in_centre = [at(PLACES[0])];
+            (&in_centre[..], &[1.0][..])
+        } else {
+            in_all = PLACES.map(at);
+            (&in_all[..], &SHARES[..])
+        };
+        // Cell by cell, each as often as a place is in it.
+        for (first, &(cell, _)) in places.iter().enumerate() {
+            if places[..first].iter().any(|&(known, _)| known == cell) {
+                continue;
+            }
+            self.nodes.begin(cell, of_nodes);
+            let others =
+                places[first..].iter().zip(&shares[first..]).filter(|((other, _), _)| *other == cell);
+            others.for_each(|((_, inside), share)| self.nodes.add(inside, *share, of_nodes));
+            self.nodes.weights(cell, of_nodes).for_each(|(node, weight)| give(node, weight));
         }
     }
 
     /// Sums of numbers of grains at the nodes; their order depends on counts alone.
     pub(crate) fn at_nodes<const N: usize>(&self, places: &Places, numbers: &[[f64; N]]) -> Vec<[f64; N]> {
         let nodes = self.nodes.count();
-        let parts = (4 * numbers.len() / nodes.max(1)).clamp(1, MOST_PARTS);
-        let sum = |grains: std::ops::Range<usize>| {
+        // As many sums side by side as are worth adding up.
+        let sums = (OVER_NODES * numbers.len() / nodes.max(1)).clamp(1, MOST_SUMS);
+        let of_sum = places.parts.len().div_ceil(sums).max(1);
+        let sum = |(parts, numbers): (&[Part], &[[f64; N]])| {
             let mut sums = vec![[0.0; N]; nodes];
-            for grain in grains {
-                places.of(grain).for_each(|(node, weight)| add(&mut sums[node], weight, &numbers[grain]));
+            for (entries, numbers) in parts.iter().flat_map(Part::grains).zip(numbers) {
+                entries.iter().for_each(|&(node, weight)| add(&mut sums[node as usize], weight, numbers));
             }
             sums
         };
-        if parts == 1 {
-            return sum(0..numbers.len());
+        let parts = places.parts.par_chunks(of_sum).zip(numbers.par_chunks(of_sum * PART));
+        let mut sums: Vec<_> = parts.map(sum).collect();
+        let Some((total, others)) = sums.split_first_mut() else { return vec![[0.0; N]; nodes] };
+        if !others.is_empty() {
+            total.par_iter_mut().with_min_len(CHUNK).enumerate().for_each(|(node, total)| {
+                others.iter().for_each(|other| add(total, 1.0, &other[node]));
+            });
         }
-        let bounds = |part: usize| part * numbers.len() / parts..(part + 1) * numbers.len() / parts;
-        let of_parts: Vec<_> = (0..parts).into_par_iter().map(|part| sum(bounds(part))).collect();
-        let total = |node: usize| {
-            let mut sum = [0.0; N];
-            of_parts.iter().for_each(|part| add(&mut sum, 1.0, &part[node]));
-            sum
-        };
-        (0..nodes).into_par_iter().with_min_len(CHUNK).map(total).collect()
+        sums.swap_remove(0)
     }
 
     /// Numbers per volume of each cell, from sums at the nodes.
@@ -237,22 +263,23 @@ impl Mapping {
 
     /// Smooth numbers of cells at the nodes, from which grains take their means.
     pub(crate) fn smooth<const N: usize>(&self, cells: &[[f64; N]]) -> Vec<[f64; N]> {
-        self.smoothing.apply(self.nodes.to_cells.times(cells))
+        self.smoothing.apply(self.near(cells))
     }
 
-    /// Means of cells' numbers at grains, without smoothing: of numbers that are smooth already.
-    pub(crate) fn gather_near<const N: usize>(&self, places: &Places, cells: &[[f64; N]]) -> Vec<[f64; N]> {
-        self.of_grains(places, &self.nodes.to_cells.times(cells))
+    /// Numbers of cells at the nodes, without smoothing: of what is smooth already.
+    pub(crate) fn near<const N: usize>(&self, cells: &[[f64; N]]) -> Vec<[f64; N]> {
+        self.nodes.to_cells.times(cells)
     }
 
     /// Means of nodes' numbers at grains.
     pub(crate) fn of_grains<const N: usize>(&self, places: &Places, nodes: &[[f64; N]]) -> Vec<[f64; N]> {
-        let one = |grain: usize| {
-            let mut sum = [0.0; N];
-            places.of(grain).for_each(|(node, weight)| add(&mut sum, weight, &nodes[node]));
-            sum
-        };
-        (0..places.len()).into_par_iter().with_min_len(CHUNK).map(one).collect()
+        let mut means = vec![[0.0; N]; places.len()];
+        means.par_chunks_mut(PART).zip(&places.parts).for_each(|(means, part)| {
+            for (mean, entries) in means.iter_mut().zip(part.grains()) {
+                entries.iter().for_each(|&(node, weight)| add(mean, weight, &nodes[node as usize]));
+            }
+        });
+        means
     }
 }
 

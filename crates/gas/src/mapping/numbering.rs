@@ -1,4 +1,4 @@
-//! Numbers of a mesh's nodes: which faces and which corners of neighbouring cells are one.
+//! Numbers of a mesh's nodes: which corners of neighbouring cells are one.
 
 use crate::shapes::CellShapes;
 use amberfield_core::Vector3;
@@ -10,15 +10,11 @@ const SAME: f64 = 1e-3;
 /// Number of what has none yet.
 const NONE: u32 = u32::MAX;
 
-/// Nodes at faces and corners, numbered after the cells' centres.
+/// Nodes at corners.
 #[derive(Debug)]
 pub(super) struct Numbering {
     /// Number of the first face of each cell; one more than there are cells.
     pub(super) first_face: Vec<u32>,
-    /// Centre of each face, as each of its cells sees it [m].
-    pub(super) face_centres: Vec<Vector3<f64>>,
-    /// Node of each face, as each of its cells sees it.
-    pub(super) of_face: Vec<u32>,
     /// Node of each corner of each face.
     pub(super) of_corner: Vec<u32>,
     /// Number of nodes.
@@ -41,15 +37,7 @@ impl Numbering {
         for cell in 0..mesh.cell_count() {
             first_face.push(first_face[cell] + mesh.faces_of(cell).len() as u32);
         }
-        let faces = first_face[mesh.cell_count()] as usize;
-        let mut numbers = Self {
-            first_face,
-            face_centres: (0..faces).map(|face| shapes.centre(face)).collect(),
-            of_face: vec![NONE; faces],
-            of_corner: Vec::new(),
-            count: mesh.cell_count() as u32,
-        };
-        numbers.number_faces(mesh);
+        let mut numbers = Self { first_face, of_corner: Vec::new(), count: 0 };
         numbers.number_corners(mesh, shapes);
         numbers
     }
@@ -72,35 +60,6 @@ impl Numbering {
             Neighbour::Boundary(_) => None,
         };
         self.faces(cell).zip(mesh.faces_of(cell)).filter_map(passage).collect()
-    }
-
-    fn number_faces(&mut self, mesh: &FarMesh) {
-        for cell in 0..mesh.cell_count() {
-            for Passage { cell, face, other, shift } in self.passages(mesh, cell) {
-                if self.of_face[face] != NONE {
-                    continue;
-                }
-                let place = self.face_centres[face] - shift;
-                let away = |&twin: &usize| (self.face_centres[twin] - place).norm();
-                let leads_back = |(twin, entry): (usize, &amberfield_field::far::CellFace)| {
-                    let back =
-                        matches!(entry.neighbour, Neighbour::Cell { cell: c, .. } if c as usize == cell);
-                    (back && twin != face).then_some(twin)
-                };
-                let twins = self.faces(other).zip(mesh.faces_of(other)).filter_map(leads_back);
-                let twin = twins.min_by(|a, b| away(a).total_cmp(&away(b)));
-                let number = self.next();
-                self.of_face[face] = number;
-                if let Some(twin) = twin {
-                    self.of_face[twin] = number;
-                }
-            }
-            for face in self.faces(cell) {
-                if self.of_face[face] == NONE {
-                    self.of_face[face] = self.next();
-                }
-            }
-        }
     }
 
     /// Joins corners through faces alone: two cells on both sides of a thin wall share none.

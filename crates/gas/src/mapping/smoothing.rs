@@ -17,6 +17,8 @@ use rayon::prelude::*;
 const MOST: f64 = 300.0;
 /// Share of short waves that a part of the time leaves, inverted.
 const DAMPING: f64 = 12.0;
+/// Parts of the time.
+const PARTS: u32 = 2;
 /// Nodes that one thread takes at a time.
 const CHUNK: usize = 512;
 
@@ -25,8 +27,6 @@ const CHUNK: usize = 512;
 pub(super) struct Smoothing {
     /// G/V by node and neighbour.
     rates: Rows,
-    /// Sum of a node's rates.
-    sums: Vec<f64>,
     /// Argument of the polynomials where nothing changes.
     still: f64,
     /// Degree of the polynomials, and how much of the rate of change moves their argument by one.
@@ -49,9 +49,8 @@ impl Smoothing {
         };
         let edges = edges.into_iter().map(limited).collect();
         let rates = Rows::new(volumes.len(), edges).with(|cell, _, conductance| conductance / volumes[cell]);
-        let sums: Vec<f64> = (0..volumes.len()).map(|cell| rates.sum(cell)).collect();
         // The fastest decay is no faster than twice the largest sum; a part has half of it.
-        let fastest = sums.iter().copied().fold(0.0, f64::max);
+        let fastest = (0..volumes.len()).map(|node| rates.sum(node)).fold(0.0, f64::max);
         let with = |stages: u32| {
             let still = (DAMPING.acosh() / f64::from(stages)).cosh();
             let [value, slope] = chebyshev(stages, still);
@@ -59,46 +58,45 @@ impl Smoothing {
         };
         let reaches = |&(_, still, step): &(u32, f64, f64)| (1.0 + still) / step >= fastest;
         let (stages, still, step) = (1_u32..).map(with).find(reaches).expect("rates are limited");
-        Self { rates, sums, still, stages, step: 0.5 * step }
+        Self { rates, still, stages, step: step / f64::from(PARTS) }
     }
 
     /// Spreads values by node; `Σ V n` stays as it is.
-    pub(super) fn apply<const N: usize>(&self, values: Vec<[f64; N]>) -> Vec<[f64; N]> {
-        let half = self.part(values);
-        self.part(half)
+    pub(super) fn apply<const N: usize>(&self, mut values: Vec<[f64; N]>) -> Vec<[f64; N]> {
+        let mut other = vec![[0.0; N]; values.len()];
+        for _ in 0..PARTS {
+            self.part(&mut values, &mut other);
+        }
+        values
     }
 
-    fn part<const N: usize>(&self, values: Vec<[f64; N]>) -> Vec<[f64; N]> {
+    /// Goes through a part of the time; what is in `other` does not matter.
+    fn part<const N: usize>(&self, values: &mut Vec<[f64; N]>, other: &mut Vec<[f64; N]>) {
         let scale = |stage: u32| chebyshev(stage, self.still)[0];
-        let mut before = values;
-        let mut now = self.combined(1.0, &before, 0.0, &before, self.step / self.still);
+        self.combine(1.0, values, 0.0, other, self.step / self.still);
         for stage in 2..=self.stages {
+            std::mem::swap(values, other);
             let one_less = 2.0 * scale(stage - 1) / scale(stage);
             let two_less = scale(stage - 2) / scale(stage);
-            let next = self.combined(one_less * self.still, &now, -two_less, &before, one_less * self.step);
-            before = std::mem::replace(&mut now, next);
+            self.combine(one_less * self.still, values, -two_less, other, one_less * self.step);
         }
-        now
+        std::mem::swap(values, other);
     }
 
-    /// `a x + b y + c L x`, with the rate of change L.
-    fn combined<const N: usize>(
-        &self,
-        a: f64,
-        x: &[[f64; N]],
-        b: f64,
-        y: &[[f64; N]],
-        c: f64,
-    ) -> Vec<[f64; N]> {
-        let one = |cell: usize| {
+    /// Makes `y` be `a x + b y + c L x`, with the rate of change L.
+    fn combine<const N: usize>(&self, a: f64, x: &[[f64; N]], b: f64, y: &mut [[f64; N]], c: f64) {
+        y.par_iter_mut().with_min_len(CHUNK).enumerate().for_each(|(node, y)| {
             let mut change = [0.0; N];
-            for (other, rate) in self.rates.of(cell) {
+            let here = &x[node];
+            for (other, rate) in self.rates.of(node) {
+                let there = &x[other];
                 for k in 0..N {
-                    change[k] += rate * (x[other][k] - x[cell][k]);
+                    change[k] += rate * (there[k] - here[k]);
                 }
             }
-            std::array::from_fn(|k| a * x[cell][k] + b * y[cell][k] + c * change[k])
-        };
-        (0..self.sums.len()).into_par_iter().with_min_len(CHUNK).map(one).collect()
+            for k in 0..N {
+                y[k] = a * here[k] + b * y[k] + c * change[k];
+            }
+        });
     }
 }
