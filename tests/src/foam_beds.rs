@@ -34,10 +34,12 @@ pub enum BedMesh {
     Polyhedra,
     /// Hexahedra around a square in a pipe.
     Pipe,
+    /// Cuboids that shrink twentyfold towards the middle, to 0.15 mm.
+    FineInside,
 }
 
 impl BedMesh {
-    /// All kinds.
+    /// All kinds whose cells are 2 to 3 mm wide.
     pub const ALL: [Self; 10] = [
         Self::Cubes,
         Self::GradedAlong,
@@ -80,6 +82,10 @@ impl BedMesh {
             Self::Layers => {
                 let layers = "((0.1 0.25 6) (0.8 0.5 1) (0.1 0.25 0.1666667))";
                 block([16, 16, 8], &format!("{layers} {layers} 1"))
+            }
+            Self::FineInside => {
+                let shrink = "((0.5 0.5 0.05) (0.5 0.5 20))";
+                block([20; 3], &format!("{shrink} {shrink} {shrink}"))
             }
             Self::Wedges => wedge(),
             Self::Pipe => pipe(),

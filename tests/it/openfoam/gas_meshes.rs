@@ -234,5 +234,6 @@ fn told(mesh: BedMesh) -> (&'static str, &'static str) {
         BedMesh::Tetrahedra => ("tetrahedra", "23 to 35 %"),
         BedMesh::Polyhedra => ("polyhedra (polyDualMesh)", "not measured"),
         BedMesh::Pipe => ("an O-grid in a pipe", "48 to 82 %"),
+        BedMesh::FineInside => ("cuboids that shrink towards the middle", "not measured"),
     }
 }
