@@ -7,7 +7,6 @@ mod fields;
 mod function_object;
 mod gas;
 mod gas_alone;
-mod gas_grains;
 mod gas_meshes;
 mod gas_runs;
 mod meshes;
