@@ -6,8 +6,9 @@ use crate::contacts::walls::{ContactWalls, TouchingWall};
 use crate::contacts::{Contacts, Depths};
 use crate::error::DemError;
 
-/// Largest overlap over the smaller radius that a run may have.
-const DEEPEST: f64 = 0.5;
+/// Largest overlap over the smaller radius that a run may have: soft impacts reach 0.6, and a grain comes no
+/// farther in a step than from here to where its centre is in a wall.
+const DEEPEST: f64 = 0.8;
 /// Largest overlap over the smaller radius at the start, unless more is allowed: a hundredth, and what
 /// decimals of a file leave.
 const DEEPEST_AT_START: f64 = 0.010_001;
