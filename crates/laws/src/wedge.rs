@@ -49,7 +49,7 @@ const LEAST: f64 = 1e-9;
 const SEEN: std::ops::Range<f64> = LEAST - PI..PI + LEAST;
 
 /// Condition on a face.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 pub enum Face {
     /// Potential 0.
     Conductor,

@@ -13,7 +13,7 @@
 
 use super::buckets::Buckets;
 use super::mirror::Extent;
-use super::screen::{EdgeScreen, Place, Screen};
+use super::screen::{EdgeKey, EdgeScreen, Place, Screen, ScreenKey};
 use super::share::{Share, Shares};
 use crate::levels::far::copies::shifts;
 use crate::values::FieldAt;
@@ -22,6 +22,7 @@ use amberfield_laws::wedge::Around;
 use nalgebra::Vector3;
 use std::collections::HashMap;
 use std::f64::consts::PI;
+use std::hash::Hash;
 
 /// Radius of what comes back of a cloud from the cells, over its own, at most.
 const WIDENED_AT_MOST: f64 = 1.5;
@@ -128,13 +129,18 @@ struct Side {
     above: f32,
 }
 
-/// Screens and edges of ghosts, each once where many have it.
+/// Things that many ghosts have, each once.
+#[derive(Debug)]
+struct Known<K, T> {
+    all: Vec<T>,
+    numbers: HashMap<K, u32>,
+}
+
+/// Screens and edges of ghosts.
 #[derive(Debug, Default)]
 struct Screens {
-    all: Vec<Screen>,
-    known: HashMap<[u64; 6], u32>,
-    edges: Vec<EdgeScreen>,
-    known_edges: HashMap<[u64; 6], u32>,
+    screens: Known<ScreenKey, Screen>,
+    edges: Known<EdgeKey, EdgeScreen>,
 }
 
 /// Potential of a unit ghost but for its share [1/m], and its gradient [1/m²].
@@ -144,31 +150,44 @@ struct Whole {
     slope: Vector3<f64>,
 }
 
+impl<K, T> Default for Known<K, T> {
+    fn default() -> Self {
+        Self { all: Vec::new(), numbers: HashMap::new() }
+    }
+}
+
+impl<K: Eq + Hash, T> Known<K, T> {
+    fn number(&mut self, key: K, thing: T) -> u32 {
+        let next = self.all.len() as u32;
+        let number = *self.numbers.entry(key).or_insert(next);
+        if number == next {
+            self.all.push(thing);
+        }
+        number
+    }
+
+    fn memory_bytes(&self) -> usize {
+        self.all.capacity() * size_of::<T>() + self.numbers.capacity() * (size_of::<K>() + 4)
+    }
+}
+
 impl Screens {
     fn side(&mut self, screen: Screen, above: f64) -> Side {
-        let next = self.all.len() as u32;
-        let number = *self.known.entry(screen.key()).or_insert(next);
-        if number == next {
-            self.all.push(screen);
-        }
-        Side { screen: number, above: above as f32 }
+        Side { screen: self.screens.number(screen.key(), screen), above: above as f32 }
     }
 
     fn by(&mut self, ghost: &Ghost) -> Option<By> {
-        let edge = match ghost.shown {
-            Shown::Behind { screen, above } => return Some(By::Screen(self.side(screen, above))),
-            Shown::Around(edge) => edge,
-        };
-        let next = self.edges.len() as u32;
-        let number = *self.known_edges.entry(edge.key()).or_insert(next);
-        if number == next {
-            self.edges.push(edge);
+        match ghost.shown {
+            Shown::Behind { screen, above } => Some(By::Screen(self.side(screen, above))),
+            Shown::Around(edge) => {
+                let around = edge.around(&Place { at: ghost.at, seen_from: ghost.at })?;
+                Some(By::Edge(self.edges.number(edge.key(), edge), around))
+            }
         }
-        Some(By::Edge(number, edge.around(&Place { at: ghost.at, seen_from: ghost.at })?))
     }
 
     fn height(&self, side: Side, place: &Place) -> f64 {
-        self.all[side.screen as usize].height(&place.seen_from) * f64::from(side.above)
+        self.screens.all[side.screen as usize].height(&place.seen_from) * f64::from(side.above)
     }
 }
 
@@ -326,7 +345,7 @@ impl Ghosts {
                 Some(Whole { value, slope: -value.powi(3) * apart })
             }
             By::Edge(edge, there) => {
-                let screen = &self.screens.edges[*edge as usize];
+                let screen = &self.screens.edges.all[*edge as usize];
                 let Some(here) = sight.around(*edge, screen) else {
                     let value = -distance.recip();
                     return Some(Whole { value, slope: value.powi(2) / distance * apart });
@@ -339,6 +358,47 @@ impl Ghosts {
 
     pub(crate) fn memory_bytes(&self) -> usize {
         self.ghosts.capacity() * (size_of::<Felt>() + size_of::<Spot>() + 4)
-            + self.screens.all.capacity() * size_of::<Screen>()
+            + self.screens.screens.memory_bytes()
+            + self.screens.edges.memory_bytes()
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use amberfield_core::Boundary;
+    use amberfield_laws::wedge::{Face, Wedge};
+    use std::f64::consts::{PI, TAU};
+
+    #[test]
+    fn sheet_and_body_with_one_rim_add_up_in_any_order() {
+        let domain = Domain::new(Vector3::repeat(-5.0), Vector3::repeat(5.0), [[Boundary::Grounded; 2]; 3]);
+        let domain = domain.unwrap();
+        let ghost = |angle, face| Ghost {
+            at: Vector3::new(-0.5, -0.25, 0.0),
+            charge: 1.0,
+            extent: Extent { radius: 4.0, cells: 4.0 },
+            shown: Shown::Around(EdgeScreen {
+                point: Vector3::zeros(),
+                along: Vector3::z(),
+                into: Vector3::x(),
+                up: Vector3::y(),
+                wedge: Wedge::new(angle, [face; 2]),
+            }),
+            confined: [None; 2],
+        };
+        let all =
+            [ghost(TAU, Face::Conductor), ghost(1.5 * PI, Face::Conductor), ghost(TAU, Face::Insulator)];
+        let at = Vector3::new(-0.25, 0.5, 0.25);
+        let potential = |ghosts: &[Ghost]| {
+            let mut sum = Ghosts::new(0.0);
+            sum.replace(ghosts.iter().copied(), &domain);
+            sum.field_at(&Place { at, seen_from: at }).potential
+        };
+        let alone: f64 = all.iter().map(|ghost| potential(&[*ghost])).sum();
+        for order in [[0, 1, 2], [1, 0, 2], [2, 1, 0]] {
+            let together = potential(&order.map(|number| all[number]));
+            assert!((together - alone).abs() < 1e-14, "{together} for {alone}");
+        }
     }
 }

@@ -5,12 +5,17 @@
 //! the potential that its faces add goes smoothly, as between two half planes (`amberfield_laws::wedge`).
 
 use super::curved::Quadric;
-use amberfield_laws::wedge::{Around, Induced, Wedge};
+use amberfield_laws::wedge::{Around, Face, Induced, Wedge};
 use nalgebra::Vector3;
 use std::f64::consts::{FRAC_PI_2, PI, TAU};
 
 /// A right angle [rad].
 pub(super) const RIGHT: f64 = FRAC_PI_2;
+
+/// Numbers by which a screen is known: place and normal, as bits.
+pub(super) type ScreenKey = [u64; 6];
+/// Numbers by which an edge is known: place, directions and angle, as bits, and its faces' conditions.
+pub(super) type EdgeKey = ([u64; 7], [Face; 2]);
 
 /// A wall without an edge nearby, as a charge sees it.
 #[derive(Clone, Copy, Debug)]
@@ -58,7 +63,7 @@ impl Screen {
     }
 
     /// Numbers by which a screen is known that many charges have.
-    pub(crate) fn key(&self) -> [u64; 6] {
+    pub(super) fn key(&self) -> ScreenKey {
         let (place, normal) = match self {
             Self::Plane { normal, offset } => (normal * *offset, *normal),
             Self::Curved(quadric) => (quadric.centre(), quadric.normal()),
@@ -77,10 +82,11 @@ impl Screen {
 }
 
 impl EdgeScreen {
-    /// Numbers by which an edge is known that many charges have.
-    pub(crate) fn key(&self) -> [u64; 6] {
-        let (place, across) = (self.point, self.into + 2.0 * self.up);
-        [place.x, place.y, place.z, across.x, across.y, across.z].map(f64::to_bits)
+    /// Numbers by which an edge is known that many charges have: a sheet and a body can share a rim.
+    pub(super) fn key(&self) -> EdgeKey {
+        let (place, across, angle) = (self.point, self.into + 2.0 * self.up, self.wedge.angle());
+        let numbers = [place.x, place.y, place.z, across.x, across.y, across.z, angle];
+        (numbers.map(f64::to_bits), self.wedge.faces())
     }
 
     /// The edge moved by a period [m].
