@@ -304,6 +304,7 @@ fn a_manufactured_potential_converges_with_the_cells() {
                     neutralising_background: 0,
                     time_s: 0.0,
                     tolerance: 0.0,
+                    wants_e: 1,
                 },
                 positions: &[],
                 charges: &[],

@@ -13,6 +13,7 @@ mod meshes;
 mod parts;
 mod patches;
 mod sharing;
+mod stated_error;
 mod thin_walls;
 
 use amberfield_tests::Answer;

@@ -1,8 +1,12 @@
 //! The potential within a cell: a quadratic through the cell's own value, fitted to those around it.
 //!
 //! φ(x) = φ_c + g·d + ½ d·H·d, d = (x − x_c)/h, h the cube root of the cell's volume, by least squares with
-//! the weights exp(−d²/(2 s²)) over the neighbours, their neighbours, the potentials of boundary faces and
-//! the slopes of others. Exact for quadratic potentials on any mesh.
+//! the weights exp(−d²/(2 s²)) over the neighbours, their neighbours, and the slopes at boundary faces.
+//!
+//! Where a face's potential φ_b is given, the slope is that of finite volumes, (φ_b − φ_c)/δ with the centre
+//! of the face's cell a distance δ before it. Finite volumes conserve the flux, so that this is the slope at
+//! the face to second order; φ_c bears what it misses, ½ δ² ∂²φ/∂n², against φ_b. How φ_b differs from face
+//! to face counts, therefore, but not its difference from the cells: that is an unknown of the fit.
 
 use super::mesh::{BoundaryFace, Condition, FarMesh, Neighbour};
 use super::polygon;
@@ -17,6 +21,10 @@ const WEIGHT_WIDTH: f64 = 0.75;
 const LEAST_RINGS: usize = 2;
 const MOST_RINGS: usize = 4;
 const ENOUGH: usize = 20;
+/// Weight of the slopes that finite volumes take at given potentials, over that of values: they tell the
+/// least of narrow fields. A bed of one sign errs 2.2 times less than with potentials alone, a few grains as
+/// much, and the field behind a plate is 0.8 instead of 0.7 % of that before it.
+const OF_DIFFERENCES: f64 = 0.2;
 /// Distance from a face up to which both its cells have a say, over the cell's size.
 const BLENDED: f64 = 0.25;
 /// Weight that keeps terms of which no neighbour tells anything (a mesh one cell thick) at zero, over the
@@ -24,14 +32,19 @@ const BLENDED: f64 = 0.25;
 const RIDGE: f64 = 1e-9;
 /// Share of a line, or of a face's size, within which a place lies on a face.
 const ON_FACE: f64 = 1e-6;
-/// Numbers of a fit: g and H.
+/// Numbers of a fit: g and H; unknowns of its equations: the cells' difference from given potentials, too.
 const TERMS: usize = 9;
+const UNKNOWNS: usize = TERMS + 1;
 
 /// Source of a row of a fit.
 #[derive(Clone, Copy, Debug, PartialEq)]
 enum Source {
+    /// Potential of a cell.
     Cell(u32),
-    Face(u32),
+    /// Slope at a boundary face.
+    Slope(u32),
+    /// Potential given at a boundary face.
+    Potential(u32),
 }
 
 /// One value's part in a cell's fit.
@@ -97,16 +110,20 @@ impl LocalFits {
     /// Fits potentials at the cells' centres [V]; `boundary` holds φ or ∂φ/∂n by boundary face.
     pub(crate) fn fit(&mut self, mesh: &FarMesh, potential: &[f64], boundary: &[f64]) {
         self.potential.copy_from_slice(potential);
-        let (rows, first_row, size) = (&self.rows, &self.first_row, &self.size);
+        let (rows, first_row) = (&self.rows, &self.first_row);
         self.fits.par_iter_mut().enumerate().for_each(|(cell, fit)| {
             *fit = [0.0; TERMS];
             for row in &rows[first_row[cell]..first_row[cell + 1]] {
                 let value = match row.source {
                     Source::Cell(other) => potential[other as usize] - potential[cell],
-                    Source::Face(face) => match mesh.boundary()[face as usize].condition {
-                        Condition::Potential(_) => boundary[face as usize] - potential[cell],
-                        Condition::Slope(_) => boundary[face as usize] * size[cell],
-                    },
+                    Source::Potential(face) => boundary[face as usize] - potential[cell],
+                    Source::Slope(face) => {
+                        let of = &mesh.boundary()[face as usize];
+                        match of.condition {
+                            Condition::Potential(_) => boundary[face as usize] - potential[of.cell as usize],
+                            Condition::Slope(_) => boundary[face as usize],
+                        }
+                    }
                 };
                 for (term, part) in fit.iter_mut().zip(row.part) {
                     *term += f64::from(part) * value;
@@ -165,28 +182,26 @@ impl LocalFits {
 fn rows_of(mesh: &FarMesh, cell: usize) -> (Vec<Row>, f64) {
     let size = mesh.volumes()[cell].cbrt();
     let around = sources_around(mesh, cell, size);
-    let equations: Vec<(SVector<f64, TERMS>, f64)> =
-        around.iter().map(|(source, offset)| equation(mesh, *source, &(offset / size))).collect();
-    let mut normal = SMatrix::<f64, TERMS, TERMS>::zeros();
-    for (terms, weight) in &equations {
+    let equations: Vec<Equation> =
+        around.iter().map(|(source, offset)| Equation::new(mesh, *source, &(offset / size), size)).collect();
+    let mut normal = SMatrix::<f64, UNKNOWNS, UNKNOWNS>::zeros();
+    for Equation { terms, weight, .. } in &equations {
         normal += *weight * terms * terms.transpose();
     }
-    for of_kind in [0..3, 3..TERMS] {
+    for of_kind in [0..3, 3..TERMS, TERMS..UNKNOWNS] {
         let largest = of_kind.clone().map(|term| normal[(term, term)]).fold(0.0, f64::max);
         for term in of_kind {
-            normal[(term, term)] += RIDGE * largest.max(f64::MIN_POSITIVE);
+            normal[(term, term)] += RIDGE * if largest > 0.0 { largest } else { 1.0 };
         }
     }
     let Some(factor) = normal.cholesky() else { return (Vec::new(), 0.0) };
     let mut widening = 0.0;
-    let rows = around
+    let rows = equations
         .iter()
-        .zip(&equations)
-        .map(|((source, offset), (terms, weight))| {
+        .map(|Equation { source, terms, weight, scale, cubic }| {
             let part = factor.solve(&(*weight * terms));
-            let along: f64 = (0..3).map(|axis| part[axis] * offset[axis] / size).sum();
-            widening += along * offset.norm_squared();
-            Row { source: *source, part: std::array::from_fn(|term| part[term] as f32) }
+            widening += size * size * part.fixed_rows::<3>(0).dot(cubic);
+            Row { source: *source, part: std::array::from_fn(|term| (scale * part[term]) as f32) }
         })
         .collect();
     (rows, finite_volumes_and_place(size) + widening / 15.0)
@@ -216,7 +231,7 @@ fn sources_around(mesh: &FarMesh, cell: usize, size: f64) -> Vec<(Source, Vector
                     }
                     Neighbour::Boundary(index) => {
                         let place = mesh.place_of_condition(&mesh.boundary()[index as usize]);
-                        (Source::Face(index), place + shift, None)
+                        (Source::Slope(index), place + shift, None)
                     }
                 };
                 let offset = place - here;
@@ -234,19 +249,26 @@ fn sources_around(mesh: &FarMesh, cell: usize, size: f64) -> Vec<(Source, Vector
     let faces: Vec<(u32, Vector3<f64>)> = around
         .iter()
         .filter_map(|(source, offset)| match source {
-            Source::Face(face) => {
+            Source::Slope(face) => {
                 let place = mesh.place_of_condition(&mesh.boundary()[*face as usize]);
                 Some((*face, here + offset - place))
             }
-            Source::Cell(_) => None,
+            _ => None,
         })
         .collect();
     around.retain(|(source, offset)| {
         let hides = |(face, shift): &(u32, Vector3<f64>)| {
-            *source != Source::Face(*face) && is_between(mesh, *face, &(here - shift), offset)
+            *source != Source::Slope(*face) && is_between(mesh, *face, &(here - shift), offset)
         };
         !faces.iter().any(hides)
     });
+    let given = around.iter().filter_map(|(source, offset)| match source {
+        Source::Slope(face) if mesh.boundary()[*face as usize].gives_potential() => {
+            Some((Source::Potential(*face), *offset))
+        }
+        _ => None,
+    });
+    around.extend(given.collect::<Vec<_>>());
     around
 }
 
@@ -265,28 +287,46 @@ fn finite_volumes_and_place(size: f64) -> f64 {
     -size * size * (1.0 / 10.0 + 1.0 / 12.0)
 }
 
-/// Terms and weight of a value at `d` (in cell sizes).
-fn equation(mesh: &FarMesh, source: Source, d: &Vector3<f64>) -> (SVector<f64, TERMS>, f64) {
-    let weight = (-0.5 * d.norm_squared() / (WEIGHT_WIDTH * WEIGHT_WIDTH)).exp();
-    let [x, y, z] = [d.x, d.y, d.z];
-    let terms = match source {
-        Source::Face(face) if matches!(mesh.boundary()[face as usize].condition, Condition::Slope(_)) => {
-            let n = mesh.boundary()[face as usize].normal;
-            [
-                n.x,
-                n.y,
-                n.z,
-                n.x * x,
-                n.y * y,
-                n.z * z,
-                n.x * y + n.y * x,
-                n.x * z + n.z * x,
-                n.y * z + n.z * y,
-            ]
+/// Equation of a fit.
+struct Equation {
+    source: Source,
+    terms: SVector<f64, UNKNOWNS>,
+    weight: f64,
+    /// Factor of the source's value [V or V/m].
+    scale: f64,
+    /// Values of the cubic potentials x d², y d², z d².
+    cubic: Vector3<f64>,
+}
+
+impl Equation {
+    /// Equation of a source at `d` from a cell's centre, in sizes of the cell [m].
+    fn new(mesh: &FarMesh, source: Source, d: &Vector3<f64>, size: f64) -> Self {
+        let weight = (-0.5 * d.norm_squared() / (WEIGHT_WIDTH * WEIGHT_WIDTH)).exp();
+        let [x, y, z] = [d.x, d.y, d.z];
+        let value = |unknown: f64| {
+            SVector::from([x, y, z, 0.5 * x * x, 0.5 * y * y, 0.5 * z * z, x * y, x * z, y * z, unknown])
+        };
+        let cubic = d * d.norm_squared();
+        match source {
+            Source::Cell(_) => Self { source, terms: value(0.0), weight, scale: 1.0, cubic },
+            Source::Potential(_) => Self { source, terms: value(1.0), weight, scale: 1.0, cubic },
+            Source::Slope(face) => {
+                let face = &mesh.boundary()[face as usize];
+                let n = face.normal;
+                let (xy, xz, yz) = (n.x * y + n.y * x, n.x * z + n.z * x, n.y * z + n.z * y);
+                let terms = [n.x, n.y, n.z, n.x * x, n.y * y, n.z * z, xy, xz, yz, 0.0];
+                let (weight, scale) = match face.condition {
+                    Condition::Slope(_) => (weight, size),
+                    Condition::Potential(_) => {
+                        let distance = n.dot(&(face.centre - mesh.centres()[face.cell as usize]));
+                        (OF_DIFFERENCES * weight, size / distance)
+                    }
+                };
+                let cubic = n * d.norm_squared() + 2.0 * n.dot(d) * d;
+                Self { source, terms: SVector::from(terms), weight, scale, cubic }
+            }
         }
-        _ => [x, y, z, 0.5 * x * x, 0.5 * y * y, 0.5 * z * z, x * y, x * z, y * z],
-    };
-    (SVector::from(terms), weight)
+    }
 }
 
 #[cfg(test)]
@@ -305,8 +345,12 @@ mod tests {
     #[test]
     fn quadratic_potentials_are_exact_up_to_the_walls() {
         let mesh = mesh();
-        let potential = |p: &Vector3<f64>| 1.0 + 2.0 * p.x - p.y * p.y + 3.0 * p.x * p.z + 0.5 * p.z * p.z;
-        let slope = |p: &Vector3<f64>| Vector3::new(2.0 + 3.0 * p.z, -2.0 * p.y, 3.0 * p.x + p.z);
+        let potential = |p: &Vector3<f64>| {
+            1.0 + 2.0 * p.x + 0.5 * p.x * p.x - p.y * p.y + 3.0 * p.x * p.z + 0.5 * p.z * p.z
+        };
+        let slope = |p: &Vector3<f64>| Vector3::new(2.0 + p.x + 3.0 * p.z, -2.0 * p.y, 3.0 * p.x + p.z);
+        // Finite volumes have every cell lower by ½ δ² ∂²φ/∂n² at the walls, half a cell before them.
+        let lower = 0.5 * 0.05 * 0.05;
         let boundary: Vec<f64> = mesh
             .boundary()
             .iter()
@@ -316,12 +360,12 @@ mod tests {
             })
             .collect();
         let mut fits = LocalFits::new(&mesh);
-        let values: Vec<f64> = mesh.centres().iter().map(potential).collect();
+        let values: Vec<f64> = mesh.centres().iter().map(|centre| potential(centre) - lower).collect();
         fits.fit(&mesh, &values, &boundary);
         for (cell, centre) in mesh.centres().iter().enumerate() {
             let point = centre + Vector3::new(0.05, -0.03, 0.04);
             let FieldAt { e, potential: v } = fits.at(&mesh, cell as u32, &point);
-            assert!((e + slope(&point)).norm() < 1e-5 && (v - potential(&point)).abs() < 1e-6, "{cell} {e}");
+            assert!((e + slope(&point)).norm() < 1e-5 && (v + lower - potential(&point)).abs() < 1e-6);
         }
     }
 

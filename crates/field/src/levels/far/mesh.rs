@@ -88,6 +88,14 @@ pub struct BoundaryFace {
     pub condition: Condition,
 }
 
+impl BoundaryFace {
+    /// Whether its potential is given, and not the slope.
+    #[must_use]
+    pub fn gives_potential(&self) -> bool {
+        matches!(self.condition, Condition::Potential(_))
+    }
+}
+
 /// Parts that a mesh is made of.
 #[derive(Clone, Debug)]
 pub struct FarMeshParts {
@@ -204,7 +212,7 @@ impl FarMesh {
     /// Whether any boundary face prescribes the potential.
     #[must_use]
     pub fn has_conductor(&self) -> bool {
-        self.boundary().iter().any(|face| matches!(face.condition, Condition::Potential(_)))
+        self.boundary().iter().any(BoundaryFace::gives_potential)
     }
 
     /// Largest cell size, the cube root of the volume [m].

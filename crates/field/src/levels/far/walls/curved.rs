@@ -10,7 +10,7 @@ use super::mirror::{Ground, Mirror, Side};
 use super::patch::{Patch, half_diagonal};
 use super::screen::Screen;
 use super::{DEEPEST, Surface};
-use crate::levels::far::mesh::{BoundaryFace, Condition};
+use crate::levels::far::mesh::BoundaryFace;
 use nalgebra::{Matrix2, SMatrix, SVector, Vector2, Vector3};
 
 /// Steps of Newton's method to the nearest point of a surface.
@@ -89,7 +89,7 @@ impl CurvedWall {
             high,
             facets: facets.collect(),
             patch: Patch::new(all, faces, DEEPEST * deepest),
-            conductor: matches!(member(0).condition, Condition::Potential(_)),
+            conductor: member(0).gives_potential(),
             ground,
             rims: Creases::rims_of(surface.mesh, surface.edges, faces, surface.reach),
         }

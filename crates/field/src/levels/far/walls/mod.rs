@@ -241,7 +241,7 @@ impl Walls {
 /// edge, and those across one of theirs that are as near.
 fn neighbours(mesh: &FarMesh, edges: &[Edge]) -> Vec<Vec<u32>> {
     let boundary = mesh.boundary();
-    let kind = |face: u32| matches!(boundary[face as usize].condition, Condition::Potential(_));
+    let kind = |face: u32| boundary[face as usize].gives_potential();
     let mut across = vec![Vec::new(); boundary.len()];
     for edge in edges.iter().filter(|edge| edge.bend().abs() < creases::LEAST_BEND) {
         let [first, second] = edge.faces;
