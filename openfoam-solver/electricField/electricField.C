@@ -5,7 +5,6 @@
 
 #include "electricField.H"
 #include "fixedGradientFvPatchFields.H"
-#include "fvcGrad.H"
 #include "fvmLaplacian.H"
 #include "fvMatrices.H"
 #include "surfaceFields.H"
@@ -135,7 +134,10 @@ void Foam::electricField::answer()
 
     const std::chrono::duration<scalar> taken = std::chrono::steady_clock::now() - begun;
 
-    E_ = -fvc::grad(V_);
+    if (demProcess_.request().far.wants_e)
+    {
+        E_ = -fvc::grad(V_);
+    }
 
     demProcess_.reply
     (

@@ -170,6 +170,8 @@ typedef struct AmberfieldFarQuestion {
   double time_s;
   // Relative tolerance of the linear solver; 0: the solver's own.
   double tolerance;
+  // 1: E at the cells' centres is wanted; 0: the potential alone.
+  uint64_t wants_e;
 } AmberfieldFarQuestion;
 
 // Scalars of the question for the flow of a gas at the end of an interval.

@@ -114,6 +114,7 @@ const NO_FAR_QUESTION: FarQuestion = FarQuestion {
     neutralising_background: 0,
     time_s: 0.0,
     tolerance: 0.0,
+    wants_e: 0,
 };
 
 const NO_FLOW_QUESTION: FlowQuestion = FlowQuestion {

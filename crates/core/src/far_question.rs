@@ -44,4 +44,6 @@ pub struct FarQuestion {
     pub time_s: f64,
     /// Relative tolerance of the linear solver; 0: the solver's own.
     pub tolerance: f64,
+    /// 1: E at the cells' centres is wanted; 0: the potential alone.
+    pub wants_e: u64,
 }

@@ -37,6 +37,7 @@ const QUESTION: FarQuestion = FarQuestion {
     neutralising_background: 0,
     time_s: 0.0,
     tolerance: 0.0,
+    wants_e: 1,
 };
 const CHARGES: usize = 500_000;
 const EXCHANGES: usize = 5;

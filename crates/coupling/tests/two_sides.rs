@@ -62,6 +62,7 @@ fn request<'a>(
             neutralising_background: 0,
             time_s: 0.25,
             tolerance: 0.0,
+            wants_e: 1,
         },
         positions,
         charges,

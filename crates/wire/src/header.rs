@@ -5,7 +5,7 @@ use iceoryx2::prelude::ZeroCopySend;
 use std::mem::{align_of, offset_of, size_of};
 
 /// Raised with every change of a message.
-pub const PROTOCOL_VERSION: u32 = 6;
+pub const PROTOCOL_VERSION: u32 = 7;
 /// Largest number of sections of a message.
 pub(crate) const MOST_SECTIONS: usize = 20;
 

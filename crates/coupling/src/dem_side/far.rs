@@ -2,7 +2,7 @@
 
 use super::flow::RemoteFlow;
 use super::remote::Remote;
-use super::shared::{Pending, Shared, locked, read_vectors, write_vectors};
+use super::shared::{AskedFar, Pending, Shared, locked, read_vectors, write_vectors};
 use crate::CouplingError;
 use amberfield_core::Vector3;
 use amberfield_field::FieldError;
@@ -101,7 +101,7 @@ impl Shared {
             }
             Ok(())
         })?;
-        self.far.asked = Some(request.positions.len());
+        self.far.asked = Some(AskedFar { charges: request.positions.len(), wants_e: question.wants_e != 0 });
         Ok(())
     }
 
@@ -111,10 +111,11 @@ impl Shared {
             *values = answer;
             return Ok(());
         }
-        let charges = self.far.asked.take().unwrap_or(0);
+        let asked = self.far.asked.take();
+        let AskedFar { charges, wants_e } = asked.unwrap_or(AskedFar { charges: 0, wants_e: true });
         let count = self.remote.cell_count();
         values.potential.resize(count, 0.0);
-        values.e.resize(count, Vector3::zeros());
+        values.e.resize(if wants_e { count } else { 0 }, Vector3::zeros());
         values.cells.clear();
         values.cells.resize(charges, u32::MAX);
         (values.outside, values.iterations, values.residual, values.seconds) = (0, 0, 0.0, 0.0);
@@ -128,15 +129,16 @@ impl Shared {
 fn read(of_rank: Range<usize>, sections: &Sections<'_>, values: &mut FarValues) -> Result<(), WireError> {
     let (first, count) = (of_rank.start, of_rank.len());
     let potential = sections.exactly::<f64>(Section::Potential, count)?;
-    let field = sections.exactly::<[f64; 3]>(Section::Field, count)?;
+    let e_of_rank = if values.e.is_empty() { 0..0 } else { of_rank.clone() };
+    let field = sections.exactly::<[f64; 3]>(Section::Field, e_of_rank.len())?;
     // A solver that was not asked for the density has not looked for the charges' cells.
     let cells = match sections.get::<u64>(Section::Cells)? {
         [] => &[],
         _ => sections.exactly::<u64>(Section::Cells, values.cells.len())?,
     };
     let answer = sections.one::<FarAnswer>(Section::FarAnswer)?;
-    values.potential[of_rank.clone()].copy_from_slice(potential);
-    read_vectors(&mut values.e[of_rank], field);
+    values.potential[of_rank].copy_from_slice(potential);
+    read_vectors(&mut values.e[e_of_rank], field);
     for (place, (known, &cell)) in values.cells.iter_mut().zip(cells).enumerate() {
         if cell == u64::MAX {
             continue;
@@ -155,15 +157,14 @@ fn read(of_rank: Range<usize>, sections: &Sections<'_>, values: &mut FarValues) 
 
 /// Refuses an answer that is no number somewhere.
 fn sound(values: &FarValues) -> Result<(), CouplingError> {
-    let sound = |(potential, e): (&f64, &Vector3<f64>)| (potential + e.sum()).is_finite();
-    match values.potential.iter().zip(&values.e).position(|answer| !sound(answer)) {
-        None => Ok(()),
-        Some(cell) => Err(CouplingError::Mesh(FieldError::Solver(format!(
-            "the field solver's answer in cell {cell} is {} V, {:?} V/m; look at its log",
-            values.potential[cell],
-            values.e[cell].as_slice()
-        )))),
-    }
+    let is_bad = |e: &Vector3<f64>| !e.sum().is_finite();
+    let of_potential = values.potential.iter().position(|potential| !potential.is_finite());
+    let Some(cell) = of_potential.or_else(|| values.e.iter().position(is_bad)) else { return Ok(()) };
+    let e = values.e.get(cell).map_or_else(String::new, |e| format!(", {:?} V/m", e.as_slice()));
+    Err(CouplingError::Mesh(FieldError::Solver(format!(
+        "the field solver's answer in cell {cell} is {} V{e}; look at its log",
+        values.potential[cell]
+    ))))
 }
 
 /// Refuses an answer whose linear solver gave up.

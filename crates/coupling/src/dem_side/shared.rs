@@ -22,12 +22,21 @@ impl<Known, Answer> Pending<Known, Answer> {
     pub(super) const NOTHING: Self = Self { asked: None, answer: None };
 }
 
+/// Facts of an open question for the far field.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct AskedFar {
+    /// Number of charges.
+    pub(super) charges: usize,
+    /// Whether E is wanted at the cells' centres.
+    pub(super) wants_e: bool,
+}
+
 /// Process that solves for the far field, for the flow of a gas, or for both.
 #[derive(Debug)]
 pub(super) struct Shared {
     pub(super) remote: Remote,
-    /// Far field, with the number of charges that it was asked for.
-    pub(super) far: Pending<usize, FarValues>,
+    /// Far field, with what it was asked for.
+    pub(super) far: Pending<AskedFar, FarValues>,
     /// Flow, with its question.
     pub(super) flow: Pending<FlowQuestion, FlowValues>,
 }

@@ -7,7 +7,7 @@ use crate::meeting::{Link, Message, SideOf};
 use crate::mesh::{MeshPart, OwnCells, mesh_header};
 use amberfield_core::Vector3;
 use amberfield_field::far::SmoothDensity;
-use amberfield_wire::payloads::{FarAnswer, SourceCloud};
+use amberfield_wire::payloads::{FarAnswer, FarQuestion, SourceCloud};
 use amberfield_wire::{Block64, Header, Layout, MessageKind, Section, Sections, WireError};
 use std::mem::MaybeUninit;
 use std::ops::Range;
@@ -149,9 +149,11 @@ impl FieldSide {
     /// # Errors
     /// A DEM process that is gone.
     pub fn reply(&mut self, reply: &Reply<'_>) -> Result<(), CouplingError> {
+        let question = self.sections()?.one::<FarQuestion>(Section::FarQuestion).map_err(of_dem)?;
+        let e = if question.wants_e == 0 { &[] } else { reply.e };
         let layout = Layout::new(self.header_of_answer(MessageKind::Fields)?)
             .with::<f64>(Section::Potential, reply.potential.len())
-            .with::<[f64; 3]>(Section::Field, reply.e.len())
+            .with::<[f64; 3]>(Section::Field, e.len())
             .with::<u64>(Section::Cells, self.cells.len())
             .with::<FarAnswer>(Section::FarAnswer, 1);
         let answer = FarAnswer {
@@ -164,7 +166,7 @@ impl FieldSide {
         let cells = std::mem::take(&mut self.cells);
         let sent = self.answer(&layout, |payload| {
             layout.section_mut::<f64>(payload, Section::Potential)?.copy_from_slice(reply.potential);
-            layout.section_mut::<[f64; 3]>(payload, Section::Field)?.copy_from_slice(reply.e);
+            layout.section_mut::<[f64; 3]>(payload, Section::Field)?.copy_from_slice(e);
             layout.section_mut::<u64>(payload, Section::Cells)?.copy_from_slice(&cells);
             layout.section_mut::<FarAnswer>(payload, Section::FarAnswer)?.fill(answer);
             Ok(())

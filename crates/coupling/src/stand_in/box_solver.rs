@@ -172,7 +172,9 @@ impl FarField for BoxSolver {
         }
         values.residual = if aim > 0.0 { RESIDUAL * (square / aim).sqrt() } else { 0.0 };
         values.e.clear();
-        values.e.extend((0..count).map(|cell| self.field(cell, &values.potential, request.boundary)));
+        if request.question.wants_e != 0 {
+            values.e.extend((0..count).map(|cell| self.field(cell, &values.potential, request.boundary)));
+        }
         Ok(())
     }
 }

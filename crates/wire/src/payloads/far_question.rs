@@ -5,19 +5,20 @@ use super::{FarQuestion, SourceCloud, require};
 use crate::{Element, Section, WireError};
 use std::mem::{offset_of, size_of};
 
-// SAFETY: six numbers without padding, see below.
+// SAFETY: seven numbers without padding, see below.
 unsafe impl Element for FarQuestion {}
 
 const _: () = {
     assert!(size_of::<SourceCloud>() == 16);
     assert!(offset_of!(SourceCloud, radius_m) == 0);
     assert!(offset_of!(SourceCloud, shape) == 8);
-    assert!(size_of::<FarQuestion>() == 48);
+    assert!(size_of::<FarQuestion>() == 56);
     assert!(offset_of!(FarQuestion, cloud) == 0);
     assert!(offset_of!(FarQuestion, permittivity_f_m) == 16);
     assert!(offset_of!(FarQuestion, neutralising_background) == 24);
     assert!(offset_of!(FarQuestion, time_s) == 32);
     assert!(offset_of!(FarQuestion, tolerance) == 40);
+    assert!(offset_of!(FarQuestion, wants_e) == 48);
 };
 
 /// Refuses a question with numbers that cannot be used.
@@ -26,7 +27,7 @@ const _: () = {
 /// Numbers that are not finite, a permittivity that is not positive.
 pub fn check_far_question(question: &FarQuestion) -> Result<(), WireError> {
     let require = |sound, name, value| require(sound, Section::FarQuestion, name, value);
-    let FarQuestion { cloud, permittivity_f_m, neutralising_background: _, time_s, tolerance } = *question;
+    let FarQuestion { cloud, permittivity_f_m, time_s, tolerance, .. } = *question;
 
     require(cloud.radius_m.is_finite(), "cloud.radius_m", cloud.radius_m)?;
     require(cloud.shape.is_finite(), "cloud.shape", cloud.shape)?;
@@ -46,6 +47,7 @@ mod tests {
         neutralising_background: 0,
         time_s: 0.5,
         tolerance: 1e-6,
+        wants_e: 1,
     };
 
     #[test]

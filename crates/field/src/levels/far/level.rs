@@ -241,6 +241,7 @@ impl FarLevel {
             neutralising_background: u64::from(self.medium.neutralising_background),
             time_s,
             tolerance: 0.0,
+            wants_e: 0,
         };
         let request = FarRequest {
             question,

@@ -61,7 +61,7 @@ pub struct FarRequest<'a> {
 pub struct FarValues {
     /// φ at the cells' centres [V].
     pub potential: Vec<f64>,
-    /// E = −∇φ at the cells' centres [V/m], by the solver's own gradient.
+    /// E = −∇φ at the cells' centres [V/m], by the solver's own gradient; empty where it was not wanted.
     pub e: Vec<Vector3<f64>>,
     /// Cell of every charge inside the mesh.
     pub cells: Vec<u32>,

@@ -114,6 +114,7 @@ impl OpenQuestion {
                 neutralising_background: u64::from(self.neutralising_background),
                 time_s: self.time_s,
                 tolerance: 0.0,
+                wants_e: 1,
             },
             positions: &self.positions,
             charges: &self.charges,
@@ -139,7 +140,10 @@ impl FarSolver {
     /// Solves, from where it is to start; the request's own guess does not count.
     pub(crate) fn solve(&mut self, request: &FarRequest<'_>) -> Result<(), FieldError> {
         let time_s = request.question.time_s;
-        let request = FarRequest { guess: &self.guess, ..*request };
+        // What a forecast misses is measured by E.
+        let wants_e = request.question.wants_e | u64::from(self.overlap.is_some());
+        let question = FarQuestion { wants_e, ..request.question };
+        let request = FarRequest { question, guess: &self.guess, ..*request };
         match &mut self.overlap {
             Some(overlap) if overlap.begun => {
                 if let Some(asked) = overlap.pending.take() {

@@ -119,6 +119,7 @@ impl ChargeCells for SolverCells {
             neutralising_background: u64::from(self.neutralising_background),
             time_s,
             tolerance: 0.0,
+            wants_e: 1,
         };
         let request = FarRequest {
             question,
