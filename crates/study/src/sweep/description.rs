@@ -70,6 +70,21 @@ pub enum Truth {
         /// Radius [m].
         radius_m: f64,
     },
+    /// Grains in grounded boxes that do not see each other, such as both sides of a plate: as for `box`, in
+    /// the box that each grain is in.
+    GroundedBoxes(Vec<GroundedBox>),
+    /// Field of the scene with more overrides, `KEY=VALUE`: a finer mesh and a smaller tolerance.
+    Finer(Vec<String>),
+}
+
+/// Grounded box.
+#[derive(Clone, Copy, Debug, Deserialize, PartialEq)]
+#[serde(deny_unknown_fields)]
+pub struct GroundedBox {
+    /// Lower corner [m].
+    pub min_m: [f64; 3],
+    /// Upper corner [m].
+    pub max_m: [f64; 3],
 }
 
 /// A method with its parameters.

@@ -1,6 +1,6 @@
 //! Interface to the program that computes fields for a study.
 
-use super::description::Extreme;
+use super::description::{Extreme, GroundedBox};
 use amberfield_core::Vector3;
 use std::path::Path;
 
@@ -154,6 +154,17 @@ pub trait Laboratory {
     /// # Errors
     /// Why there is none.
     fn exact(&mut self, problem: &Self::Problem, direct_up_to: usize) -> Result<Exact, String>;
+
+    /// Exact field in grounded boxes, each with the grains that are in it, as [`Self::exact`] finds it.
+    ///
+    /// # Errors
+    /// A grain that is in none of them; why there is no field.
+    fn exact_in_boxes(
+        &mut self,
+        problem: &Self::Problem,
+        boxes: &[GroundedBox],
+        direct_up_to: usize,
+    ) -> Result<Exact, String>;
 
     /// Positions [m], charges [C] and Coulomb's constant of the medium [V·m/C], for truths that the study
     /// knows itself.

@@ -16,7 +16,7 @@ mod page;
 mod points;
 mod row;
 
-pub use description::{Ends, Extreme, Goal, Method, Motion, Problem, Study, Sweep, Truth};
+pub use description::{Ends, Extreme, Goal, GroundedBox, Method, Motion, Problem, Study, Sweep, Truth};
 pub use extremes::{EnergyRow, ExtremeRow, run_extremes};
 pub use laboratory::{Endured, Evaluation, Exact, Laboratory, Look, Moved, Peer, Provenance};
 pub use motion::{MotionRow, run_motions};

@@ -105,9 +105,17 @@ impl Setting<'_> {
     }
 
     fn exact<L: Laboratory>(&self, laboratory: &mut L, problem: &L::Problem) -> Result<Exact, String> {
-        match *self.truth {
+        match self.truth {
             Truth::Box => laboratory.exact(problem, self.study.direct_up_to),
-            Truth::GroundedSphere { centre_m, radius_m } => {
+            Truth::GroundedBoxes(boxes) => laboratory.exact_in_boxes(problem, boxes, self.study.direct_up_to),
+            Truth::Finer(finer) => {
+                let mut problem = laboratory.problem(self.scene, &[self.set, finer].concat())?;
+                let mut method = laboratory.method(&mut problem)?;
+                laboratory.evaluate(&problem, &mut method)?;
+                let e = laboratory.e(&method).to_vec();
+                Ok(Exact { scale: rms(&e), e, by: format!("p3m with {}", finer.join(", ")) })
+            }
+            &Truth::GroundedSphere { centre_m, radius_m } => {
                 let (positions, charges, coulomb) = laboratory.charges(problem);
                 let from_centre: Vec<_> =
                     positions.iter().map(|position| position - Vector3::from(centre_m)).collect();

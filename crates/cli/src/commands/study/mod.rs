@@ -8,13 +8,14 @@ use crate::failure::Failure;
 use crate::machine;
 use crate::print::line;
 use crate::run::{Charges, charges_of, connect_solver, domain_of, field_of, parameters, read_scene};
-use amberfield_core::{FieldSettings, Method, Tuning, Vector3};
+use amberfield_core::{Boundary, Domain, FieldSettings, Method, Tuning, Vector3};
 use amberfield_field::{ElectricField, FieldValues, Wanted};
 use amberfield_oracle::field_scale;
 use amberfield_scene::{Purpose, Scene};
 use amberfield_study::peers::{PeerProblem, measure_field};
 use amberfield_study::sweep::{
-    self, Endured, Evaluation, Exact, Extreme, Laboratory, Moved, Peer, Provenance, Results, Row, Study,
+    self, Endured, Evaluation, Exact, Extreme, GroundedBox, Laboratory, Moved, Peer, Provenance, Results,
+    Row, Study,
 };
 use amberfield_study::{Store, StudyError, today};
 use serde::de::DeserializeOwned;
@@ -171,35 +172,46 @@ impl Laboratory for OurMethods {
     }
 
     fn exact(&mut self, problem: &Charged, direct_up_to: usize) -> Result<Exact, String> {
-        let Charged { positions, charges, .. } = problem;
-        let domain = problem
-            .scene
-            .domain
-            .as_ref()
-            .ok_or("the scene has no [domain], whose box would be the truth; add it")?;
-        let few = charges.len() <= direct_up_to;
-        let (method, by) = if few {
-            (Method::Direct, "the direct sum".to_owned())
-        } else {
-            (Method::P3m, format!("p3m with a tolerance of {TRUTH:e}"))
+        let Charged { positions, charges, settings, scene } = problem;
+        let domain =
+            scene.domain.as_ref().ok_or("the scene has no [domain], whose box would be the truth; add it")?;
+        let (e, by) = exact_in(domain, settings, positions, charges, direct_up_to)?;
+        let scale = field_scale(&e, charges, domain.volume(), settings.permittivity.coulomb());
+        Ok(Exact { e, scale, by })
+    }
+
+    fn exact_in_boxes(
+        &mut self,
+        problem: &Charged,
+        boxes: &[GroundedBox],
+        direct_up_to: usize,
+    ) -> Result<Exact, String> {
+        let Charged { positions, charges, settings, .. } = problem;
+        let grounded = |GroundedBox { min_m, max_m }: &GroundedBox| {
+            let faces = [[Boundary::Grounded; 2]; 3];
+            Domain::new(Vector3::from(*min_m), Vector3::from(*max_m), faces)
+                .map_err(|error| error.to_string())
         };
-        let settings = FieldSettings {
-            method,
-            tolerance: TRUTH,
-            tuning: Tuning::Model,
-            cutoff_radius_m: None,
-            grid_cells: None,
-            ..problem.settings.clone()
-        };
-        let mut values = FieldValues::default();
-        let mut field =
-            ElectricField::new(domain, &settings, positions, charges).map_err(|error| error.to_string())?;
-        field
-            .evaluate(positions, charges, Wanted::default(), &mut values)
-            .map_err(|error| error.to_string())?;
-        let coulomb = settings.permittivity.coulomb();
-        let scale = field_scale(&values.e, charges, domain.volume(), coulomb);
-        Ok(Exact { e: values.e, scale, by })
+        let boxes = boxes.iter().map(grounded).collect::<Result<Vec<_>, _>>()?;
+        let mut e = vec![Vector3::zeros(); positions.len()];
+        let mut by = String::new();
+        let mut known = 0;
+        for domain in &boxes {
+            let here: Vec<usize> =
+                (0..positions.len()).filter(|&grain| domain.contains(&positions[grain])).collect();
+            let its_positions: Vec<_> = here.iter().map(|&grain| positions[grain]).collect();
+            let its_charges: Vec<_> = here.iter().map(|&grain| charges[grain]).collect();
+            let found = exact_in(domain, settings, &its_positions, &its_charges, direct_up_to)?;
+            here.iter().zip(found.0).for_each(|(&grain, found)| e[grain] = found);
+            by = format!("{} in {} boxes", found.1, boxes.len());
+            known += here.len();
+        }
+        if known != positions.len() {
+            return Err(format!("{known} of {} grains are in one of the truth's boxes", positions.len()));
+        }
+        let volume = boxes.iter().map(Domain::volume).sum();
+        let scale = field_scale(&e, charges, volume, settings.permittivity.coulomb());
+        Ok(Exact { e, scale, by })
     }
 
     fn charges(&self, problem: &Charged) -> (Vec<Vector3<f64>>, Vec<f64>, f64) {
@@ -266,6 +278,34 @@ impl Laboratory for OurMethods {
             pairs_per_grain: statistics.pairs_per_particle,
         })
     }
+}
+
+/// E at grains in a box [V/m], by the direct sum for at most so many of them, and how it was found.
+fn exact_in(
+    domain: &Domain,
+    settings: &FieldSettings,
+    positions: &[Vector3<f64>],
+    charges: &[f64],
+    direct_up_to: usize,
+) -> Result<(Vec<Vector3<f64>>, String), String> {
+    let (method, by) = if charges.len() <= direct_up_to {
+        (Method::Direct, "the direct sum".to_owned())
+    } else {
+        (Method::P3m, format!("p3m with a tolerance of {TRUTH:e}"))
+    };
+    let settings = FieldSettings {
+        method,
+        tolerance: TRUTH,
+        tuning: Tuning::Model,
+        cutoff_radius_m: None,
+        grid_cells: None,
+        ..settings.clone()
+    };
+    let mut values = FieldValues::default();
+    ElectricField::new(domain, &settings, positions, charges)
+        .and_then(|mut field| field.evaluate(positions, charges, Wanted::default(), &mut values))
+        .map_err(|error| error.to_string())?;
+    Ok((values.e, by))
 }
 
 /// Commit from which the program was made, where the study is run in its repository.
