@@ -25,6 +25,8 @@ const ENOUGH: usize = 20;
 /// least of narrow fields. A bed of one sign errs 2.2 times less than with potentials alone, a few grains as
 /// much, and the field behind a plate is 0.8 instead of 0.7 % of that before it.
 const OF_DIFFERENCES: f64 = 0.2;
+/// Distance of a centre from a face at least, over that from the face's centre, as OpenFOAM has it.
+const LEAST_DISTANCE: f64 = 0.05;
 /// Distance from a face up to which both its cells have a say, over the cell's size.
 const BLENDED: f64 = 0.25;
 /// Weight that keeps terms of which no neighbour tells anything (a mesh one cell thick) at zero, over the
@@ -318,7 +320,8 @@ impl Equation {
                 let (weight, scale) = match face.condition {
                     Condition::Slope(_) => (weight, size),
                     Condition::Potential(_) => {
-                        let distance = n.dot(&(face.centre - mesh.centres()[face.cell as usize]));
+                        let apart = face.centre - mesh.centres()[face.cell as usize];
+                        let distance = n.dot(&apart).max(LEAST_DISTANCE * apart.norm());
                         (OF_DIFFERENCES * weight, size / distance)
                     }
                 };

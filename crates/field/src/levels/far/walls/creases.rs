@@ -221,33 +221,51 @@ impl NearCrease {
         Some(flat.try_normalize(LEAST_ALONG)?.dot(&(foot - self.line)))
     }
 
+    /// Whether the line of this piece is about as far from a point as the crease is.
+    fn goes_on_past(&self, point: &Vector3<f64>) -> bool {
+        /// Distance from the line over that from the crease.
+        const AS_FAR: f64 = 0.9;
+        (point - self.line).cross(&self.along).norm() > AS_FAR * self.distance
+    }
+
     /// The blunt tip of a plate that ends in this crease and in another; `None` where the two do not bound a
     /// tip.
     pub(super) fn tip(&self, other: &Self, point: &Vector3<f64>) -> Option<Tip> {
-        /// Cosine of the angle of two directions that are one, and of two that stand across each other.
+        /// Cosine of the angle of two edges that are parallel, of two directions that are one, and of two that
+        /// stand across each other.
+        const PARALLEL: f64 = 0.99;
         const SAME: f64 = 0.9;
         const ASIDE: f64 = 0.1;
-        if self.along.dot(&other.along).abs() < SAME {
+        /// Share of a plate's thickness from which on a place is within it.
+        const WITHIN: f64 = 1e-6;
+        if self.along.dot(&other.along).abs() < PARALLEL || !other.goes_on_past(point) {
             return None;
         }
-        let [alike, last] = [0, 1].map(|own| {
-            let cosines = other.piece.normals.map(|normal| normal.dot(&self.piece.normals[own]));
-            cosines[0].max(cosines[1])
-        });
-        let face = usize::from(last > alike);
-        if alike.max(last) < SAME {
+        let likeness = |[own, its]: [usize; 2]| other.piece.normals[its].dot(&self.piece.normals[own]);
+        let pairs = [[0, 0], [0, 1], [1, 0], [1, 1]];
+        let [face, its] = pairs.into_iter().max_by(|a, b| likeness(*a).total_cmp(&likeness(*b)))?;
+        if likeness([face, its]) < SAME {
             return None;
         }
         let flat = |v: Vector3<f64>| v - self.along * self.along.dot(&v);
         let across = flat(other.line - self.line);
         let through = across.try_normalize(0.0)?;
-        if through.dot(&self.piece.normals[face]).abs() > ASIDE {
+        // The tip's face lies between the two.
+        let is_tip = through.dot(&self.piece.into[face]).min(-through.dot(&other.piece.into[its])) > SAME;
+        if !is_tip || through.dot(&self.piece.normals[face]).abs() > ASIDE {
             return None;
         }
         // Out of the mesh: into the plate.
         let into = flat(self.piece.normals[face]);
         let into = (into - through * through.dot(&into)).try_normalize(0.0)?;
-        let place = through.dot(&(point - self.line)).clamp(0.0, across.norm());
+        let apart = flat(point - self.line);
+        let through_it = through.dot(&apart);
+        let is_between = through_it > WITHIN * across.norm() && through_it < (1.0 - WITHIN) * across.norm();
+        if is_between && into.dot(&apart) > 0.0 {
+            // A plate that goes on would hold the charge.
+            return None;
+        }
+        let place = through_it.clamp(0.0, across.norm());
         let kinds = self.piece.wedge.faces();
         let screen = |point: Vector3<f64>, into: Vector3<f64>, up: Vector3<f64>, angle: f64, kind: Face| {
             EdgeScreen { point, along: into.cross(&up), into, up, wedge: Wedge::new(angle, [kind; 2]) }

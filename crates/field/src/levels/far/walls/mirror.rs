@@ -29,6 +29,9 @@ const BENT: [f64; 2] = [1.0, 2.0];
 const BENT_OF_CELL: [f64; 2] = [2.0, 4.0];
 /// Thickness of a plate over a charge's distance from its edge, between which its other edge is forgotten.
 const FAR_EDGE: [f64; 2] = [2.5, 4.0];
+/// Height of a charge above a sheet in a body's place over its distance into it, between which the sheet
+/// comes into being: where the body's face bends away, a charge can be in the sheet.
+const BEFORE_SHEET: [f64; 2] = [0.02, 0.1];
 /// Radius of ghosts over the usual one, between which they come into being: cells cannot carry small ones.
 const LEAST_RADIUS: [f64; 2] = [0.3, 0.6];
 /// Height before a tip's plane below which a charge is beside the tip, over its distance from the edge.
@@ -143,7 +146,10 @@ impl AtEdge {
         let other = creases.other_rim(point, crease);
         let (straight, bent) = (near * straight, near * (1.0 - straight));
         let over = other.map_or(f64::INFINITY, |other| other.distance / least);
-        let sheet = crease.sheet(point).map(|screen| (screen, bent * step(over, FADE)));
+        let sheet = crease.sheet(point).map(|screen| {
+            let bent = bent * step(screen.steepness(point), BEFORE_SHEET);
+            (screen, bent * step(over, FADE))
+        });
         let own = crease.screen();
         let tip = other.and_then(|other| crease.tip(&other, point));
         let screens = match tip {

@@ -89,6 +89,13 @@ impl EdgeScreen {
         (numbers.map(f64::to_bits), self.wedge.faces())
     }
 
+    /// Height of a point above the first face over its distance into it; infinite beside the face.
+    pub(super) fn steepness(&self, point: &Vector3<f64>) -> f64 {
+        let apart = point - self.point;
+        let into = self.into.dot(&apart);
+        if into > 0.0 { self.up.dot(&apart).abs() / into } else { f64::INFINITY }
+    }
+
     /// The edge moved by a period [m].
     pub(crate) fn moved(&self, by: &Vector3<f64>) -> Self {
         Self { point: self.point + by, ..*self }
