@@ -15,7 +15,7 @@ pub(crate) const AUTO_FRACTION: f64 = 0.2;
 const CONTACT_TIME_FRACTION: f64 = 0.25;
 
 /// Largest way of a grain in a step over its radius: a longer one could lead through a wall unseen.
-const WAY_IN_A_STEP: f64 = 0.2;
+const WAY_IN_A_STEP: f64 = 0.5;
 
 /// Name of the guard on the interval between exchanges with a gas: grains must not be held to one slip for
 /// longer than it lasts.

@@ -6,8 +6,8 @@ use crate::contacts::walls::{ContactWalls, TouchingWall};
 use crate::contacts::{Contacts, Depths};
 use crate::error::DemError;
 
-/// Largest overlap over the smaller radius that a run may have: soft impacts reach 0.6, and a grain comes no
-/// farther in a step than from here to where its centre is in a wall.
+/// Largest overlap over the smaller radius that a run may have: soft impacts reach 0.6. In walls it is less
+/// where grains are fast: with the way of the next step it must not bring a centre into a wall.
 const DEEPEST: f64 = 0.8;
 /// Largest overlap over the smaller radius at the start, unless more is allowed: a hundredth, and what
 /// decimals of a file leave.
@@ -102,7 +102,8 @@ impl Simulation {
     /// Ends the run where a contact is too deep: its grain may pass through.
     pub(super) fn watch_overlaps(&mut self) -> Result<(), DemError> {
         let Depths { grains, walls } = self.contacts.depths();
-        let allowed = self.allowed;
+        let deepest_now = 1.0 - self.progress.step_s * self.progress.pace;
+        let allowed = Depths { walls: self.allowed.walls.min(deepest_now), ..self.allowed };
         if walls <= DEEPEST {
             // Contacts that began deeper have come out of it.
             self.allowed.walls = DEEPEST;
