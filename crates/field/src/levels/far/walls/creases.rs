@@ -231,8 +231,8 @@ impl NearCrease {
     /// The blunt tip of a plate that ends in this crease and in another; `None` where the two do not bound a
     /// tip.
     pub(super) fn tip(&self, other: &Self, point: &Vector3<f64>) -> Option<Tip> {
-        /// Cosine of the angle of two edges that are parallel, of two directions that are one, and of two that
-        /// stand across each other.
+        /// Cosine of the angle of two edges that are parallel, of two directions that are one, and of two
+        /// that stand across each other.
         const PARALLEL: f64 = 0.99;
         const SAME: f64 = 0.9;
         const ASIDE: f64 = 0.1;
