@@ -18,8 +18,6 @@ const SPHERE_INERTIA: f64 = 0.4;
 pub(crate) struct ChunkMotion {
     /// Largest squared speed of the drift [m²/s²].
     speed2: f64,
-    /// Largest squared speed over radius [1/s²].
-    pace2: f64,
     /// Whether a grain left the box.
     outside: bool,
 }
@@ -29,8 +27,6 @@ pub(crate) struct ChunkMotion {
 pub(crate) struct Motion {
     /// Largest speed of the drift [m/s].
     pub(crate) speed: f64,
-    /// Largest speed over radius of the drift [1/s].
-    pub(crate) pace: f64,
     /// Whether a grain left the box.
     pub(crate) outside: bool,
 }
@@ -100,7 +96,7 @@ pub(crate) fn drift(
             &mut [ChunkMotion]
         )| {
             let first = k * CHUNK;
-            let (mut speed2, mut pace2, mut inside) = (0.0_f64, 0.0_f64, true);
+            let (mut speed2, mut inside) = (0.0_f64, true);
             let length = centre.len();
             let (force, inverse_mass) = (&force[first..first + length], &inverse_mass[first..first + length]);
             let moving = centre.iter_mut().zip(velocity).zip(forecast);
@@ -112,12 +108,10 @@ pub(crate) fn drift(
                 c[2] += middle.z * step;
                 *v = middle;
                 *later = middle + kick;
-                let square = middle.norm_squared();
-                speed2 = speed2.max(square);
-                pace2 = pace2.max(square / (c[3] * c[3]));
+                speed2 = speed2.max(middle.norm_squared());
                 inside &= bounds.holds(0, c[0]) & bounds.holds(1, c[1]) & bounds.holds(2, c[2]);
             }
-            found[0] = ChunkMotion { speed2, pace2, outside: !inside };
+            found[0] = ChunkMotion { speed2, outside: !inside };
         }
     );
     if !torque.is_empty() {
@@ -125,7 +119,6 @@ pub(crate) fn drift(
     }
     Motion {
         speed: found[..chunks].iter().map(|m| m.speed2).fold(0.0, f64::max).sqrt(),
-        pace: found[..chunks].iter().map(|m| m.pace2).fold(0.0, f64::max).sqrt(),
         outside: found[..chunks].iter().any(|m| m.outside),
     }
 }

@@ -16,6 +16,8 @@ const CONTACT_TIME_FRACTION: f64 = 0.25;
 
 /// Largest way of a grain in a step over its radius: a longer one could lead through a wall unseen.
 const WAY_IN_A_STEP: f64 = 0.5;
+/// Way of a grain in a step over its radius up to which a bound on it is all that matters.
+const SHORT_WAY: f64 = 0.2;
 
 /// Name of the guard on the interval between exchanges with a gas: grains must not be held to one slip for
 /// longer than it lasts.
@@ -36,6 +38,8 @@ pub struct Guard {
 /// Limits on the time step, without the step.
 #[derive(Clone, Debug)]
 pub(crate) struct Limits {
+    /// Radius of the smallest grain [m].
+    smallest: f64,
     /// Rayleigh time of the tightest grain [s].
     rayleigh: f64,
     /// min over grains of contact time · speed^{1/5} [s·(m/s)^{1/5}] for two equal grains.
@@ -79,7 +83,8 @@ impl Limits {
             let mass = particles.mass(i);
             hertz = hertz.min(hertz_mindlin::contact_time(young, 0.5 * radius, 0.5 * mass, 1.0));
         }
-        Self { rayleigh, hertz, gas, flow: None, electric: None, warned: false }
+        let smallest = particles.radius.iter().copied().fold(f64::INFINITY, f64::min);
+        Self { smallest, rayleigh, hertz, gas, flow: None, electric: None, warned: false }
     }
 
     /// Takes the plasma limit of a new evaluation of the field.
@@ -111,6 +116,17 @@ impl Limits {
             self.warned = true;
         }
         Ok(())
+    }
+
+    /// Largest speed over radius of grains [1/s], at a largest speed [m/s]; a bound on it where grains move
+    /// little in a step [s].
+    pub(crate) fn pace(&self, grains: &Grains, step: f64, speed: f64) -> f64 {
+        let bound = speed / self.smallest;
+        if step * bound <= SHORT_WAY {
+            return bound;
+        }
+        let motion = grains.velocity.iter().zip(&grains.centre);
+        motion.map(|(velocity, centre)| velocity.norm() / centre[3]).fold(0.0, f64::max)
     }
 
     /// Whether a grain moves too far in a step [s], at a largest speed over radius [1/s].

@@ -137,7 +137,8 @@ impl Simulation {
         let gravity = self.time.gravity_m_s2;
         let step_s = self.progress.step_s;
         let motion = drift(&mut self.grains, gravity, step_s, &self.bounds, &mut self.scratch.motion);
-        (self.progress.speed, self.progress.pace) = (motion.speed, motion.pace);
+        self.progress.speed = motion.speed;
+        self.progress.pace = self.limits.pace(&self.grains, step_s, motion.speed);
         motion.outside
     }
 
