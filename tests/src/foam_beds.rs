@@ -3,7 +3,8 @@
 #![expect(clippy::unwrap_used, reason = "helpers of tests fail as tests do")]
 
 use crate::Workbench;
-use crate::foam_case::{Random, foam_command_on, foam_program, write_file, write_gas_case};
+use crate::foam_case::{Random, foam_command_on, foam_program, write_gas_case};
+use crate::foam_refinement::refine;
 use std::fmt::Write as _;
 
 /// Edge of the boxes, and length of the pipe \[mm\].
@@ -99,7 +100,11 @@ impl BedMesh {
             nu,
         );
         match self {
-            Self::Hanging => refine(bench),
+            // One half along a diagonal of the box.
+            Self::Hanging => {
+                foam_program(bench, "blockMesh", &[]);
+                refine(bench, [-1.0; 3], [1.0, 0.0101, 0.0101]);
+            }
             Self::Perturbed => perturb(bench),
             Self::Tetrahedra => tetrahedra(bench, 7, false),
             Self::Polyhedra => tetrahedra(bench, 7, true),
@@ -216,27 +221,6 @@ fn pipe() -> String {
          boundary (inlet {{ type patch; faces ({below}); }} outlet {{ type patch; faces ({above}); }}\n\
          walls {{ type wall; faces ({mantle}); }});\n"
     )
-}
-
-/// Cuts the cells of one half along a diagonal of the box in two, along each axis.
-fn refine(bench: &Workbench) {
-    foam_program(bench, "blockMesh", &[]);
-    write_file(
-        bench,
-        "system/topoSetDict",
-        "dictionary",
-        "actions ({ name fine; type cellSet; action new; source boxToCell; sourceInfo { box (-1 -1 -1) (1 \
-         0.0101 0.0101); } });\n",
-    );
-    write_file(
-        bench,
-        "system/refineMeshDict",
-        "dictionary",
-        "set fine; coordinateSystem global; globalCoeffs { tan1 (1 0 0); tan2 (0 1 0); } directions (tan1 \
-         tan2 normal); useHexTopology yes; geometricCut no; writeMesh no;\n",
-    );
-    foam_program(bench, "topoSet", &[]);
-    foam_command_on(bench, "refineMesh", &["-overwrite", "-dict", "system/refineMeshDict"]);
 }
 
 /// Moves the corners of a box's cells by up to a fifth of their size; those on a face stay on it.

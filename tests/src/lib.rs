@@ -4,6 +4,7 @@ pub mod any_bytes;
 pub mod foam_beds;
 mod foam_box;
 pub mod foam_case;
+pub mod foam_refinement;
 mod workbench;
 
 pub use foam_box::{DEADLINE, FoamBox};

@@ -10,6 +10,7 @@ use amberfield_tests::Workbench;
 use amberfield_tests::foam_case::{
     Random, ball, brick, cylinder, foam_command_on, foam_program, write_case, write_file,
 };
+use amberfield_tests::foam_refinement::refine;
 
 /// Edge of the boxes, and diameter of the ball and the cylinder [mm].
 const EDGE: f64 = 12.0;
@@ -57,7 +58,7 @@ impl Scene {
             Shape::Hanging => {
                 let bench = mesh_of("hexahedra", cells);
                 foam_program(&bench, "blockMesh", &[]);
-                refine_half(&bench);
+                refine(&bench, [-1.0, -1.0, 0.5e-3 * EDGE], [1.0; 3]);
                 bench
             }
             Shape::Divided => {
@@ -199,29 +200,6 @@ fn evaluate(field: &mut ElectricField, positions: &[Vector3<f64>], charges: &[f6
     let mut values = FieldValues::default();
     field.evaluate(positions, charges, Wanted::default(), &mut values).unwrap();
     values.e
-}
-
-/// Refines the upper half of a cube.
-fn refine_half(bench: &Workbench) {
-    let half = 0.5e-3 * EDGE;
-    write_file(
-        bench,
-        "system/topoSetDict",
-        "dictionary",
-        &format!(
-            "actions ({{ name upper; type cellSet; action new; source boxToCell; box (-1 -1 {half}) (1 1 1); \
-             }});\n"
-        ),
-    );
-    write_file(
-        bench,
-        "system/refineMeshDict",
-        "dictionary",
-        "set upper; coordinateSystem global; globalCoeffs { tan1 (1 0 0); tan2 (0 1 0); } directions (tan1 \
-         tan2 normal); useHexTopology yes; geometricCut no; writeMesh no;\n",
-    );
-    foam_program(bench, "topoSet", &[]);
-    foam_command_on(bench, "refineMesh", &["-overwrite", "-dict", "system/refineMeshDict"]);
 }
 
 /// Cuts a sheet without thickness across the middle of a cube.

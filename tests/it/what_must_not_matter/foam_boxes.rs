@@ -6,6 +6,7 @@ use amberfield_tests::Workbench;
 use amberfield_tests::foam_case::{
     brick, foam_program, move_points, perturb, write_case, write_file, write_potential,
 };
+use amberfield_tests::foam_refinement::refine;
 use std::fmt::Write as _;
 use std::time::Duration;
 
@@ -246,21 +247,7 @@ pub(super) fn join_patches(bench: &Workbench) {
 
 /// Cuts the cells beyond x = 9 mm, where no grain is, into eight each.
 pub(super) fn refine_far_away(bench: &Workbench) {
-    write_file(
-        bench,
-        "system/topoSetDict",
-        "dictionary",
-        "actions ( { name far; type cellSet; action new; source boxToCell; box (9e-3 -1 -1) (1 1 1); } );\n",
-    );
-    write_file(
-        bench,
-        "system/refineMeshDict",
-        "dictionary",
-        "set far; coordinateSystem global; globalCoeffs { tan1 (1 0 0); tan2 (0 1 0); }\n\
-         directions (tan1 tan2 normal); useHexTopology yes; geometricCut no; writeMesh no;\n",
-    );
-    foam_program(bench, "topoSet", &[]);
-    foam_program(bench, "refineMesh", &["-overwrite"]);
+    refine(bench, [9e-3, -1.0, -1.0], [1.0; 3]);
 }
 
 /// Cuts the sheet into a mesh without one.

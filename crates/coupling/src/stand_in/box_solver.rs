@@ -81,7 +81,7 @@ impl BoxSolver {
                     }
                     Neighbour::Boundary(index) => {
                         let face = &self.mesh.boundary()[index as usize];
-                        if matches!(face.condition, Condition::Potential(_)) {
+                        if face.gives_potential() {
                             let distance = (face.centre - self.mesh.centres()[cell]).norm();
                             *out += face.area / distance * potential[cell];
                         }
