@@ -232,7 +232,7 @@ fn sources_around(mesh: &FarMesh, cell: usize, size: f64) -> Vec<(Source, Vector
                         )
                     }
                     Neighbour::Boundary(index) => {
-                        let place = mesh.place_of_condition(&mesh.boundary()[index as usize]);
+                        let place = mesh.place_of_condition(index as usize);
                         (Source::Slope(index), place + shift, None)
                     }
                 };
@@ -252,7 +252,7 @@ fn sources_around(mesh: &FarMesh, cell: usize, size: f64) -> Vec<(Source, Vector
         .iter()
         .filter_map(|(source, offset)| match source {
             Source::Slope(face) => {
-                let place = mesh.place_of_condition(&mesh.boundary()[*face as usize]);
+                let place = mesh.place_of_condition(*face as usize);
                 Some((*face, here + offset - place))
             }
             _ => None,

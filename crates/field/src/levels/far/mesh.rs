@@ -2,6 +2,7 @@
 
 use super::boundary::{MeshPatch, check_boundary};
 use super::connected::ConnectedParts;
+use super::polygon;
 use super::reentrant::ReentrantEdges;
 use super::tree::CellTree;
 use crate::error::FieldError;
@@ -195,16 +196,20 @@ impl FarMesh {
     }
 
     /// Place at which a boundary face's condition counts [m]: a slope at the face's centre; a potential at
-    /// the foot of its cell's centre, since finite volumes take the slope along the normal from it (a hair
-    /// towards the face's centre, so that two faces of a cell in one plane have two places).
+    /// the foot of its cell's centre, since finite volumes take the slope along the normal from it. A foot
+    /// beside the face would lie in the mesh or in the solid where the wall bends: the face's rim on the way
+    /// there counts then (a hair nearer to the centre, so that two faces of a cell in one plane have two
+    /// places).
     #[must_use]
-    pub fn place_of_condition(&self, face: &BoundaryFace) -> Vector3<f64> {
-        match face.condition {
-            Condition::Slope(_) => face.centre,
+    pub fn place_of_condition(&self, face: usize) -> Vector3<f64> {
+        let BoundaryFace { centre, normal, cell, condition, .. } = self.boundary()[face];
+        match condition {
+            Condition::Slope(_) => centre,
             Condition::Potential(_) => {
-                let inside = &self.parts.centres[face.cell as usize];
-                let foot = inside + face.normal * face.normal.dot(&(face.centre - inside));
-                foot + APART * (face.centre - foot)
+                let inside = &self.parts.centres[cell as usize];
+                let way = inside - centre - normal * normal.dot(&(inside - centre));
+                let share = polygon::share_within(self.corners_of(face), &normal, &centre, &way);
+                centre + way * (share * (1.0 - APART))
             }
         }
     }

@@ -29,9 +29,44 @@ pub(super) fn holds(
     inside
 }
 
+/// Share of the way from a point of a face to another of its plane that lies on the face; corners are in
+/// order around it.
+pub(super) fn share_within(
+    corners: &[Vector3<f64>],
+    normal: &Vector3<f64>,
+    from: &Vector3<f64>,
+    way: &Vector3<f64>,
+) -> f64 {
+    let area = |a: &Vector3<f64>, b: &Vector3<f64>| normal.dot(&a.cross(b));
+    let mut share: f64 = 1.0;
+    for first in 0..corners.len() {
+        let corner = corners[first] - from;
+        let edge = corners[(first + 1) % corners.len()] - corners[first];
+        let across = area(way, &edge);
+        let (along, at) = (area(&corner, &edge) / across, area(&corner, way) / across);
+        if (0.0..1.0).contains(&along) && (0.0..=1.0).contains(&at) {
+            share = share.min(along);
+        }
+    }
+    share
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    #[test]
+    fn way_ends_at_the_first_side_of_a_face() {
+        let outline = [[0.0, 0.0], [2.0, 0.0], [2.0, 2.0], [1.0, 0.5], [0.0, 2.0]];
+        let corners = outline.map(|[x, y]| Vector3::new(x, y, 3.0));
+        let from = Vector3::new(0.5, 0.25, 3.0);
+        for (way, expected) in
+            [([0.5, 0.0], 1.0), ([-1.0, 0.0], 0.5), ([0.0, 2.0], 0.5), ([0.0, -1.0], 0.25), ([0.0, 0.0], 1.0)]
+        {
+            let share = share_within(&corners, &Vector3::z(), &from, &Vector3::new(way[0], way[1], 0.0));
+            assert!((share - expected).abs() < 1e-12, "{way:?}: {share}");
+        }
+    }
 
     #[test]
     fn points_in_the_notch_of_a_face_are_beside_it() {

@@ -138,7 +138,7 @@ impl Walls {
         let largest = around.iter().map(|face| face.cell).fold(0.0, f64::max);
         let reach = edge_scale.min(1.0) * mirror::LOOK_FOR_EDGES_OF_CELL * largest;
         let surface = Surface { mesh, edges, around, ghost_scale, edge_scale, reach };
-        let mut at: Vec<_> = boundary.iter().map(|face| mesh.place_of_condition(face)).collect();
+        let mut at: Vec<_> = (0..boundary.len()).map(|face| mesh.place_of_condition(face)).collect();
         let beside = neighbours(mesh, edges);
         let mut walls = Vec::new();
         for faces in connected(&beside) {
