@@ -15,6 +15,7 @@ mod material;
 mod particles;
 mod permittivity;
 mod plan;
+mod rolling_model;
 mod time_settings;
 mod wall;
 
@@ -28,5 +29,6 @@ pub use nalgebra::{Matrix3, Vector3};
 pub use particles::{Grain, GroupId, Particles};
 pub use permittivity::Permittivity;
 pub use plan::{Plan, PlanEntry};
+pub use rolling_model::RollingModel;
 pub use time_settings::{OnExit, Skin, Step, TimeSettings};
 pub use wall::{TriangleMesh, Wall, WallCharging, WallShape};

@@ -9,6 +9,7 @@ fn main() {
     let setup = Setup {
         domain: bed::domain(),
         materials: bed::materials(),
+        rolling_model: Default::default(),
         particles: bed::particles(),
         walls: Vec::new(),
         time: TimeSettings {

@@ -1,6 +1,8 @@
 //! Parts of a simulation.
 
-use amberfield_core::{ChargeTransfer, Domain, FieldSettings, Gas, Material, Particles, TimeSettings, Wall};
+use amberfield_core::{
+    ChargeTransfer, Domain, FieldSettings, Gas, Material, Particles, RollingModel, TimeSettings, Wall,
+};
 use amberfield_field::Choice;
 use amberfield_field::far::Connect;
 use amberfield_gas::ConnectFlow;
@@ -53,6 +55,8 @@ pub struct Setup {
     pub domain: Domain,
     /// Materials that grains and walls refer to.
     pub materials: Vec<Material>,
+    /// Model of rolling friction.
+    pub rolling_model: RollingModel,
     /// Grains at the start.
     pub particles: Particles,
     /// Contact walls.

@@ -1,42 +1,23 @@
-//! Rolling friction, elastic–plastic spring and dashpot: M_k ← M_k − k_r ω_r Δt, |M_k| ≤ μ_r R* F_n,
-//! M_d = −C_r ω_r.
+//! Rolling friction: |M| ≤ μ_r R* F_n, ω_r = ω_i − ω_j.
 //!
-//! M torque on i [N·m], −M on j; ω_r relative angular velocity ω_i − ω_j [rad/s]; k_r = 2.25 S_n (μ_r R*)²
-//! rolling stiffness [N·m/rad]; S_n normal stiffness [N/m]; R* effective radius [m]; μ_r rolling friction
-//! coefficient; F_n normal force [N]; C_r = 2 η √(I_r k_r) damping [N·m·s/rad]; I_r reduced moment of inertia
-//! about the contact [kg·m²]; η = 0.3 damping ratio.
+//! M torque on i [N·m], −M on j; μ_r rolling friction coefficient, ≥ 0; R* effective radius [m]; F_n normal
+//! force [N]; ω_r relative angular velocity [rad/s]. A contact that pulls carries no torque. ω_r holds
+//! rolling as well as twist about the normal; otherwise a grain could spin like a top forever. (With μ_r = 0
+//! it may: a point contact has no drilling torque.) A sphere on a slope rolls down where tan α > μ_r.
 //!
-//! ω_r holds rolling as well as twist about the normal; otherwise a grain could spin like a top forever.
-//! (With μ_r = 0 it may: a point contact has no drilling torque.) The dashpot acts only while the spring is
-//! below its limit. A constant torque against the motion (type A) would chatter about zero in a heap at rest,
-//! whereas the spring lets the heap rest without creeping.
-//! Source: Ai, Chen, Rotter & Ooi, Powder Technol. 206, 269 (2011), type C; Iwashita & Oda, J. Eng. Mech.
-//! 124, 285 (1998).
+//! Three models say how M depends on the motion: [`crate::rolling_epsd`], a spring with a dashpot;
+//! [`crate::rolling_epsd2`], a stiffer spring alone; and [`crate::rolling_cdt`], a constant torque.
+//! Source: Ai, Chen, Rotter & Ooi, Powder Technol. 206, 269 (2011).
 //!
 //! Each number may be that of one contact, or of several contacts side by side.
 //!
 //! ```
-//! use amberfield_laws::rolling_friction::{largest, stiffness};
-//! let (k, bound): (f64, f64) = (stiffness(1e4, 0.1, 1e-3), largest(0.1, 1e-3, 2.0));
-//! assert!((k - 2.25e-4).abs() < 1e-15 && (bound - 2e-4).abs() < 1e-15);
+//! use amberfield_laws::rolling_friction::largest;
+//! let bound: f64 = largest(0.1, 1e-3, 2.0);
+//! assert!((bound - 2e-4).abs() < 1e-15);
 //! ```
 
 use nalgebra::{SimdRealField, Vector3};
-
-/// Damping ratio η of the rolling dashpot, the value that Ai et al. recommend.
-pub const ROLLING_DAMPING_RATIO: f64 = 0.3;
-
-/// Rolling stiffness k_r [N·m/rad] for a normal stiffness S_n [N/m], a coefficient μ_r and a radius R* [m].
-#[inline]
-#[must_use]
-pub fn stiffness<T: SimdRealField<Element = f64> + Copy>(
-    normal_stiffness: T,
-    rolling_friction: T,
-    effective_radius: T,
-) -> T {
-    let arm = rolling_friction * effective_radius;
-    T::splat(2.25) * normal_stiffness * arm * arm
-}
 
 /// Largest rolling torque μ_r R* max(F_n, 0) [N·m].
 #[inline]
@@ -49,85 +30,42 @@ pub fn largest<T: SimdRealField<Element = f64> + Copy>(
     rolling_friction * effective_radius * normal_force.simd_max(T::zero())
 }
 
-/// Rolling damping C_r [N·m·s/rad] for a reduced inertia I_r [kg·m²] and a stiffness k_r [N·m/rad].
-#[inline]
-#[must_use]
-pub fn damping<T: SimdRealField<Element = f64> + Copy>(reduced_inertia: T, stiffness: T) -> T {
-    T::splat(2.0 * ROLLING_DAMPING_RATIO) * (reduced_inertia * stiffness).simd_sqrt()
-}
-
-/// Rolling torques on body i after a step.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub struct RollingTorque<T> {
-    /// Torque M_k of the spring [N·m], which the contact remembers.
-    pub spring: Vector3<T>,
-    /// Total torque M_k + M_d [N·m].
-    pub total: Vector3<T>,
-}
-
-/// Advances the spring by one step.
-///
-/// `spring` M_k before the step [N·m], `turn` = ω_r Δt [rad], `rolling_velocity` = ω_r [rad/s], `stiffness`
-/// k_r [N·m/rad], `damping` C_r [N·m·s/rad], `bound` from [`largest`] [N·m].
-#[inline]
-#[must_use]
-pub fn advance<T: SimdRealField<Element = f64> + Copy>(
-    spring: Vector3<T>,
-    turn: Vector3<T>,
-    rolling_velocity: Vector3<T>,
-    stiffness: T,
-    damping: T,
-    bound: T,
-) -> RollingTorque<T> {
-    let trial = spring - turn * stiffness;
-    let size2 = trial.norm_squared();
-    let sticking = size2.simd_lt(bound * bound);
-    // A trial torque of zero is kept too: shortening it would divide by zero.
-    let kept = sticking | size2.simd_eq(T::zero());
-    let new = trial * T::one().select(kept, bound / size2.simd_sqrt());
-    RollingTorque { spring: new, total: new - rolling_velocity * damping.select(sticking, T::zero()) }
-}
-
 /// Rolling friction coefficient between two materials: the smaller of their two coefficients.
 #[must_use]
 pub fn mixed(rolling_friction_i: f64, rolling_friction_j: f64) -> f64 {
     rolling_friction_i.min(rolling_friction_j)
 }
 
+/// Torque shortened to a bound [N·m], and where it was below it.
+#[inline]
+#[must_use]
+pub fn limited<T: SimdRealField<Element = f64> + Copy>(
+    trial: Vector3<T>,
+    bound: T,
+) -> (Vector3<T>, T::SimdBool) {
+    let size2 = trial.norm_squared();
+    let below = size2.simd_lt(bound * bound);
+    // A trial torque of zero is kept too: shortening it would divide by zero.
+    let kept = below | size2.simd_eq(T::zero());
+    (trial * T::one().select(kept, bound / size2.simd_sqrt()), below)
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;
 
-    /// Round-off of a handful of operations.
-    const ROUND_OFF: f64 = 1e-15;
-
     #[test]
-    fn spring_opposes_rolling_and_saturates() {
-        let turn: Vector3<f64> = Vector3::new(0.1, 0.0, 0.0);
-        let sticking = advance(Vector3::zeros(), turn, Vector3::zeros(), 2.0, 0.0, 1.0);
-        assert!((sticking.spring.x + 0.2).abs() < ROUND_OFF && sticking.total == sticking.spring);
-        let slipping = advance(Vector3::zeros(), turn * 100.0, turn, 2.0, 5.0, 1.0);
-        assert!((slipping.spring.x + 1.0).abs() < ROUND_OFF && slipping.total == slipping.spring);
+    fn torque_has_the_bound_and_the_direction() {
+        let trial: Vector3<f64> = Vector3::new(3.0, 0.0, -4.0);
+        let (torque, below) = limited(trial, 1.0);
+        assert!((torque - trial / 5.0).norm() < 1e-15 && !below);
+        assert_eq!(limited(trial, 6.0), (trial, true));
+        assert_eq!(limited(Vector3::zeros(), 0.0), (Vector3::<f64>::zeros(), false));
     }
 
     #[test]
-    fn derivative_of_the_elastic_torque_is_the_stiffness() {
-        let at = |angle: f64| {
-            let turn = Vector3::new(angle, 0.0, 0.0);
-            advance(Vector3::zeros(), turn, Vector3::zeros(), 3.0, 0.0, 9.0).total.x
-        };
-        assert!(((at(0.1 + 1e-4) - at(0.1 - 1e-4)) / 2e-4 + 3.0).abs() < 1e-9);
-    }
-
-    #[test]
-    fn odd_and_zero_without_load() {
-        let turn = Vector3::new(0.1, 0.2, -0.1);
-        let there = advance(Vector3::zeros(), turn, turn, 1.0, 1.0, 0.1);
-        let back = advance(Vector3::zeros(), -turn, -turn, 1.0, 1.0, 0.1);
-        assert_eq!(there.spring, -back.spring);
-        assert_eq!(advance(turn, turn, turn, 1.0, 1.0, 0.0).total, Vector3::zeros());
+    fn contacts_that_pull_carry_none_and_the_smoother_material_decides() {
         assert_eq!(largest(0.1, 1.0, -1.0), 0.0);
-        assert!((damping(4.0, 9.0) - 3.6_f64).abs() < ROUND_OFF);
         assert_eq!(mixed(0.2, 0.1), 0.1);
     }
 }

@@ -93,6 +93,7 @@ pub(crate) fn setup_of(
     Ok(Setup {
         domain: domain_of(scene)?.clone(),
         materials: scene.materials.clone(),
+        rolling_model: scene.rolling_model,
         particles: scene.particles.clone(),
         walls: scene.walls.clone(),
         time,

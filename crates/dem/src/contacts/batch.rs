@@ -3,7 +3,7 @@
 
 use crate::contacts::law::{Contact, History, respond};
 use crate::contacts::material_pairs::PairConstants;
-use amberfield_core::Vector3;
+use amberfield_core::{RollingModel, Vector3};
 use amberfield_laws::contact_area;
 use nalgebra::{SimdPartialOrd, SimdValue};
 use simba::simd::WideF64x4;
@@ -110,10 +110,11 @@ impl Batch {
         contact_area::hertz(a * b / (a + b), a + b - self.offset.get(lane).norm())
     }
 
-    /// Forces and torques of every contact; springs advance by `step` [s].
+    /// Forces and torques of every contact, with a model of rolling; springs advance by `step` [s].
     #[inline(always)]
     pub(crate) fn respond<const FRICTION: bool, const ROLLING: bool, const DAMPING: bool>(
         &mut self,
+        model: RollingModel,
         step: f64,
     ) {
         let [a, b] = self.radius.map(WideF64x4::from);
@@ -148,7 +149,7 @@ impl Batch {
         };
         let pair = self.pair.map(WideF64x4::from);
         let step = WideF64x4::splat(step);
-        let response = respond::<_, FRICTION, ROLLING, DAMPING>(&contact, &pair, step, &mut history);
+        let response = respond::<_, FRICTION, ROLLING, DAMPING>(&contact, &pair, model, step, &mut history);
         self.force = Vectors::store(response.force);
         self.depth = (overlap / a.simd_min(b)).into_arr();
         if DAMPING || ROLLING {

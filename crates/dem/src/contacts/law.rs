@@ -8,12 +8,13 @@
 //! contact (δ = 0), where it pulls slightly: that is what makes the coefficient of restitution exact;
 //! friction sees no negative load.
 //!
-//! Numbers are one contact's, or those of several side by side: there is no branch in the law.
+//! Numbers are one contact's, or those of several side by side: there is no branch in the law but that of the
+//! rolling model, which is one in a scene.
 
 use crate::contacts::material_pairs::PairConstants;
 use crate::contacts::memory::Spring;
-use amberfield_core::Vector3;
-use amberfield_laws::{damped_step, rolling_friction};
+use amberfield_core::{RollingModel, Vector3};
+use amberfield_laws::{damped_step, rolling_cdt, rolling_epsd, rolling_epsd2, rolling_friction};
 use nalgebra::SimdRealField;
 
 /// Geometry and motion of one contact of body i with body j; n points from i to j.
@@ -85,6 +86,7 @@ const CONTACT_INERTIA: f64 = 7.0 / 5.0;
 pub(crate) fn respond<T, const FRICTION: bool, const ROLLING: bool, const DAMPING: bool>(
     contact: &Contact<T>,
     pair: &PairConstants<T>,
+    rolling: RollingModel,
     step: T,
     history: &mut History<T>,
 ) -> Response<T>
@@ -95,7 +97,7 @@ where
     let (zero, one) = (T::zero(), T::one());
     let contact_radius = (overlap * radius).simd_sqrt();
     let dashpots = if DAMPING || ROLLING {
-        Dashpots::of::<FRICTION, ROLLING>(contact, pair, contact_radius, step)
+        Dashpots::of::<FRICTION, ROLLING>(contact, pair, rolling, contact_radius, step)
     } else {
         Dashpots { normal: zero, tangential: zero, rolling: zero, forecast: zero, largest: zero }
     };
@@ -129,18 +131,24 @@ where
     }
     if ROLLING {
         let turning = contact.turning;
-        let stiffness = rolling_friction::stiffness(pair.normal * contact_radius, pair.rolling, radius);
         let bound = rolling_friction::largest(pair.rolling, radius, load);
-        let torque = rolling_friction::advance(
-            history.rolling,
-            turning * step,
-            turning,
-            stiffness,
-            dashpots.rolling,
-            bound,
-        );
-        history.rolling = torque.spring;
-        response.rolling = torque.total;
+        match rolling {
+            RollingModel::Epsd => {
+                let stiffness = rolling_epsd::stiffness(pair.normal * contact_radius, pair.rolling, radius);
+                let (spring, turn) = (history.rolling, turning * step);
+                let torque = rolling_epsd::advance(spring, turn, turning, stiffness, dashpots.rolling, bound);
+                (history.rolling, response.rolling) = (torque.spring, torque.total);
+            }
+            RollingModel::Epsd2 => {
+                let stiffness = rolling_epsd2::stiffness(pair.tangential * contact_radius, radius);
+                history.rolling = rolling_epsd2::advance(history.rolling, turning * step, stiffness, bound);
+                response.rolling = history.rolling;
+            }
+            RollingModel::Cdt => {
+                response.rolling =
+                    -turning * rolling_cdt::coefficient(dashpots.rolling, bound, turning.norm());
+            }
+        }
     }
     response
 }
@@ -151,7 +159,7 @@ struct Dashpots<T> {
     normal: T,
     /// γ_t [N·s/m].
     tangential: T,
-    /// C_r [N·m·s].
+    /// C_r, or the largest coefficient of a constant torque [N·m·s].
     rolling: T,
     /// Part of the forecast in the velocity that γ_n sees.
     forecast: T,
@@ -165,6 +173,7 @@ impl<T: SimdRealField<Element = f64> + Copy> Dashpots<T> {
     fn of<const FRICTION: bool, const ROLLING: bool>(
         contact: &Contact<T>,
         pair: &PairConstants<T>,
+        model: RollingModel,
         contact_radius: T,
         step: T,
     ) -> Self {
@@ -172,13 +181,22 @@ impl<T: SimdRealField<Element = f64> + Copy> Dashpots<T> {
         let zero = T::zero();
         let normal = pair.damping * (contact_radius / inverse_mass).simd_sqrt();
         let tangential = if FRICTION { normal * pair.tangential_ratio } else { zero };
-        let rolling = if ROLLING {
-            let stiffness = rolling_friction::stiffness(pair.normal * contact_radius, pair.rolling, radius);
-            rolling_friction::damping(T::splat(CONTACT_INERTIA) / inverse_moment, stiffness)
-        } else {
-            zero
+        // C_r, and the part of it that acts.
+        let (rolling, acting) = match model {
+            RollingModel::Epsd if ROLLING => {
+                let stiffness = rolling_epsd::stiffness(pair.normal * contact_radius, pair.rolling, radius);
+                let damping = rolling_epsd::damping(T::splat(CONTACT_INERTIA) / inverse_moment, stiffness);
+                (damping, damping)
+            }
+            RollingModel::Cdt if ROLLING => {
+                let most = rolling_cdt::most(T::splat(SPHERE_INERTIA) / inverse_moment, step);
+                let load = pair.hertz * contact_radius * contact.overlap;
+                let bound = rolling_friction::largest(pair.rolling, radius, load);
+                (most, rolling_cdt::coefficient(most, bound, contact.turning.norm()))
+            }
+            _ => (zero, zero),
         };
-        let turning = if ROLLING { rolling * (inverse_moment / inverse_mass) } else { zero };
+        let turning = if ROLLING { acting * (inverse_moment / inverse_mass) } else { zero };
         let largest = damped_step::largest(normal, tangential, turning * T::splat(1.0 / SPHERE_INERTIA));
         let per_mass = step * inverse_mass;
         let stiffness = pair.normal * contact_radius * per_mass * step;

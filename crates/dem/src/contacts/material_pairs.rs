@@ -3,7 +3,7 @@
 //! Y*, G* as in Hertz–Mindlin; restitution: geometric mean; friction and rolling friction: the smaller one
 //! (sources with the laws).
 
-use amberfield_core::{Material, MaterialId};
+use amberfield_core::{Material, MaterialId, RollingModel};
 use amberfield_laws::{coulomb_friction, hertz_mindlin, restitution, rolling_friction};
 
 /// Constants of a pair of materials, or of several side by side.
@@ -108,6 +108,7 @@ impl PairTable {
             rolling: self.constants.iter().any(|c| c.rolling > 0.0),
             damping: self.constants.iter().any(|c| c.damping > 0.0),
             charging: false,
+            rolling_model: RollingModel::default(),
         }
     }
 }
@@ -120,6 +121,8 @@ pub(crate) struct Features {
     pub(crate) damping: bool,
     /// Whether contacts move charge; materials do not know.
     pub(crate) charging: bool,
+    /// Model of rolling friction; materials do not know.
+    pub(crate) rolling_model: RollingModel,
 }
 
 impl Features {

@@ -7,13 +7,14 @@ use crate::contacts::memory::{Follow, Spring};
 use crate::contacts::neighbours::{ChunkList, Hit, Neighbours};
 use crate::motion::chunks::{CHUNK, ChunkLoads, Loads, NO_PUSH, Push, for_each_load};
 use crate::motion::grains::Grains;
-use amberfield_core::Vector3;
+use amberfield_core::{RollingModel, Vector3};
 
 /// Data that every chunk reads.
 struct Scene<'a> {
     grains: &'a Grains,
     shifts: &'a [[f64; 3]; 32],
     table: &'a PairTable,
+    rolling_model: RollingModel,
     step: f64,
     follow: Option<Follow>,
 }
@@ -29,7 +30,8 @@ pub(crate) fn pair_forces(
     loads: &mut Loads,
 ) {
     let features = neighbours.features;
-    let scene = Scene { grains, shifts: &neighbours.shifts, table, step, follow };
+    let rolling_model = features.rolling_model;
+    let scene = Scene { grains, shifts: &neighbours.shifts, table, rolling_model, step, follow };
     let periodic = neighbours.shifts.iter().flatten().any(|shift| *shift != 0.0);
     let lists = &mut neighbours.lists[..];
     macro_rules! run {
@@ -149,7 +151,7 @@ fn chunk<const FRICTION: bool, const ROLLING: bool, const DAMPING: bool, const P
             let i = first + local as usize;
             read::<FRICTION, ROLLING, DAMPING, PERIODIC>(scene, list, entry as usize, i, &mut batch, lane);
         }
-        batch.respond::<FRICTION, ROLLING, DAMPING>(scene.step);
+        batch.respond::<FRICTION, ROLLING, DAMPING>(scene.rolling_model, scene.step);
         if let Some(follow) = scene.follow {
             for lane in 0..size {
                 list.follow_area(list.hits[start + lane].entry, batch.area::<FRICTION>(lane), follow);

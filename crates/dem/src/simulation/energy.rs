@@ -5,8 +5,8 @@ use crate::contacts::material_pairs::{Features, PairConstants};
 use crate::contacts::memory::Spring;
 use crate::contacts::walls::ContactWalls;
 use crate::motion::grains::Grains;
-use amberfield_core::Vector3;
-use amberfield_laws::rolling_friction;
+use amberfield_core::{RollingModel, Vector3};
+use amberfield_laws::{rolling_epsd, rolling_epsd2};
 
 /// Energies [J].
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
@@ -104,13 +104,18 @@ impl Springs<'_> {
             energy += 0.5 * force2 / (self.pair.tangential * contact_radius);
         }
         if self.features.rolling && contact_radius > 0.0 && self.pair.rolling > 0.0 {
-            let stiffness = rolling_friction::stiffness(
-                self.pair.normal * contact_radius,
-                self.pair.rolling,
-                self.radius,
-            );
-            energy += 0.5 * rolling.iter().map(|t| t * t).sum::<f64>() / stiffness;
+            energy += 0.5 * rolling.iter().map(|t| t * t).sum::<f64>() / self.rolling(contact_radius);
         }
         energy
+    }
+
+    /// Stiffness of the rolling spring [N·m/rad], infinite where the model has none.
+    fn rolling(&self, contact_radius: f64) -> f64 {
+        let (pair, radius) = (self.pair, self.radius);
+        match self.features.rolling_model {
+            RollingModel::Epsd => rolling_epsd::stiffness(pair.normal * contact_radius, pair.rolling, radius),
+            RollingModel::Epsd2 => rolling_epsd2::stiffness(pair.tangential * contact_radius, radius),
+            RollingModel::Cdt => f64::INFINITY,
+        }
     }
 }

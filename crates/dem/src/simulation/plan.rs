@@ -44,8 +44,8 @@ pub(super) fn plan(planned: &Planned<'_>) -> Plan {
     );
     plan.decide(
         features.rolling,
-        "rolling history",
-        "a pair of materials has rolling friction".to_owned(),
+        "rolling friction",
+        format!("{}: a pair of materials has rolling friction", features.rolling_model.name()),
         "no pair of materials has rolling friction",
     );
     plan.decide(

@@ -96,10 +96,10 @@ impl Simulation {
 
     /// Builds the stages that a scene needs; grains are in the set-up's order, nothing is listed yet.
     fn assemble(setup: Setup, skin_m: f64, state: Option<&State>) -> Result<Self, DemError> {
-        let Setup { domain, materials, particles, walls, time, gas, field } = setup;
+        let Setup { domain, materials, rolling_model, particles, walls, time, gas, field } = setup;
         let table = PairTable::new(&materials);
         let transfer = field.as_ref().and_then(|field| field.transfer);
-        let features = Features { charging: transfer.is_some(), ..table.features() };
+        let features = Features { charging: transfer.is_some(), rolling_model, ..table.features() };
         let (level, level_radius) = levels_of(particles.radius.iter().copied());
         let shifts = shifts(&domain);
         let (wall_count, field_asked) = (walls.len(), field.is_some());
@@ -246,8 +246,8 @@ fn bounds(domain: &Domain) -> Bounds {
 mod tests {
     use super::*;
     use amberfield_core::{
-        Boundary, Grain, GroupId, Material, MaterialId, OnExit, Skin, TimeSettings, Wall, WallCharging,
-        WallShape,
+        Boundary, Grain, GroupId, Material, MaterialId, OnExit, RollingModel, Skin, TimeSettings, Wall,
+        WallCharging, WallShape,
     };
 
     /// A short column on a floor, with the given friction and rolling friction.
@@ -278,6 +278,7 @@ mod tests {
                 rolling_friction,
                 work_function_ev: None,
             }],
+            rolling_model: RollingModel::default(),
             particles: (0..5).map(grain).collect(),
             walls: vec![Wall {
                 name: "floor".into(),

@@ -2,8 +2,8 @@
 #![expect(dead_code, reason = "no test uses every helper")]
 
 use amberfield_core::{
-    Boundary, Domain, Grain, GroupId, Material, MaterialId, OnExit, Skin, Step, TimeSettings, TriangleMesh,
-    Vector3, Wall, WallCharging, WallShape,
+    Boundary, Domain, Grain, GroupId, Material, MaterialId, OnExit, RollingModel, Skin, Step, TimeSettings,
+    TriangleMesh, Vector3, Wall, WallCharging, WallShape,
 };
 use amberfield_dem::{Setup, Simulation};
 
@@ -62,6 +62,7 @@ pub(crate) fn setup(grains: Vec<Grain>, material: Material, step_s: f64) -> Setu
     Setup {
         domain: domain(1.0, Boundary::Open),
         materials: vec![material],
+        rolling_model: RollingModel::default(),
         particles: grains.into_iter().collect(),
         walls: Vec::new(),
         time: time(step_s),

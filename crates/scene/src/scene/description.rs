@@ -1,6 +1,6 @@
 //! Description of a scene: its validated content.
 
-use amberfield_core::{Domain, FieldSettings, Gas, Material, Particles, TimeSettings, Wall};
+use amberfield_core::{Domain, FieldSettings, Gas, Material, Particles, RollingModel, TimeSettings, Wall};
 use serde::{Deserialize, Serialize};
 use std::path::PathBuf;
 
@@ -26,6 +26,8 @@ pub struct Scene {
     pub domain: Option<Domain>,
     /// Materials, in the order of the file.
     pub materials: Vec<Material>,
+    /// Model of rolling friction.
+    pub rolling_model: RollingModel,
     /// Walls, in the order of the file.
     pub walls: Vec<Wall>,
     /// `OpenFOAM` patch with the same surface, for each wall.

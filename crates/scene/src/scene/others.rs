@@ -1,10 +1,18 @@
-//! Sections `[charge_transfer]`, `[solver]` and `[output]`.
+//! Sections `[contacts]`, `[charge_transfer]`, `[solver]` and `[output]`.
 
 use super::description::{ChargeTransferSettings, OpenFoamSettings, OutputSettings, SolverLoss};
 use crate::SceneError;
 use crate::limits::TIME;
 use crate::source::SceneSource;
 use crate::tree::{Range, SceneTable, Value};
+use amberfield_core::RollingModel;
+
+/// Reads `[contacts]`.
+pub(super) fn read_contacts(document: &SceneTable<'_>) -> Result<RollingModel, SceneError> {
+    let Some(table) = document.table("contacts", &["rolling_model"])? else { return Ok(Default::default()) };
+    let models = RollingModel::ALL.map(|model| (model.name(), model));
+    Ok(table.word("rolling_model", &models)?.unwrap_or_default())
+}
 
 /// Reads `[charge_transfer]`.
 pub(super) fn read_charge_transfer(

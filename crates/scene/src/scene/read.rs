@@ -4,7 +4,7 @@ use super::description::{Purpose, Scene};
 use super::domain::read_domain;
 use super::electric_field::read_electric_field;
 use super::gas::read_gas;
-use super::others::{read_charge_transfer, read_output, read_solver};
+use super::others::{read_charge_transfer, read_contacts, read_output, read_solver};
 use super::particles::read_section;
 use super::time::read_time;
 use super::together::{check_sections, check_together};
@@ -18,10 +18,11 @@ use std::path::Path;
 use std::sync::Arc;
 
 /// Sections of a scene.
-const SECTIONS: [&str; 10] = [
+const SECTIONS: [&str; 11] = [
     "domain",
     "walls",
     "materials",
+    "contacts",
     "particles",
     "time",
     "electric_field",
@@ -80,6 +81,7 @@ fn read_sections(
     let sections = problems.keep(check_sections(document, motion, purpose));
     let domain = problems.keep(read_domain(document));
     let list = problems.keep(read_materials(document));
+    let rolling_model = problems.keep(read_contacts(document));
     let field = problems.keep(read_electric_field(document));
     let charge_transfer = problems.keep(read_charge_transfer(document));
     let solver = problems.keep(read_solver(document, source));
@@ -91,6 +93,7 @@ fn read_sections(
     let (
         Some(domain),
         Some(list),
+        Some(rolling_model),
         Some(electric_field),
         Some(charge_transfer),
         Some(solver),
@@ -98,7 +101,7 @@ fn read_sections(
         Some(output),
         Some(_),
         Some(()),
-    ) = (domain, list, field, charge_transfer, solver, gas, output, time_alone, sections)
+    ) = (domain, list, rolling_model, field, charge_transfer, solver, gas, output, time_alone, sections)
     else {
         return Err(problems.finish().expect_err("a section was refused"));
     };
@@ -110,6 +113,7 @@ fn read_sections(
         title: "scene".to_owned(),
         domain,
         materials: materials.list,
+        rolling_model,
         walls: walls.walls,
         wall_patches: walls.patches,
         particles: section.read.particles,

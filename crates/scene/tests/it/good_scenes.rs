@@ -1,7 +1,9 @@
 //! Meaning of good scenes.
 
 use crate::common::{Folder, GRAINS, SCENE};
-use amberfield_core::{Boundary, CouplingInterval, Method, Skin, Step, WallCharging, WallShape};
+use amberfield_core::{
+    Boundary, CouplingInterval, Method, RollingModel, Skin, Step, WallCharging, WallShape,
+};
 use amberfield_scene::{Purpose, write_particles_csv};
 use nalgebra::Vector3;
 
@@ -27,6 +29,18 @@ fn a_scene_becomes_its_description() {
     assert_eq!((time.step, time.skin), (Step::Seconds(1e-6), Skin::Auto));
     assert!(scene.output.vtk && scene.output.csv);
     assert_eq!(scene.warnings.len(), 1, "the grounded surface on the internal grid: {:?}", scene.warnings);
+}
+
+#[test]
+fn rolling_model_is_chosen_by_name_and_belongs_to_the_physics() {
+    let plain = Folder::good().read(&[]).unwrap();
+    assert_eq!(plain.rolling_model, RollingModel::Epsd);
+    for model in [RollingModel::Epsd2, RollingModel::Cdt] {
+        let key = format!("contacts.rolling_model={}", model.name());
+        let asked = Folder::good().read(&[&key]).unwrap();
+        assert_eq!(asked.rolling_model, model);
+        assert_ne!(asked.hash(), plain.hash());
+    }
 }
 
 #[test]

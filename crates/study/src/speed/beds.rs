@@ -1,8 +1,8 @@
 //! Beds and clouds to measure on.
 
 use amberfield_core::{
-    Boundary, Domain, Grain, GroupId, Material, MaterialId, OnExit, Particles, Skin, Step, TimeSettings,
-    Vector3,
+    Boundary, Domain, Grain, GroupId, Material, MaterialId, OnExit, Particles, RollingModel, Skin, Step,
+    TimeSettings, Vector3,
 };
 use amberfield_dem::{Setup, Simulation};
 use amberfield_oracle::{rms, rms_difference};
@@ -98,6 +98,7 @@ fn jittered(count: usize, fraction: f64, jitter: f64) -> Setup {
         domain: Domain::new(Vector3::zeros(), Vector3::repeat(length), [[Boundary::Periodic; 2]; 3])
             .expect("positive extents"),
         materials: vec![glass()],
+        rolling_model: RollingModel::default(),
         particles,
         walls: Vec::new(),
         time: TimeSettings {

@@ -7,7 +7,7 @@ use crate::contacts::material_pairs::{PairConstants, PairTable};
 use crate::contacts::walls::surfaces::{Found, MOST_CONTACTS, Surfaces};
 use crate::motion::chunks::{CHUNK, ChunkLoads};
 use crate::motion::grains::Grains;
-use amberfield_core::Vector3;
+use amberfield_core::{RollingModel, Vector3};
 
 /// Cosine of the largest turn between two steps for which a contact is still the same (60°).
 const SAME_CONTACT: f64 = 0.5;
@@ -20,6 +20,7 @@ pub(super) struct Scene<'a> {
     pub(super) shifts: &'a [[f64; 3]; 32],
     pub(super) grains: &'a Grains,
     pub(super) table: &'a PairTable,
+    pub(super) rolling_model: RollingModel,
     /// Step by which springs advance [s].
     pub(super) step: f64,
 }
@@ -32,7 +33,7 @@ impl ChunkWalls {
         scene: &Scene<'_>,
         loads: ChunkLoads<'_>,
     ) {
-        let &Scene { surfaces, parts, shifts, grains, table, step } = scene;
+        let &Scene { surfaces, parts, shifts, grains, table, rolling_model, step } = scene;
         let Self { entries, triangles, contacts, charging: memory, scratch, deepest } = self;
         *deepest = 0.0;
         for entry in entries {
@@ -56,7 +57,13 @@ impl ChunkWalls {
                 let pair = table.get(grains.material[i], part.material);
                 let (contact, arm) = contact_of::<FRICTION, ROLLING>(grains, i, wall_contact);
                 let mut history = History::stored(wall_contact.spring, wall_contact.rolling);
-                let response = respond::<_, FRICTION, ROLLING, DAMPING>(&contact, pair, step, &mut history);
+                let response = respond::<_, FRICTION, ROLLING, DAMPING>(
+                    &contact,
+                    pair,
+                    rolling_model,
+                    step,
+                    &mut history,
+                );
                 (wall_contact.spring, wall_contact.rolling) = history.to_store();
                 *deepest = deepest.max(wall_contact.overlap / radius);
                 loads.force[local] += response.force - lean(pair, radius, found);

@@ -153,7 +153,8 @@ impl ContactWalls {
     ) {
         let near = &mut self.chunks[..];
         let Self { surfaces, parts, shifts, .. } = self;
-        let scene = forces::Scene { surfaces, parts, shifts, grains, table, step };
+        let rolling_model = features.rolling_model;
+        let scene = forces::Scene { surfaces, parts, shifts, grains, table, rolling_model, step };
         macro_rules! run {
             ($f:literal, $r:literal, $d:literal) => {
                 for_each_load(near, loads, |k, near, loads| near.forces::<$f, $r, $d>(k, &scene, loads))

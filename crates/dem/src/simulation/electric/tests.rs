@@ -8,7 +8,7 @@ use crate::setup::{FieldStageSetup, Setup};
 use amberfield_core::constants::VACUUM_PERMITTIVITY;
 use amberfield_core::{
     Boundary, ChargeTransfer, Domain, FieldSettings, Grain, GroupId, Material, MaterialId, Method, OnExit,
-    Permittivity, Skin, Step, TimeSettings, Vector3,
+    Permittivity, RollingModel, Skin, Step, TimeSettings, Vector3,
 };
 use amberfield_laws::charge_transfer::{self, between_grains};
 use nalgebra::{DMatrix, DVector};
@@ -58,6 +58,7 @@ fn built(
     let setup = Setup {
         domain: domain.expect("a good scene"),
         materials: work_functions.iter().map(material).collect(),
+        rolling_model: RollingModel::default(),
         particles: (0..places.len()).map(grain).collect(),
         walls: Vec::new(),
         time: TimeSettings {

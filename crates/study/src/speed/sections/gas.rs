@@ -91,6 +91,7 @@ fn ours(root: &Path, place: &Path, lattice: &[[f64; 3]], looks: (f64, usize)) ->
     let mut run = Simulation::new(Setup {
         domain: scene.domain.context("the case has a box")?,
         materials: scene.materials,
+        rolling_model: scene.rolling_model,
         particles,
         walls: scene.walls,
         time: scene.time.context("the case has a time")?,

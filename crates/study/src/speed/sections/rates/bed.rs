@@ -27,6 +27,7 @@ impl Bed {
         let plain = Setup {
             domain: scene.domain.context("the case has a domain")?,
             materials: scene.materials,
+            rolling_model: scene.rolling_model,
             particles: scene.particles,
             walls: scene.walls,
             time: time.clone(),
