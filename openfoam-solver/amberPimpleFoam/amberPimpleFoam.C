@@ -22,12 +22,14 @@ Usage
 int main(int argc, char *argv[])
 {
     argList::addNote("Gas and electric field of moving grains, for amberfield.");
+    argList::addOption("start", "name", "Time to start from, instead of that of controlDict");
     argList::addOption("run", "name", "Run of the DEM process; default: the one that waits");
     argList::noFunctionObjects();
     argList::noBanner();
 
     #include "setRootCase.H"
     #include "createTime.H"
+    #include "startTime.H"
     #include "createMesh.H"
 
     string run;
@@ -35,7 +37,11 @@ int main(int argc, char *argv[])
 
     fieldSide demProcess(run);
     autoPtr<electricField> field;
-    if (IOobject("phiE", runTime.timeName(), mesh).typeHeaderOk<volScalarField>(true))
+    const word potentialTime
+    (
+        runTime.findInstance(mesh.dbDir(), "phiE", IOobject::READ_IF_PRESENT)
+    );
+    if (IOobject("phiE", potentialTime, mesh).typeHeaderOk<volScalarField>(true))
     {
         field.reset(new electricField(mesh, demProcess, true));
     }

@@ -21,12 +21,14 @@ Usage
 int main(int argc, char *argv[])
 {
     argList::addNote("The smooth electric field of charged grains, for amberfield.");
+    argList::addOption("start", "name", "Time to start from, instead of that of controlDict");
     argList::addOption("run", "name", "Run of the DEM process; default: the one that waits");
     argList::noFunctionObjects();
     argList::noBanner();
 
     #include "setRootCase.H"
     #include "createTime.H"
+    #include "startTime.H"
     #include "createMesh.H"
 
     string run;

@@ -6,7 +6,7 @@
 use amberfield_core::{Boundary, Domain, Vector3};
 use amberfield_coupling::{GrainsInCells, MeshArrays, MeshPart, Question, assemble};
 use amberfield_field::far::{FarMesh, FarMeshParts};
-use amberfield_scene::{Purpose, read_checkpoint, read_scene, write_checkpoint};
+use amberfield_scene::{Physics, Purpose, read_checkpoint, read_scene, write_checkpoint};
 use amberfield_wire::payloads::{
     BoundaryFace, FarAnswer, FarQuestion, FlowAnswer, FlowQuestion, MeshOutline,
 };
@@ -34,7 +34,6 @@ const GRAINS: &str = include_str!("../fuzz/good/grains.csv");
 /// Good surface of the scene.
 const SURFACE: &str = include_str!("../fuzz/good/surface.stl");
 /// Fingerprint with which checkpoints are read.
-const HASH: u64 = 42;
 /// Sections of messages.
 const SECTIONS: [Section; 35] = [
     Section::Text,
@@ -117,9 +116,9 @@ fn checkpoint(bytes: &[u8]) {
     let folder = FOLDER.get_or_init(|| tempfile::tempdir().expect("a folder"));
     let path = folder.path().join(format!("{:?}.amber", std::thread::current().id()));
     std::fs::write(&path, bytes).expect("a file");
-    let _answer = read_checkpoint::<State>(&path, HASH);
-    write_checkpoint(&path, HASH, &Raw(bytes)).expect("a file");
-    let _answer = read_checkpoint::<State>(&path, HASH);
+    let _answer = read_checkpoint::<State>(&path, &Physics::default());
+    write_checkpoint(&path, &Physics::default(), &Raw(bytes)).expect("a file");
+    let _answer = read_checkpoint::<State>(&path, &Physics::default());
 }
 
 /// Bytes that are encoded as themselves.

@@ -107,7 +107,7 @@ impl FoamBox {
     /// When none runs.
     #[must_use]
     pub fn solver(&self) -> Pid {
-        let case = self.bench.path("foam").canonicalize().unwrap().display().to_string();
+        let case = self.bench.path("out/solver").canonicalize().unwrap().display().to_string();
         let is_it = |entry: &std::fs::DirEntry| {
             let line = std::fs::read(entry.path().join("cmdline")).unwrap_or_default();
             String::from_utf8_lossy(&line)

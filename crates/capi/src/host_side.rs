@@ -261,17 +261,16 @@ fn read(settings: &AmberfieldHostSettings, case: Option<String>) -> Result<Scene
             ..FieldSettings::default()
         },
         solver: case.map(|case| SolverSettings {
-            case: case.into(),
-            application: None,
-            flow: false,
-            start: settings.wait_for_solver == 0,
+            workplace: (settings.wait_for_solver == 0).then(|| WORKPLACE.into()),
             ranks,
             timeout,
             far_tolerance: FAR_TOLERANCE * tolerance,
-            log: None,
+            ..SolverSettings::awaited(case)
         }),
     })
 }
 
+/// Folder in which the field solver works, in that of the host.
+const WORKPLACE: &str = "amberfield-solver";
 /// Relative tolerance of the linear solver over the field's.
 const FAR_TOLERANCE: f64 = 1e-4;

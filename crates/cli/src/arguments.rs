@@ -77,6 +77,9 @@ pub(crate) struct RunOptions {
     /// Continues from a checkpoint; the results are the same bit for bit as without a stop
     #[arg(long, value_name = "CHECKPOINT", conflicts_with = "overwrite")]
     pub(crate) resume: Option<PathBuf>,
+    /// Continues though the OpenFOAM case has changed since the checkpoint, and logs what has
+    #[arg(long, requires = "resume")]
+    pub(crate) accept_changed_case: bool,
     /// Replaces the results in an existing run folder
     #[arg(long)]
     pub(crate) overwrite: bool,

@@ -12,6 +12,8 @@ const EXIT_INPUT: u8 = 2;
 const EXIT_PEER: u8 = 3;
 /// Exit code of an answer outside its tolerance.
 const EXIT_TOLERANCE: u8 = 4;
+/// Exit code of an interrupted program, by the convention of shells.
+pub(crate) const EXIT_INTERRUPTED: u8 = 130;
 /// Exit code of a bug in amberfield, which is that of a panic.
 pub(crate) const EXIT_BUG: u8 = 101;
 
@@ -31,6 +33,11 @@ impl Failure {
     /// Failure by an answer that cannot be trusted: exit code 4.
     pub(crate) fn outside_tolerance(message: impl Into<String>) -> Self {
         Self { code: EXIT_TOLERANCE, message: message.into() }
+    }
+
+    /// End by the user's interrupt: exit code 130.
+    pub(crate) fn interrupted(what: impl Into<String>) -> Self {
+        Self { code: EXIT_INTERRUPTED, message: format!("stopped: {}", what.into()) }
     }
 
     /// Failure of a study that cannot be read or written.

@@ -1,20 +1,18 @@
 //! Interrupts by Ctrl-C: the first stops the run after its step, the second at once.
 
-use crate::failure::Failure;
+use crate::failure::{EXIT_INTERRUPTED, Failure};
 use crate::print;
 use std::sync::atomic::{AtomicBool, Ordering};
 
 /// Flag that the user asked to stop.
 static ASKED: AtomicBool = AtomicBool::new(false);
-/// Exit code of an interrupted program, by the convention of shells.
-const EXIT_INTERRUPTED: i32 = 130;
 
 /// Catches interrupts from now on.
 pub(crate) fn watch() -> Result<(), Failure> {
     ctrlc::set_handler(|| {
         if ASKED.swap(true, Ordering::SeqCst) {
             print::note(format_args!("stopped at once; the last checkpoint remains"));
-            std::process::exit(EXIT_INTERRUPTED);
+            std::process::exit(i32::from(EXIT_INTERRUPTED));
         }
         print::note(format_args!(
             "stopping after this step with a checkpoint; press Ctrl-C again to stop at once"

@@ -45,7 +45,7 @@ pub enum CouplingError {
         tolerance: f64,
     },
     /// The peer is gone without a word.
-    #[error("the {peer} is gone ({how}) at solve {solve}; see its log")]
+    #[error("the {peer} is gone at solve {solve} ({how})")]
     Lost {
         /// Process that is gone.
         peer: &'static str,
@@ -67,20 +67,37 @@ pub enum CouplingError {
         /// Time that was waited.
         waited: Duration,
     },
-    /// The field process cannot be started.
+    /// Nobody started a field process in time.
+    #[error("nobody started a field solver within {waited:?}, solver.wait_s; type {advice}")]
+    NobodyCame {
+        /// Time that was waited.
+        waited: Duration,
+        /// Command that starts one.
+        advice: String,
+    },
+    /// The program of the field process is not there.
     #[error(
-        "cannot start the field solver {program}: {why} (`cargo xtask openfoam` builds it; the environment \
-         variable AMBERFIELD_SOLVER names another)"
+        "there is no program {program}; `cargo xtask openfoam` builds the field solver, and the environment \
+         variable AMBERFIELD_SOLVER names it; OpenFOAM's own and mpirun must be on the PATH"
     )]
+    NoProgram {
+        /// Program.
+        program: String,
+    },
+    /// The field process cannot be started.
+    #[error("cannot start the field solver {program}: {why}")]
     Start {
         /// Program.
         program: String,
         /// Reason.
         why: String,
     },
-    /// A case has no mesh, and it cannot be made.
-    #[error("the field solver has no mesh: {0}")]
-    NoMesh(String),
+    /// The case is no case of OpenFOAM's, or one of its programs refuses it.
+    #[error("{0}")]
+    Case(String),
+    /// The user asked to stop.
+    #[error("stopped: {0}")]
+    Stopped(String),
     /// The flow makes no sense.
     #[error("{0}")]
     Flow(String),
@@ -92,7 +109,7 @@ pub enum CouplingError {
 impl From<CouplingError> for FieldError {
     fn from(error: CouplingError) -> Self {
         match error {
-            CouplingError::Refused(_) => Self::Settings(error.to_string()),
+            CouplingError::Refused(_) | CouplingError::Case(_) => Self::Settings(error.to_string()),
             CouplingError::NotConverged { .. } => Self::NotConverged(error.to_string()),
             error => Self::Solver(error.to_string()),
         }

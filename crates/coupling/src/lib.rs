@@ -4,6 +4,7 @@
 //! The only code that opens iceoryx2 (`meeting/link.rs`). The DEM side owns the run's folder in shared memory
 //! and creates everything in it; the field side opens what it finds.
 
+mod case;
 mod dem_side;
 mod error;
 mod field_side;
@@ -11,9 +12,9 @@ mod meeting;
 mod mesh;
 mod stand_in;
 
+pub use case::{CaseContents, Stop, Workplace, foam_command};
 pub use dem_side::{
-    Announced, PatientSolver, RemoteFlow, RemoteSolver, SolverSettings, foam_command, make_mesh,
-    program_name, solver_program,
+    Announced, PatientSolver, RemoteFlow, RemoteSolver, SolverSettings, program_name, solver_program,
 };
 pub use error::CouplingError;
 pub use field_side::{FieldSide, FlowReply, GrainsInCells, Question, Reply};

@@ -59,16 +59,8 @@ fn mapping_of(address: usize) -> (String, String) {
 fn payloads_lie_in_shared_memory_and_exchanges_allocate_nothing_of_their_size() {
     let faces = [[Boundary::Grounded; 2]; 3];
     let domain = Domain::new(Vector3::zeros(), Vector3::repeat(0.01), faces).expect("a good box");
-    let settings = SolverSettings {
-        case: "none".into(),
-        application: None,
-        flow: false,
-        start: false,
-        ranks: 1,
-        timeout: Duration::from_secs(20),
-        far_tolerance: 1e-6,
-        log: None,
-    };
+    let timeout = Duration::from_secs(20);
+    let settings = SolverSettings { timeout, wait: Some(timeout), ..SolverSettings::awaited("none") };
     let announced = Announced::new(settings).expect("shared memory");
     let run = announced.run().to_owned();
     let name = run.clone();

@@ -17,16 +17,8 @@ fn domain() -> Domain {
 }
 
 fn settings(timeout_s: f64) -> SolverSettings {
-    SolverSettings {
-        case: "none".into(),
-        application: None,
-        flow: false,
-        start: false,
-        ranks: 1,
-        timeout: Duration::from_secs_f64(timeout_s),
-        far_tolerance: 1e-8,
-        log: None,
-    }
+    let timeout = Duration::from_secs_f64(timeout_s);
+    SolverSettings { timeout, wait: Some(timeout), far_tolerance: 1e-8, ..SolverSettings::awaited("none") }
 }
 
 /// A solver that answers with the density that it was asked for in place of a potential.

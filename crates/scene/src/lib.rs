@@ -18,8 +18,8 @@ mod write;
 
 pub use error::SceneError;
 pub use scene::{
-    ChargeTransferSettings, ElectricFieldSettings, OpenFoamSettings, OutputSettings, Purpose, Scene,
-    SolverLoss, parse_scene, read_scene,
+    ChargeTransferSettings, ElectricFieldSettings, OpenFoamSettings, OutputSettings, Physics, Purpose, Scene,
+    SolverLoss, parse_scene, read_scene, read_scene_with_mesh,
 };
 pub use write::{
     FacetCell, FieldColumns, FieldComponents, FieldReport, FieldReportSeconds, HistoryFile, HistoryValue,

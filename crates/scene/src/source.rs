@@ -2,43 +2,23 @@
 
 use crate::SceneError;
 use crate::tree::SceneTable;
+use amberfield_core::Fingerprint;
 use std::io::ErrorKind;
 use std::path::{Path, PathBuf};
 
-/// Fingerprint of bytes, the 64-bit FNV-1a hash (Fowler, Noll, Vo).
-///
-/// It is stable across versions and machines, and guards against mistakes, not against malice.
-#[derive(Clone, Debug)]
-pub(crate) struct Fingerprint(u64);
-
-impl Fingerprint {
-    /// Fingerprint of no bytes, the offset basis of FNV-1a.
-    pub(crate) fn new() -> Self {
-        Self(0xcbf2_9ce4_8422_2325)
-    }
-
-    /// Adds bytes; the multiplier is the prime of FNV-1a.
-    pub(crate) fn add(&mut self, bytes: &[u8]) {
-        for byte in bytes {
-            self.0 = (self.0 ^ u64::from(*byte)).wrapping_mul(0x0000_0100_0000_01b3);
-        }
-    }
-
-    pub(crate) fn value(&self) -> u64 {
-        self.0
-    }
-}
-
-/// Folder of a scene, and the fingerprint of the files that were read from it.
+/// Folder of a scene, and fingerprints of the files that were read from it.
 #[derive(Debug)]
 pub(crate) struct SceneSource {
     folder: PathBuf,
-    fingerprint: Fingerprint,
+    /// Folder with the mesh of a case that has none of its own.
+    mesh: Option<PathBuf>,
+    /// Names and fingerprints, in the order of reading.
+    read: Vec<(String, u64)>,
 }
 
 impl SceneSource {
-    pub(crate) fn new(folder: &Path) -> Self {
-        Self { folder: folder.to_path_buf(), fingerprint: Fingerprint::new() }
+    pub(crate) fn new(folder: &Path, mesh: Option<&Path>) -> Self {
+        Self { folder: folder.to_path_buf(), mesh: mesh.map(Path::to_path_buf), read: Vec::new() }
     }
 
     /// Path of a name in the scene, relative to the scene's folder.
@@ -46,7 +26,12 @@ impl SceneSource {
         self.folder.join(name)
     }
 
-    /// Reads the file that a key names and adds its bytes to the fingerprint.
+    /// Folder with the mesh of a case that has none of its own.
+    pub(crate) fn mesh(&self) -> Option<&Path> {
+        self.mesh.as_deref()
+    }
+
+    /// Reads the file that a key names and keeps its fingerprint.
     pub(crate) fn read_file(
         &mut self,
         table: &SceneTable<'_>,
@@ -54,18 +39,20 @@ impl SceneSource {
         name: &str,
     ) -> Result<Vec<u8>, SceneError> {
         let bytes = read_bytes(&self.path(name)).map_err(|reason| table.bad(key, reason))?;
-        self.fingerprint.add(&bytes);
+        let mut print = Fingerprint::new();
+        print.add(&bytes);
+        self.add(name, &print);
         Ok(bytes)
     }
 
-    /// Adds more bytes to the fingerprint.
-    pub(crate) fn add(&mut self, bytes: &[u8]) {
-        self.fingerprint.add(bytes);
+    /// Keeps the fingerprint of what was read otherwise.
+    pub(crate) fn add(&mut self, name: &str, print: &Fingerprint) {
+        self.read.push((name.to_owned(), print.value()));
     }
 
-    /// Fingerprint of all bytes that were added.
-    pub(crate) fn fingerprint(&self) -> u64 {
-        self.fingerprint.value()
+    /// Names and fingerprints of all that was read, in its order.
+    pub(crate) fn fingerprints(&self) -> &[(String, u64)] {
+        &self.read
     }
 }
 

@@ -102,14 +102,18 @@ fn grains_in_dpmfoam_move_as_over_the_program_of_our_own() {
     bench.write("foam/system/controlDict", controls);
     let inside = ["--set", "solver.application=\"DPMFoam\""];
     assert_eq!(run(&bench, "inside", &inside), own, "one solver, one answer");
-    let log = bench.read("foam/log.DPMFoam");
+    let log = bench.read("inside/solver/log.DPMFoam");
     assert!(log.contains("Time = 0.0001\n") && log.contains("the grains' run is over"), "{log}");
-    assert!(bench.path("foam/0.0001/electricField:E").is_file(), "{:?}", bench.names("foam"));
+    assert!(
+        bench.path("inside/solver/0.0001/electricField:E").is_file(),
+        "{:?}",
+        bench.names("inside/solver")
+    );
 
     // Two ranks, and grains that move longer than the gas: the solver continues to answer.
     let longer = ["--set", "solver.ranks=2", "--set", "time.end_s=1e-3"];
     let two = run(&bench, "two", &[&inside[..], &longer].concat());
-    assert!(bench.read("foam/log.DPMFoam").contains("the solver has ended, the grains go on"));
+    assert!(bench.read("two/solver/log.DPMFoam").contains("the solver has ended, the grains go on"));
     let energy = |table: &CsvTable| table.numbers("electric_J")[..own.rows.len()].to_vec();
     let error = difference(&energy(&two), &energy(&own));
     assert!(error < 1e-4, "one rank and two: {error:e}");

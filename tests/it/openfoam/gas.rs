@@ -53,14 +53,11 @@ pub(super) fn solver(
 
 pub(super) fn start(bench: &Workbench, ranks: u32) -> RemoteFlow {
     let settings = SolverSettings {
-        case: bench.path("foam"),
-        application: None,
         flow: true,
-        start: true,
         ranks,
         timeout: Duration::from_secs(60),
         far_tolerance: 1e-7,
-        log: Some(bench.path("log")),
+        ..SolverSettings::started(bench.path("foam"), bench.path("solver"))
     };
     Announced::new(settings).and_then(Announced::connect).expect("the solver answers").flow()
 }

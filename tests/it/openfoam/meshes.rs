@@ -7,12 +7,12 @@ use amberfield_core::{
     Boundary, Domain, FarQuestion, FieldSettings, Permittivity, SourceCloud, Tuning, Vector3,
 };
 use amberfield_coupling::{Announced, RemoteSolver, SolverSettings};
-use amberfield_field::far::{FarField, FarRequest, FarValues};
+use amberfield_field::far::{Condition, FarField, FarMesh, FarRequest, FarValues};
 use amberfield_field::{ElectricField, FieldValues, Wanted};
 use amberfield_oracle::{GroundedCylinder, grounded_cavity, observed_order, reference};
 use amberfield_tests::Workbench;
 use amberfield_tests::foam_case::{
-    Random, ball, brick, cube, cylinder, foam_program, perturb, tetrahedra, write_case,
+    Random, ball, brick, cube, cylinder, foam_program, perturb, tetrahedra, write_case, write_potential,
 };
 use std::time::Duration;
 
@@ -30,14 +30,9 @@ pub(super) fn case(mesh: &str, gradient: &str) -> Workbench {
 
 pub(super) fn solver(bench: &Workbench) -> RemoteSolver {
     let settings = SolverSettings {
-        case: bench.path("foam"),
-        application: None,
-        flow: false,
-        start: true,
-        ranks: 1,
         timeout: Duration::from_secs(60),
         far_tolerance: 1e-7,
-        log: Some(bench.path("log")),
+        ..SolverSettings::started(bench.path("foam"), bench.path("solver"))
     };
     Announced::new(settings).and_then(Announced::connect).expect("the solver answers")
 }
@@ -276,12 +271,89 @@ fn polyhedra_err_little() {
     errs_little("polyhedra", 8);
 }
 
-/// Case of V = exp(ax) sin(by) cos(cz) with a² = b² + c², given at the walls and compared at the centres of
-/// cells.
+/// a, b, c of a potential V = exp(ax) sin(by) cos(cz) with a² = b² + c² [1/m].
+const WAVE: [f64; 3] = [250.0, 150.0, 200.0];
+
+fn potential(p: &Vector3<f64>) -> f64 {
+    (WAVE[0] * p.x).exp() * (WAVE[1] * p.y).sin() * (WAVE[2] * p.z).cos()
+}
+
+/// E of that potential.
+fn field_of_potential(p: &Vector3<f64>) -> Vector3<f64> {
+    let growth = (WAVE[0] * p.x).exp();
+    let [(sine_y, cosine_y), (sine_z, cosine_z)] = [(WAVE[1] * p.y).sin_cos(), (WAVE[2] * p.z).sin_cos()];
+    let slope = [WAVE[0] * sine_y * cosine_z, WAVE[1] * cosine_y * cosine_z, -WAVE[2] * sine_y * sine_z];
+    -growth * Vector3::from(slope)
+}
+
+/// Question for the far field without charges.
+fn without_charges<'a>(boundary: &'a [f64], wants_e: u64) -> FarRequest<'a> {
+    let question = FarQuestion {
+        cloud: SourceCloud::nearest_cell(),
+        permittivity_f_m: 1.0,
+        neutralising_background: 0,
+        time_s: 0.0,
+        tolerance: 0.0,
+        wants_e,
+    };
+    FarRequest {
+        question,
+        positions: &[],
+        charges: &[],
+        image_positions: &[],
+        image_charges: &[],
+        density: &[],
+        boundary,
+        guess: &[],
+    }
+}
+
+/// Gives the potential at the centres of a case's faces, as a user would.
+fn give_potential(bench: &Workbench, mesh: &FarMesh) {
+    let mut conditions = String::new();
+    for (index, patch) in mesh.patches().iter().enumerate() {
+        let faces = mesh.boundary().iter().filter(|face| face.patch as usize == index);
+        let values: Vec<String> = faces.map(|face| format!("{:e}", potential(&face.centre))).collect();
+        if !values.is_empty() {
+            let list = format!("nonuniform List<scalar> {} ({})", values.len(), values.join(" "));
+            conditions += &format!("{} {{ type fixedValue; value {list}; }} ", patch.name);
+        }
+    }
+    write_potential(bench, &conditions);
+}
+
+/// Compares E at the cells' centres with the gradient that OpenFOAM finds there.
+#[test]
+fn no_probe_errs_much_more_than_openfoams_own_gradient() {
+    for (kind, cells) in [("hexahedra", 12), ("perturbed", 12), ("tetrahedra", 7), ("polyhedra", 8)] {
+        let bench = mesh_of(kind, cells);
+        let mesh = solver(&bench).mesh().clone();
+        give_potential(&bench, &mesh);
+        let mut solver = solver(&bench);
+        let given = |face: &amberfield_field::far::BoundaryFace| match face.condition {
+            Condition::Potential(volts) | Condition::Slope(volts) => volts,
+        };
+        let boundary: Vec<f64> = solver.mesh().boundary().iter().map(given).collect();
+        let mut values = FarValues::default();
+        solver.solve(&without_charges(&boundary, 1), &mut values).expect("it answers");
+        let probes = mesh.centres().to_vec();
+        let none = vec![0.0; probes.len()];
+        let mut field =
+            ElectricField::over_mesh(std::boxed::Box::new(solver), &settings(1e-2), &probes, &none).unwrap();
+        let found = evaluate(&mut field, &probes, &none);
+        let worst = |found: &[Vector3<f64>]| {
+            let errors = found.iter().zip(&probes).map(|(e, at)| (e - field_of_potential(at)).norm());
+            errors.fold(0.0, f64::max)
+        };
+        let (ours, openfoams) = (worst(&found), worst(&values.e));
+        println!("{kind}: worst error of E {ours:.2e} V/m, of OpenFOAM's gradient {openfoams:.2e} V/m");
+        assert!(ours < 3.0 * openfoams, "{kind}: {ours:e} V/m for {openfoams:e}");
+    }
+}
+
+/// Case of [`potential`], given at the walls and compared at the centres of cells.
 #[test]
 fn a_manufactured_potential_converges_with_the_cells() {
-    let wave = Vector3::new(250.0, 150.0, 200.0);
-    let potential = |p: &Vector3<f64>| (wave.x * p.x).exp() * (wave.y * p.y).sin() * (wave.z * p.z).cos();
     for (kind, counts, least) in [
         ("hexahedra", [12, 24], 1.8),
         ("perturbed", [12, 24], 1.0),
@@ -294,25 +366,8 @@ fn a_manufactured_potential_converges_with_the_cells() {
             let boundary: Vec<f64> =
                 faces.map(|face| potential(&solver.mesh().place_of_condition(face))).collect();
             let exact: Vec<f64> = solver.mesh().centres().iter().map(potential).collect();
-            let request = FarRequest {
-                question: FarQuestion {
-                    cloud: SourceCloud::nearest_cell(),
-                    permittivity_f_m: 1.0,
-                    neutralising_background: 0,
-                    time_s: 0.0,
-                    tolerance: 0.0,
-                    wants_e: 1,
-                },
-                positions: &[],
-                charges: &[],
-                image_positions: &[],
-                image_charges: &[],
-                density: &[],
-                boundary: &boundary,
-                guess: &[],
-            };
             let mut values = FarValues::default();
-            solver.solve(&request, &mut values).expect("it answers");
+            solver.solve(&without_charges(&boundary, 1), &mut values).expect("it answers");
             difference(&values.potential, &exact)
         });
         let order = observed_order(&[2.0, 1.0], &error);

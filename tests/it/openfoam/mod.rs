@@ -1,5 +1,6 @@
 //! Tests of runs whose far field OpenFOAM computes; `cargo xtask openfoam` builds the solver.
 
+mod case_of_user;
 mod cells;
 mod charging;
 mod failures;

@@ -15,14 +15,10 @@ const ROUND_OFF: f64 = 1e-9;
 /// Solver of the case in the folder `foam`, with a number of processes.
 fn solver(bench: &Workbench, ranks: u32) -> RemoteSolver {
     let settings = SolverSettings {
-        case: bench.path("foam"),
-        application: None,
-        flow: false,
-        start: true,
         ranks,
         timeout: Duration::from_secs(60),
         far_tolerance: 1e-7,
-        log: Some(bench.path("log")),
+        ..SolverSettings::started(bench.path("foam"), bench.path("solver"))
     };
     Announced::new(settings).and_then(Announced::connect).expect("the solver answers")
 }

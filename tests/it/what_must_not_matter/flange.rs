@@ -48,14 +48,10 @@ fn flange() -> Workbench {
 
 fn solver(bench: &Workbench, ranks: u32) -> RemoteSolver {
     let settings = SolverSettings {
-        case: bench.path("foam"),
-        application: None,
-        flow: false,
-        start: true,
         ranks,
         timeout: Duration::from_secs(120),
         far_tolerance: 1e-7,
-        log: Some(bench.path("log")),
+        ..SolverSettings::started(bench.path("foam"), bench.path("solver"))
     };
     Announced::new(settings).and_then(Announced::connect).expect("the solver answers")
 }

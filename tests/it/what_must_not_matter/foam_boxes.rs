@@ -63,14 +63,10 @@ impl Scene for FoamScene {
     fn solver(&self) -> Solver {
         let bench = self.case();
         let settings = SolverSettings {
-            case: bench.path("foam"),
-            application: None,
-            flow: false,
-            start: true,
             ranks: self.ranks,
             timeout: PATIENCE,
             far_tolerance: FAR_TOLERANCE,
-            log: Some(bench.path("log")),
+            ..SolverSettings::started(bench.path("foam"), bench.path("solver"))
         };
         let solver = Announced::new(settings).and_then(Announced::connect).expect("the solver answers");
         Solver::new(Box::new(solver))

@@ -4,8 +4,8 @@ use crate::arguments::ExplainOptions;
 use crate::failure::Failure;
 use crate::print::line;
 use crate::run::{
-    Charges, SolverConnections, charges_of, connect_solver, domain_of, field_of, read_scene, scene_name,
-    setup_of,
+    Charges, SolverConnections, SolverFolder, charges_of, connect_solver, domain_of, field_of, read_scene,
+    scene_name, setup_of,
 };
 use crate::{machine, plan_text};
 use amberfield_core::{Axis, Boundary, Domain, Side, WallShape};
@@ -21,7 +21,8 @@ const BYTES_PER_MOVING_GRAIN: usize = 1200;
 
 /// Prints what a scene will do.
 pub(crate) fn explain(options: &ExplainOptions) -> Result<(), Failure> {
-    let mut scene = read_scene(&options.scene, &options.set, Purpose::Explain)?;
+    let folder = SolverFolder::temporary()?;
+    let mut scene = read_scene(&options.scene, &options.set, Purpose::Explain, &folder)?;
     print_scene(&scene_name(&options.scene), &scene);
     if let Some(field) = &scene.electric_field {
         print_settings(field);
@@ -29,7 +30,7 @@ pub(crate) fn explain(options: &ExplainOptions) -> Result<(), Failure> {
     for warning in &scene.warnings {
         line(format_args!("warning: {warning}"));
     }
-    let solver = connect_solver(&mut scene)?;
+    let solver = connect_solver(&mut scene, &folder)?;
     for warning in &solver.warnings {
         line(format_args!("warning: {warning}"));
     }

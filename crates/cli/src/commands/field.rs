@@ -4,7 +4,8 @@ use crate::arguments::FieldOptions;
 use crate::failure::Failure;
 use crate::print;
 use crate::run::{
-    Charges, charges_of, connect_solver, domain_of, field_of, parameters, read_scene, scene_name,
+    Charges, SolverFolder, charges_of, connect_solver, domain_of, field_of, parameters, read_scene,
+    scene_name,
 };
 use amberfield_core::{Method, Vector3};
 use amberfield_field::{ElectricField, FieldValues, Wanted};
@@ -19,11 +20,12 @@ use std::time::Instant;
 /// Computes the electric field at the particles of a scene.
 pub(crate) fn field(options: &FieldOptions) -> Result<(), Failure> {
     let out = out_file(options)?;
-    let mut scene = read_scene(&options.scene, &overrides(options), Purpose::Field)?;
+    let folder = SolverFolder::beside(&out);
+    let mut scene = read_scene(&options.scene, &overrides(options), Purpose::Field, &folder)?;
     for warning in &scene.warnings {
         tracing::warn!("{warning}");
     }
-    let solver = connect_solver(&mut scene)?.field;
+    let solver = connect_solver(&mut scene, &folder)?.field;
     let settings = scene.electric_field.as_ref().expect("the purpose needs it");
     let domain = domain_of(&scene)?;
     let Charges { index: indices, position: positions, charge: charges } = charges_of(&scene);

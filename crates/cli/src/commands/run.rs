@@ -5,12 +5,13 @@ use crate::failure::Failure;
 use crate::logging::Log;
 use crate::progress::Progress;
 use crate::run::{
-    Clock, EarlierPart, Ending, Existing, RunFolder, Saved, Session, SolverConnections, checkpoints,
-    connect_solver, draw, histogram, read_scene, scene_name, setup_of,
+    CaseContents, Clock, EarlierPart, Ending, Existing, RunFolder, Saved, Session, SolverConnections,
+    SolverFolder, case_contents, checkpoints, clear_solver_folder, connect_solver, draw, histogram,
+    read_scene, scene_name, setup_of,
 };
 use crate::{interrupt, plan_text, print};
 use amberfield_dem::Simulation;
-use amberfield_scene::{Purpose, read_checkpoint, write_json, write_text};
+use amberfield_scene::{Physics, Purpose, read_checkpoint, write_json, write_text};
 use std::path::{Path, PathBuf};
 
 /// Share of the steps with limited grains above which a run ends with a warning.
@@ -25,14 +26,22 @@ pub(crate) fn run(options: &RunOptions, common: &Common, log: &Log) -> Result<()
     };
     let out = out_folder(options)?;
     RunFolder::check(&out, existing, &options.scene)?;
-    let mut scene = read_scene(&options.scene, &options.set, Purpose::Run)?;
+    interrupt::watch()?;
+    let solver_folder = SolverFolder::of_run(&out);
+    if existing != Existing::Resume {
+        clear_solver_folder(&solver_folder)?;
+    }
+    let mut scene = read_scene(&options.scene, &options.set, Purpose::Run, &solver_folder)?;
     scene.title = scene_name(&options.scene);
     for warning in &scene.warnings {
         tracing::warn!("{warning}");
     }
-    interrupt::watch()?;
-
-    let saved = options.resume.as_ref().map(|checkpoint| read_saved(checkpoint, scene.hash())).transpose()?;
+    let saved =
+        options.resume.as_ref().map(|checkpoint| read_saved(checkpoint, scene.physics())).transpose()?;
+    let contents = case_contents(&scene)?;
+    if let Some(saved) = &saved {
+        check_case(contents.as_ref(), saved.case.as_ref(), options.accept_changed_case)?;
+    }
     let solver = match &saved {
         Some(saved) if scene.solver.is_some() && saved.state.has_lost_solver() => {
             tracing::warn!(
@@ -40,7 +49,7 @@ pub(crate) fn run(options: &RunOptions, common: &Common, log: &Log) -> Result<()
             );
             SolverConnections::default()
         }
-        _ => connect_solver(&mut scene)?,
+        _ => connect_solver(&mut scene, &solver_folder)?,
     };
     for warning in &solver.warnings {
         tracing::warn!("{warning}");
@@ -48,7 +57,7 @@ pub(crate) fn run(options: &RunOptions, common: &Common, log: &Log) -> Result<()
     let setup = setup_of(&scene, None, solver)?;
 
     let (simulation, earlier) = match saved {
-        Some(Saved { state, history, wall_s, stage_s }) => {
+        Some(Saved { state, history, wall_s, stage_s, .. }) => {
             let earlier = EarlierPart { history, clock: Clock { wall_s, stages: stage_s } };
             (Simulation::resume(setup, state), Some(earlier))
         }
@@ -67,8 +76,8 @@ pub(crate) fn run(options: &RunOptions, common: &Common, log: &Log) -> Result<()
     announce(&simulation);
 
     let mut session = match earlier {
-        Some(earlier) => Session::resume(&folder, &scene, simulation, earlier)?,
-        None => Session::start(&folder, &scene, simulation)?,
+        Some(earlier) => Session::resume(&folder, &scene, simulation, earlier, contents)?,
+        None => Session::start(&folder, &scene, simulation, contents)?,
     };
     let first = session.simulation.step_index();
     let ending = {
@@ -80,17 +89,44 @@ pub(crate) fn run(options: &RunOptions, common: &Common, log: &Log) -> Result<()
 }
 
 /// Reads a checkpoint. If it cannot be used, the message names an older one that can.
-fn read_saved(checkpoint: &Path, hash: u64) -> Result<Saved, Failure> {
-    read_checkpoint(checkpoint, hash).map_err(|error| {
+fn read_saved(checkpoint: &Path, physics: &Physics) -> Result<Saved, Failure> {
+    read_checkpoint(checkpoint, physics).map_err(|error| {
         let folder = checkpoint.parent().unwrap_or_else(|| Path::new(""));
         let mut older = checkpoints(folder).into_iter().rev().filter(|other| other.as_path() < checkpoint);
-        match older.find(|older| read_checkpoint::<Saved>(older, hash).is_ok()) {
+        match older.find(|older| read_checkpoint::<Saved>(older, physics).is_ok()) {
             Some(older) => {
                 Failure::from(error).with(&format!("; continue with --resume {}", older.display()))
             }
             None => error.into(),
         }
     })
+}
+
+/// Refuses a case that is another than that of a checkpoint, or tells of it where that is accepted.
+fn check_case(
+    now: Option<&CaseContents>,
+    before: Option<&CaseContents>,
+    accept: bool,
+) -> Result<(), Failure> {
+    /// Files that a message names at most.
+    const MOST: usize = 5;
+    let (Some(now), Some(before)) = (now, before) else { return Ok(()) };
+    let changes = now.changes_since(before);
+    if changes.is_empty() {
+        return Ok(());
+    }
+    let mut named = changes[..changes.len().min(MOST)].join(", ");
+    if changes.len() > MOST {
+        named += &format!(" and {} more", changes.len() - MOST);
+    }
+    if accept {
+        tracing::warn!("the case of [solver] has changed since the checkpoint: {named}");
+        return Ok(());
+    }
+    Err(Failure::bad_input(format!(
+        "the case of [solver] has changed since the checkpoint: {named}; restore it, or go on with \
+         --accept-changed-case"
+    )))
 }
 
 /// Path of the run folder: the one that was given, that of the checkpoint, or one named after the scene.

@@ -3,7 +3,7 @@
 use crate::arguments::TuneOptions;
 use crate::failure::Failure;
 use crate::print::line;
-use crate::run::{Charges, charges_of, domain_of, read_scene, scene_name};
+use crate::run::{Charges, SolverFolder, charges_of, domain_of, read_scene, scene_name};
 use amberfield_core::{Domain, FieldSettings, Method, Tuning, Vector3};
 use amberfield_field::{Candidate, Choice, ElectricField, FieldError, FieldValues, Wanted};
 use amberfield_oracle::{ErrorNorms, field_scale};
@@ -19,7 +19,7 @@ const DIRECT_UP_TO: usize = 5000;
 pub(crate) fn tune(options: &TuneOptions) -> Result<(), Failure> {
     let mut set = options.set.clone();
     set.extend(options.tolerance.map(|tolerance| format!("electric_field.tolerance={tolerance:?}")));
-    let scene = read_scene(&options.scene, &set, Purpose::Field)?;
+    let scene = read_scene(&options.scene, &set, Purpose::Field, &SolverFolder::temporary()?)?;
     for warning in &scene.warnings {
         tracing::warn!("{warning}");
     }

@@ -4,6 +4,7 @@ use super::folder::RunFolder;
 use super::health::{Allowed, Health};
 use super::record::{Clock, Record};
 use super::schedule::{Every, Schedule};
+use super::setup::CaseContents;
 use super::summary::{Ending, write_summary};
 use crate::failure::Failure;
 use crate::interrupt;
@@ -25,6 +26,8 @@ pub(crate) struct Saved {
     pub(crate) wall_s: f64,
     /// Wall time of each stage so far [s].
     pub(crate) stage_s: Vec<f64>,
+    /// Contents of the field solver's case; `None` without one.
+    pub(crate) case: Option<CaseContents>,
 }
 
 /// Earlier part of a run that is continued.
@@ -43,6 +46,10 @@ pub(crate) struct Session<'a> {
     pub(crate) schedule: Schedule,
     pub(crate) record: Record,
     health: Health,
+    /// Contents of the field solver's case.
+    case: Option<CaseContents>,
+    /// Energies at a resume [J].
+    at_resume: Option<Energies>,
     /// Times of earlier parts of the run.
     pub(crate) earlier: Clock,
     /// Begin of this part of the run.
@@ -55,12 +62,15 @@ impl<'a> Session<'a> {
         folder: &'a RunFolder,
         scene: &'a Scene,
         mut simulation: Simulation,
+        case: Option<CaseContents>,
     ) -> Result<Self, Failure> {
         let schedule = schedule(scene, &simulation, None)?;
-        let record = Record::create(folder, scene, &simulation)?;
         let health = health(scene, &mut simulation)?;
+        let record = Record::create(folder, scene, &simulation)?;
         let earlier = Clock { wall_s: 0.0, stages: Vec::new() };
-        Ok(Self { folder, scene, simulation, schedule, record, health, earlier, begun: Instant::now() })
+        let at_resume = None;
+        let begun = Instant::now();
+        Ok(Self { folder, scene, simulation, schedule, record, health, case, at_resume, earlier, begun })
     }
 
     /// Continues a run from a checkpoint.
@@ -69,12 +79,17 @@ impl<'a> Session<'a> {
         scene: &'a Scene,
         mut simulation: Simulation,
         earlier: EarlierPart,
+        case: Option<CaseContents>,
     ) -> Result<Self, Failure> {
         let schedule = schedule(scene, &simulation, Some(earlier.history))?;
-        let record = Record::resume(folder, scene, &simulation, &schedule)?;
         let health = health(scene, &mut simulation)?;
+        // Only a run that goes on may take later rows away.
+        let energies = simulation.energies(ElectricEnergy::Evaluated);
+        let at_resume = Some(energies.map_err(|error| Failure::while_running(&error))?);
+        let record = Record::resume(folder, scene, &simulation, &schedule)?;
         let earlier = earlier.clock;
-        Ok(Self { folder, scene, simulation, schedule, record, health, earlier, begun: Instant::now() })
+        let begun = Instant::now();
+        Ok(Self { folder, scene, simulation, schedule, record, health, case, at_resume, earlier, begun })
     }
 
     /// Makes steps until the end, at most `most` of them, or until the user interrupts.
@@ -88,7 +103,10 @@ impl<'a> Session<'a> {
             self.row()?;
             self.record.frame(self.folder, self.scene, &self.simulation)?;
         }
-        let before = self.energies()?;
+        let before = match self.at_resume.take() {
+            Some(energies) => energies,
+            None => self.energies()?,
+        };
 
         let ending = loop {
             let step = self.simulation.step_index();
@@ -185,10 +203,15 @@ impl<'a> Session<'a> {
     fn save(&mut self, state: State) -> Result<(), Failure> {
         let clock = self.clock();
         let step = state.step_index();
-        let saved =
-            Saved { state, history: self.schedule.history, wall_s: clock.wall_s, stage_s: clock.stages };
+        let saved = Saved {
+            state,
+            history: self.schedule.history,
+            wall_s: clock.wall_s,
+            stage_s: clock.stages,
+            case: self.case.clone(),
+        };
         let path = self.checkpoint_of(step);
-        write_checkpoint(&path, self.scene.hash(), &saved)?;
+        write_checkpoint(&path, self.scene.physics(), &saved)?;
         tracing::debug!(step, "checkpoint {}", path.display());
         Ok(())
     }

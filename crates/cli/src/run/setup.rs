@@ -63,6 +63,23 @@ pub(crate) fn parameters(choice: &Choice) -> Value {
     }
 }
 
+/// Contents of a solver's case.
+#[cfg(feature = "coupling")]
+pub(crate) use amberfield_coupling::CaseContents;
+
+/// Contents of a solver's case, which a build without one does not have.
+#[cfg(not(feature = "coupling"))]
+#[derive(Clone, Debug, Default, PartialEq, Eq, serde::Serialize, serde::Deserialize)]
+pub(crate) struct CaseContents(std::collections::BTreeMap<String, u64>);
+
+#[cfg(not(feature = "coupling"))]
+impl CaseContents {
+    /// Changes since earlier contents: none.
+    pub(crate) fn changes_since(&self, _: &Self) -> Vec<String> {
+        Vec::new()
+    }
+}
+
 /// Connections to the scene's solver; both are `None` without a solver.
 #[derive(Clone, Debug, Default)]
 pub(crate) struct SolverConnections {

@@ -2,10 +2,12 @@
 
 use super::bare_patches::warning_of_bare_patches;
 use super::setup::SolverConnections;
+use super::solver_folder::SolverFolder;
 use crate::failure::Failure;
+use crate::interrupt;
 use amberfield_core::{Axis, Domain, Method};
 use amberfield_coupling::{
-    Announced, CouplingError, PatientSolver, RemoteSolver, SolverSettings, make_mesh, program_name,
+    Announced, CaseContents, CouplingError, PatientSolver, RemoteSolver, SolverSettings, Workplace,
 };
 use amberfield_field::far::{Connect, FarField};
 use amberfield_gas::ConnectFlow;
@@ -18,29 +20,61 @@ use std::time::Duration;
 /// tolerance.
 const FAR_TOLERANCE: f64 = 1e-4;
 
-/// Reads a scene. Where one of its walls is a patch of a mesh that is not made yet, the mesh is made first.
-pub(crate) fn read_scene(path: &Path, overrides: &[String], purpose: Purpose) -> Result<Scene, SceneError> {
-    let read = || amberfield_scene::read_scene(path, overrides, purpose);
-    match read() {
+/// Reads a scene. Where one of its walls is a patch of a mesh that is not made yet, the mesh is made first,
+/// in the solver's folder.
+pub(crate) fn read_scene(
+    path: &Path,
+    overrides: &[String],
+    purpose: Purpose,
+    folder: &SolverFolder,
+) -> Result<Scene, Failure> {
+    match amberfield_scene::read_scene(path, overrides, purpose) {
         Err(SceneError::NoMesh { case }) => {
-            tracing::info!("making the mesh of {}", case.display());
-            let file = case.display().to_string();
-            make_mesh(&case).map_err(|error| SceneError::File { file, problem: error.to_string() })?;
-            read()
+            let place = Workplace::open(&case, folder.path()).map_err(of_coupling)?;
+            place.provide_mesh(interrupt::asked).map_err(of_coupling)?;
+            let mesh = Some(place.folder());
+            Ok(amberfield_scene::read_scene_with_mesh(path, overrides, purpose, mesh)?)
         }
-        result => result,
+        result => Ok(result?),
+    }
+}
+
+/// Contents of the case of a scene from which its solver's answers follow; `None` where it has no solver.
+pub(crate) fn case_contents(scene: &Scene) -> Result<Option<CaseContents>, Failure> {
+    let Some(solver) = scene.solver.as_ref().filter(|_| is_solved_for(scene)) else { return Ok(None) };
+    match CaseContents::of_physics(&solver.openfoam_case) {
+        // Who starts the solver elsewhere may have the case elsewhere, too.
+        Err(_) if !solver.start => Ok(None),
+        contents => contents.map(Some).map_err(of_coupling),
+    }
+}
+
+/// Clears a solver's folder for a new run.
+pub(crate) fn clear_solver_folder(folder: &SolverFolder) -> Result<(), Failure> {
+    Workplace::clear(folder.path()).map_err(of_coupling)
+}
+
+/// Whether the scene's solver has something to solve for.
+fn is_solved_for(scene: &Scene) -> bool {
+    scene.electric_field.is_some() || scene.gas.is_some_and(|gas| gas.flow.is_some())
+}
+
+/// Failure of what this program and the solver do together.
+fn of_coupling(error: CouplingError) -> Failure {
+    match error {
+        CouplingError::Stopped(what) => Failure::interrupted(what),
+        error => Failure::of_field(&error.into()),
     }
 }
 
 /// Connects to the scene's solver, if it has one.
 ///
 /// A scene without a box takes the box of the solver's mesh.
-pub(crate) fn connect_solver(scene: &mut Scene) -> Result<SolverConnections, Failure> {
+pub(crate) fn connect_solver(scene: &mut Scene, folder: &SolverFolder) -> Result<SolverConnections, Failure> {
     let flows = scene.gas.is_some_and(|gas| gas.flow.is_some());
-    let Some(solver) = &scene.solver else { return Ok(SolverConnections::default()) };
-    if scene.electric_field.is_none() && !flows {
+    let Some(solver) = scene.solver.as_ref().filter(|_| is_solved_for(scene)) else {
         return Ok(SolverConnections::default());
-    }
+    };
     if let Some(field) = &scene.electric_field {
         refuse(field, solver)?;
     }
@@ -54,10 +88,10 @@ pub(crate) fn connect_solver(scene: &mut Scene) -> Result<SolverConnections, Fai
         ));
     }
 
-    let settings = settings_of(solver, scene.electric_field.as_ref(), flows);
+    let settings = settings_of(solver, scene.electric_field.as_ref(), flows, folder);
     let has_field = scene.electric_field.is_some();
     let waits = solver.on_solver_loss == SolverLoss::Wait;
-    let connected = connect(&settings).map_err(|error| Failure::of_field(&error.into()))?;
+    let connected = connect(&settings).map_err(of_coupling)?;
     let mesh = connected.mesh();
     tracing::info!("field solver: {} cells, {} boundary faces", mesh.cell_count(), mesh.boundary().len());
     let warnings = warning_of_bare_patches(scene, mesh).into_iter().collect();
@@ -90,20 +124,20 @@ fn settings_of(
     solver: &OpenFoamSettings,
     field: Option<&ElectricFieldSettings>,
     flows: bool,
+    folder: &SolverFolder,
 ) -> SolverSettings {
     let far_tolerance =
         |field: &ElectricFieldSettings| field.far_tolerance.unwrap_or(FAR_TOLERANCE * field.field.tolerance);
-    // OpenFOAM's users expect the output of a program in the folder of its case.
-    let program = solver.application.as_deref().unwrap_or(program_name(flows));
     SolverSettings {
         case: solver.openfoam_case.clone(),
+        workplace: solver.start.then(|| folder.path().to_path_buf()),
         application: solver.application.clone(),
         flow: flows,
-        start: solver.start,
         ranks: solver.ranks,
         timeout: Duration::from_secs_f64(solver.timeout_s),
+        wait: solver.wait_s.map(Duration::from_secs_f64),
         far_tolerance: field.map_or(FAR_TOLERANCE, far_tolerance),
-        log: Some(solver.openfoam_case.join(format!("log.{program}"))),
+        stop: interrupt::asked,
     }
 }
 

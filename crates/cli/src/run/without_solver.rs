@@ -1,12 +1,23 @@
 //! Replacement of `solver.rs` in a build without the feature `coupling`, which has no field solver.
 
-use super::setup::SolverConnections;
+use super::setup::{CaseContents, SolverConnections};
+use super::solver_folder::SolverFolder;
 use crate::failure::Failure;
-use amberfield_scene::Scene;
-pub(crate) use amberfield_scene::read_scene;
+use amberfield_scene::{Purpose, Scene};
+use std::path::Path;
+
+/// Reads a scene.
+pub(crate) fn read_scene(
+    path: &Path,
+    overrides: &[String],
+    purpose: Purpose,
+    _: &SolverFolder,
+) -> Result<Scene, Failure> {
+    Ok(amberfield_scene::read_scene(path, overrides, purpose)?)
+}
 
 /// Refuses a scene with a field solver.
-pub(crate) fn connect_solver(scene: &mut Scene) -> Result<SolverConnections, Failure> {
+pub(crate) fn connect_solver(scene: &mut Scene, _: &SolverFolder) -> Result<SolverConnections, Failure> {
     match scene.solver {
         None => Ok(SolverConnections::default()),
         Some(_) => Err(Failure::bad_input(
@@ -14,4 +25,14 @@ pub(crate) fn connect_solver(scene: &mut Scene) -> Result<SolverConnections, Fai
              or remove [solver]",
         )),
     }
+}
+
+/// Contents of the case of a scene: none.
+pub(crate) fn case_contents(_: &Scene) -> Result<Option<CaseContents>, Failure> {
+    Ok(None)
+}
+
+/// Clears nothing.
+pub(crate) fn clear_solver_folder(_: &SolverFolder) -> Result<(), Failure> {
+    Ok(())
 }

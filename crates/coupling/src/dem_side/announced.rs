@@ -10,13 +10,20 @@ use crate::mesh::{MeshPart, assemble, shapes_of};
 use amberfield_gas::CellShapes;
 use amberfield_wire::MessageKind;
 use std::sync::Arc;
-use std::time::Instant;
+use std::time::{Duration, Instant};
+
+/// Sign that the user asked to stop.
+const STOPPED: &str = "stopped";
+
+/// Time between two lines that say what a run waits for.
+const LINE: Duration = Duration::from_secs(60);
+/// Time for the run's own place in shared memory.
+const TO_OPEN: Duration = Duration::from_secs(10);
 
 /// A run whose solver has not come yet.
 #[derive(Debug)]
 pub struct Announced {
     settings: SolverSettings,
-    deadline: Instant,
     link: Link,
     root: RunRoot,
 }
@@ -28,9 +35,8 @@ impl Announced {
     /// No shared memory.
     pub fn new(settings: SolverSettings) -> Result<Self, CouplingError> {
         let root = RunRoot::create()?;
-        let deadline = Instant::now() + settings.timeout;
-        let link = Link::new(&root, SideOf::Dem, settings.ranks, deadline)?;
-        Ok(Self { settings, deadline, link, root })
+        let link = Link::new(&root, SideOf::Dem, settings.ranks, Instant::now() + TO_OPEN)?;
+        Ok(Self { settings, link, root })
     }
 
     /// Name of the run, which the solver is told.
@@ -42,31 +48,46 @@ impl Announced {
     /// Starts the solver (or waits for somebody to) and takes in its mesh.
     ///
     /// # Errors
-    /// No solver, no answer in time, a mesh that makes no sense.
+    /// No solver, no answer in time, a mesh that makes no sense, a user who stops.
     pub fn connect(self) -> Result<RemoteSolver, CouplingError> {
-        let Self { settings, deadline, link, root } = self;
-        let mut process = if settings.start {
-            Some(Process::start(&settings, root.name())?)
-        } else {
-            let (case, run) = (settings.case.display(), root.name());
-            root.invite(true);
-            match &settings.application {
-                None => {
-                    tracing::info!("waiting for `{} -case {case} -run {run}`", program_name(settings.flow))
-                }
-                Some(program) => tracing::info!("waiting for `{RUN}={run} {program} -case {case}`"),
+        let Self { settings, link, root } = self;
+        let mut process = match &settings.workplace {
+            Some(workplace) => Some(Process::start(&settings, workplace, root.name())?),
+            None => {
+                root.invite(true);
+                tracing::info!("waiting for {}", to_type(&settings, root.name()));
+                None
             }
-            None
         };
+        let most = if process.is_some() { Some(settings.patience(0)) } else { settings.wait };
         let mut messages: Vec<Option<Message>> = (0..settings.ranks).map(|_| None).collect();
+        let begun = Instant::now();
         while messages.iter().any(Option::is_none) {
-            let left = deadline.saturating_duration_since(Instant::now());
-            let received = link.receive(0, left, || alive(&mut process));
-            // Who ends before its mesh is there cannot use the case.
-            let message = received.map_err(|error| match error {
-                CouplingError::Ended { reason, .. } => CouplingError::Refused(reason),
-                error => error,
-            })?;
+            let left = most.map_or(LINE, |most| most.saturating_sub(begun.elapsed()).min(LINE));
+            let received = link.receive(0, left, || {
+                if (settings.stop)() { Err(STOPPED.to_owned()) } else { alive(&mut process) }
+            });
+            let message = match received {
+                Ok(message) => message,
+                Err(CouplingError::TimedOut { .. }) if most.is_none_or(|most| begun.elapsed() < most) => {
+                    let what = match process {
+                        Some(_) => "the field solver to read its case".to_owned(),
+                        None => to_type(&settings, root.name()),
+                    };
+                    tracing::info!("still waiting for {what}");
+                    continue;
+                }
+                Err(CouplingError::TimedOut { .. }) if process.is_none() => {
+                    let advice = to_type(&settings, root.name());
+                    return Err(CouplingError::NobodyCame { waited: begun.elapsed(), advice });
+                }
+                Err(CouplingError::Lost { how, .. }) if how == STOPPED => {
+                    return Err(CouplingError::Stopped("no field solver had come".to_owned()));
+                }
+                // Who ends before its mesh is there cannot use the case.
+                Err(CouplingError::Ended { reason, .. }) => return Err(CouplingError::Refused(reason)),
+                Err(error) => return Err(error),
+            };
             check_sender(message.header(), settings.ranks, MessageKind::Mesh, 0).map_err(of_solver)?;
             let rank = message.header().rank as usize;
             messages[rank] = Some(message);
@@ -81,4 +102,24 @@ impl Announced {
         let remote = Remote::new(settings, &cells, (link, process, root));
         Ok(RemoteSolver::new(mesh, Arc::new(shapes), remote))
     }
+}
+
+/// Command that starts the solver of a run by hand.
+fn to_type(settings: &SolverSettings, run: &str) -> String {
+    let SolverSettings { case, application, ranks, flow, .. } = settings;
+    let case = std::path::absolute(case).unwrap_or_else(|_| case.clone());
+    let case = shell(&case.to_string_lossy());
+    let parallel = *ranks > 1;
+    let mpi = if parallel { format!("mpirun -np {ranks} ") } else { String::new() };
+    let flag = if parallel { " -parallel" } else { "" };
+    match application {
+        None => format!("`{mpi}{}{flag} -case {case} -run {run}`", program_name(*flow)),
+        Some(program) => format!("`{RUN}={run} {mpi}{program}{flag} -case {case}`"),
+    }
+}
+
+/// A path as a shell takes it.
+fn shell(path: &str) -> String {
+    let is_plain = path.chars().all(|c| c.is_alphanumeric() || "/._-+".contains(c));
+    if is_plain { path.to_owned() } else { format!("'{}'", path.replace('\'', "'\\''")) }
 }

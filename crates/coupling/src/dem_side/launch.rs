@@ -1,10 +1,10 @@
 //! Starting the field process, watching it, ending it.
 
-use super::parts::provide_parts;
 use super::settings::SolverSettings;
-use super::tools::{foam_command, last_words, run_tool};
 use crate::CouplingError;
+use crate::case::{Workplace, foam_command, last_words, on_path};
 use std::ffi::OsString;
+use std::fs::File;
 use std::os::unix::process::CommandExt as _;
 use std::path::{Path, PathBuf};
 use std::process::{Child, ExitStatus, Stdio};
@@ -12,6 +12,8 @@ use std::time::{Duration, Instant};
 
 /// Names of the field solver, and of the one that computes the flow of a gas too.
 const PROGRAMS: [&str; 2] = ["electricFieldFoam", "amberPimpleFoam"];
+/// Program that starts several processes.
+const MPI: &str = "mpirun";
 /// Variable with the path of one of the two programs.
 const VARIABLE: &str = "AMBERFIELD_SOLVER";
 /// Variable in which a function object inside another solver finds the run's name.
@@ -24,50 +26,54 @@ const LIBRARIES: (&str, &str) = ("LD_LIBRARY_PATH", "libelectricField.so");
 pub(super) struct Process {
     child: Child,
     ended: Option<ExitStatus>,
-    log: Option<PathBuf>,
+    log: PathBuf,
     /// Time that it may take to end once it was told to.
     farewell: Duration,
+    _place: Workplace,
 }
 
 impl Process {
-    /// Starts the solver of a case for a run.
-    pub(super) fn start(settings: &SolverSettings, run: &str) -> Result<Self, CouplingError> {
+    /// Starts the solver of a case for a run, in a folder of the run's own.
+    pub(super) fn start(
+        settings: &SolverSettings,
+        workplace: &Path,
+        run: &str,
+    ) -> Result<Self, CouplingError> {
         let program =
             settings.application.as_ref().map_or_else(|| solver_program(settings.flow), PathBuf::from);
-        let failed = |why: String| CouplingError::Start { program: program.display().to_string(), why };
-        let case = settings.case.canonicalize().map_err(|error| {
-            failed(format!("its case {} cannot be opened: {error}", settings.case.display()))
-        })?;
-        provide_mesh(&case).map_err(failed)?;
+        let missing = |name: &Path| CouplingError::NoProgram { program: name.display().to_string() };
+        let program = found(&program).ok_or_else(|| missing(&program))?;
+        let place = Workplace::open(&settings.case, workplace)?;
+        place.provide_mesh(settings.stop)?;
         let mut command = foam_command(&program);
         if settings.ranks > 1 {
-            let dictionary = provide_parts(&case, settings.ranks).map_err(failed)?;
-            command = foam_command("mpirun");
+            let dictionary = place.provide_parts(settings.ranks, settings.stop)?;
+            let mpirun = found(Path::new(MPI)).ok_or_else(|| missing(Path::new(MPI)))?;
+            command = foam_command(mpirun);
             command.args(["--oversubscribe", "--allow-run-as-root", "-np"]).arg(settings.ranks.to_string());
             command.arg(&program).arg("-parallel");
             if let Some(dictionary) = dictionary {
                 command.arg("-decomposeParDict").arg(dictionary);
             }
         }
-        command.arg("-case").arg(&case).stdin(Stdio::null());
+        let folder = place.folder_to_run_in();
+        command.arg("-case").arg(place.path()).current_dir(folder).env("PWD", folder);
         match settings.application {
-            None => command.arg("-run").arg(run),
+            None => command.args(["-start", place.start_time(), "-run", run]),
             // Its function object reads the run's name, and is found, in the environment.
             Some(_) => command.env(RUN, run).env(LIBRARIES.0, library_path()),
         };
-        let (out, err) = match &settings.log {
-            None => (Stdio::null(), Stdio::null()),
-            Some(path) => {
-                let log = std::fs::File::create(path).and_then(|file| Ok((file.try_clone()?, file)));
-                let (out, err) =
-                    log.map_err(|error| failed(format!("cannot write {}: {error}", path.display())))?;
-                (out.into(), err.into())
-            }
-        };
+        let name = program.file_name().unwrap_or(program.as_os_str()).to_string_lossy();
+        let log = place.log(&name);
+        let file = File::create(&log).and_then(|file| Ok([file.try_clone()?, file]));
+        let failed = |why: String| CouplingError::Start { program: program.display().to_string(), why };
+        let [out, err] =
+            file.map_err(|error| failed(format!("{} cannot be written: {error}", log.display())))?;
         // A group of its own: an interrupt at the terminal is the DEM process's to handle.
-        command.process_group(0);
-        let child = command.stdout(out).stderr(err).spawn().map_err(|error| failed(error.to_string()))?;
-        Ok(Self { child, ended: None, log: settings.log.clone(), farewell: settings.timeout })
+        command.process_group(0).stdin(Stdio::null()).stdout(out).stderr(err);
+        tracing::info!("starting {name} from time {}; its log is {}", place.start_time(), log.display());
+        let child = command.spawn().map_err(|error| failed(error.to_string()))?;
+        Ok(Self { child, ended: None, log, farewell: settings.timeout, _place: place })
     }
 
     /// Whether it still runs; else how it ended.
@@ -76,11 +82,10 @@ impl Process {
             self.ended = self.child.try_wait().ok().flatten();
         }
         let Some(status) = self.ended else { return Ok(()) };
-        let log = self.log.as_ref().and_then(|path| std::fs::read_to_string(path).ok());
-        match log.as_deref().map(last_words).filter(|words| !words.is_empty()) {
-            Some(words) => Err(format!("{status}: {words}")),
-            None => Err(status.to_string()),
-        }
+        let log = std::fs::read(&self.log).unwrap_or_default();
+        let words = last_words(&String::from_utf8_lossy(&log));
+        let words = if words.is_empty() { String::new() } else { format!(": {words}") };
+        Err(format!("{status}{words}; its log is {}", self.log.display()))
     }
 
     /// Waits until it has ended, for a while if it was told to, then kills it.
@@ -120,6 +125,11 @@ pub fn solver_program(flow: bool) -> PathBuf {
     }
 }
 
+/// Path of a program: of a name alone, that on the PATH.
+fn found(program: &Path) -> Option<PathBuf> {
+    if program.components().count() == 1 { on_path(program.to_str()?) } else { program.canonicalize().ok() }
+}
+
 /// A file beside this program, or that the project has built above it.
 fn near_this_program(name: &str) -> Option<PathBuf> {
     let own = std::env::current_exe().unwrap_or_default();
@@ -138,26 +148,4 @@ fn library_path() -> OsString {
     let library = beside_named.or_else(|| near_this_program(LIBRARIES.1));
     let own = library.and_then(|path| path.parent().map(PathBuf::from));
     std::env::join_paths(own.into_iter().chain(std::env::split_paths(&known))).unwrap_or(known)
-}
-
-/// Makes the mesh of a case that has only a recipe for it, `system/blockMeshDict`.
-///
-/// # Errors
-/// A case without mesh and recipe, a recipe that blockMesh refuses.
-pub fn make_mesh(case: &Path) -> Result<(), CouplingError> {
-    provide_mesh(case).map_err(CouplingError::NoMesh)
-}
-
-fn provide_mesh(case: &Path) -> Result<(), String> {
-    let has = |path: &str| case.join(path).exists();
-    if has("constant/polyMesh/points") || has("constant/polyMesh/points.gz") {
-        return Ok(());
-    }
-    if !has("system/blockMeshDict") {
-        return Err(format!(
-            "its case {} has neither constant/polyMesh nor system/blockMeshDict; make the mesh",
-            case.display()
-        ));
-    }
-    run_tool("blockMesh", case, &[])
 }

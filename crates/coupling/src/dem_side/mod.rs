@@ -5,17 +5,14 @@ mod announced;
 mod far;
 mod flow;
 mod launch;
-mod parts;
 mod patient;
 mod remote;
 mod settings;
 mod shared;
-mod tools;
 
 pub use announced::Announced;
 pub use far::RemoteSolver;
 pub use flow::RemoteFlow;
-pub use launch::{make_mesh, program_name, solver_program};
+pub use launch::{program_name, solver_program};
 pub use patient::PatientSolver;
 pub use settings::SolverSettings;
-pub use tools::foam_command;

@@ -69,7 +69,8 @@ impl Remote {
         let mut seen = vec![false; missing as usize];
         while missing > 0 {
             let process = &mut self.process;
-            let received = self.link.receive(self.solve, self.settings.timeout, || alive(process));
+            let patience = self.settings.patience(self.solve);
+            let received = self.link.receive(self.solve, patience, || alive(process));
             let taken = received.and_then(|message| {
                 let header = message.header();
                 check_sender(header, self.settings.ranks, kind, self.solve).map_err(of_solver)?;

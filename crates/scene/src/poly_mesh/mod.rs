@@ -60,9 +60,12 @@ impl From<SceneError> for PatchError {
 }
 
 impl PolyMesh {
-    /// The mesh of a case.
-    pub(crate) fn of(case: &Path) -> Self {
-        Self { case: case.to_path_buf(), patches: None, geometry: None }
+    /// The mesh of a case; one that has none has that in another folder.
+    pub(crate) fn of(case: &Path, other: Option<&Path>) -> Self {
+        let has_one =
+            ["", COMPRESSED].iter().any(|end| case.join(FOLDER).join(format!("points{end}")).exists());
+        let mesh = other.filter(|_| !has_one).unwrap_or(case);
+        Self { case: mesh.to_path_buf(), patches: None, geometry: None }
     }
 
     /// Refuses the name of a patch that the mesh does not have. A mesh that is not there yet has any.

@@ -65,7 +65,7 @@ fn case(format: &str) -> tempfile::TempDir {
 
 /// Surface of a patch.
 fn surface(case: &Path, patch: &str) -> Result<TriangleMesh, String> {
-    PolyMesh::of(case).surface(patch).map_err(|error| match error {
+    PolyMesh::of(case, None).surface(patch).map_err(|error| match error {
         PatchError::Patch(problem) => problem,
         PatchError::Mesh(error) => error.to_string(),
     })
@@ -139,7 +139,7 @@ fn patches_that_are_no_surface_are_refused_with_those_that_are_there() {
     let nowhere = tempfile::tempdir().expect("a folder");
     let said = surface(nowhere.path(), "floor").expect_err("no mesh");
     assert!(said.contains("no constant/polyMesh yet"), "{said}");
-    let mut mesh = PolyMesh::of(nowhere.path());
+    let mut mesh = PolyMesh::of(nowhere.path(), None);
     assert!(mesh.check("floor").is_ok(), "its mesh may come");
 }
 

@@ -1,5 +1,6 @@
 //! Description of a scene: its validated content.
 
+use super::physics::Physics;
 use amberfield_core::{Domain, FieldSettings, Gas, Material, Particles, RollingModel, TimeSettings, Wall};
 use serde::{Deserialize, Serialize};
 use std::path::PathBuf;
@@ -51,7 +52,7 @@ pub struct Scene {
     /// Warnings: facts that the user should know though nothing is wrong.
     pub warnings: Vec<String>,
     pub(super) resolved: String,
-    pub(super) hash: u64,
+    pub(super) physics: Physics,
 }
 
 impl Scene {
@@ -61,13 +62,13 @@ impl Scene {
         &self.resolved
     }
 
-    /// Fingerprint of everything that decides the physics.
+    /// Part of the scene that decides its physics.
     ///
-    /// `[output]` and `time.end_s` are left out, so that a run can be continued from a checkpoint to a later
-    /// end. Data files count with their contents.
+    /// Outputs, the end of the run and how a solver is run are left out: they may change when a run is
+    /// continued from a checkpoint. Data files count with their contents.
     #[must_use]
-    pub fn hash(&self) -> u64 {
-        self.hash
+    pub fn physics(&self) -> &Physics {
+        &self.physics
     }
 }
 
@@ -154,8 +155,10 @@ pub struct OpenFoamSettings {
     pub start: bool,
     /// Number of MPI ranks.
     pub ranks: u32,
-    /// Longest wait for an answer [s].
+    /// Longest silence of a solver that lives [s].
     pub timeout_s: f64,
+    /// Longest wait for a solver that somebody else starts [s]; `None`: for ever.
+    pub wait_s: Option<f64>,
     /// Behaviour when the solver is lost.
     pub on_solver_loss: SolverLoss,
 }

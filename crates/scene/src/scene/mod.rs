@@ -7,6 +7,7 @@ mod electric_field;
 mod gas;
 mod others;
 mod particles;
+mod physics;
 mod read;
 mod time;
 mod together;
@@ -17,4 +18,6 @@ pub use description::{
     ChargeTransferSettings, ElectricFieldSettings, OpenFoamSettings, OutputSettings, Purpose, Scene,
     SolverLoss,
 };
-pub use read::{parse_scene, read_scene};
+pub use physics::Physics;
+pub(crate) use physics::told;
+pub use read::{parse_scene, read_scene, read_scene_with_mesh};

@@ -33,7 +33,7 @@ pub(super) fn read_solver(
     document: &SceneTable<'_>,
     source: &SceneSource,
 ) -> Result<Option<OpenFoamSettings>, SceneError> {
-    let keys = ["openfoam_case", "application", "start", "ranks", "timeout_s", "on_solver_loss"];
+    let keys = ["openfoam_case", "application", "start", "ranks", "timeout_s", "wait_s", "on_solver_loss"];
     let Some(table) = document.table("solver", &keys)? else { return Ok(None) };
     let case = table.text("openfoam_case")?;
     let case = table.need(case, "openfoam_case", "name the folder with 0/, constant/ and system/")?;
@@ -51,6 +51,7 @@ pub(super) fn read_solver(
         start: table.boolean("start")?.unwrap_or(true),
         ranks: u32::try_from(ranks).expect("the range ends at 65536"),
         timeout_s: table.number("timeout_s", TIME)?.unwrap_or(30.0),
+        wait_s: table.number("wait_s", TIME)?,
         on_solver_loss: table.word("on_solver_loss", &losses)?.unwrap_or_default(),
     }))
 }

@@ -6,6 +6,7 @@ use super::electric_field::read_electric_field;
 use super::gas::read_gas;
 use super::others::{read_charge_transfer, read_contacts, read_output, read_solver};
 use super::particles::read_section;
+use super::physics::Physics;
 use super::time::read_time;
 use super::together::{check_sections, check_together};
 use super::walls::read_walls;
@@ -37,11 +38,24 @@ const SECTIONS: [&str; 11] = [
 /// # Errors
 /// All problems of the scene and its files that can be found independently of each other.
 pub fn read_scene(path: &Path, overrides: &[String], purpose: Purpose) -> Result<Scene, SceneError> {
+    read_scene_with_mesh(path, overrides, purpose, None)
+}
+
+/// Reads a scene file whose case may have no mesh of its own: that in another folder counts then.
+///
+/// # Errors
+/// As [`read_scene`].
+pub fn read_scene_with_mesh(
+    path: &Path,
+    overrides: &[String],
+    purpose: Purpose,
+    mesh: Option<&Path>,
+) -> Result<Scene, SceneError> {
     let text = read_text(path)?;
     let folder = path.parent().unwrap_or(Path::new(""));
     let title =
         path.file_stem().map_or_else(|| "scene".to_owned(), |stem| stem.to_string_lossy().into_owned());
-    let mut scene = parse_scene(&text, &path.display().to_string(), folder, overrides, purpose)?;
+    let mut scene = parse(&text, &path.display().to_string(), folder, overrides, (purpose, mesh))?;
     scene.title = title;
     Ok(scene)
 }
@@ -58,14 +72,23 @@ pub fn parse_scene(
     overrides: &[String],
     purpose: Purpose,
 ) -> Result<Scene, SceneError> {
+    parse(text, file, folder, overrides, (purpose, None))
+}
+
+fn parse(
+    text: &str,
+    file: &str,
+    folder: &Path,
+    overrides: &[String],
+    (purpose, mesh): (Purpose, Option<&Path>),
+) -> Result<Scene, SceneError> {
     let file: Arc<str> = file.into();
     let mut entries = parse_document(&file, text.strip_prefix('\u{feff}').unwrap_or(text))?;
     apply_overrides(&mut entries, overrides)?;
     let document = SceneTable::document(&entries, Place::Line { file, line: 0 }, &SECTIONS)?;
-    let mut source = SceneSource::new(folder);
+    let mut source = SceneSource::new(folder, mesh);
     let mut scene = read_sections(&document, &mut source, purpose)?;
-    fingerprint(&entries, &mut source);
-    scene.hash = source.fingerprint();
+    scene.physics = Physics::new(&entries, &source);
     scene.resolved = resolved(&entries, folder);
     Ok(scene)
 }
@@ -126,7 +149,7 @@ fn read_sections(
         output,
         warnings: walls.warnings,
         resolved: String::new(),
-        hash: 0,
+        physics: Physics::default(),
     };
     check_together(document, &mut scene, section.read.has_charge)?;
     Ok(scene)
@@ -139,29 +162,6 @@ const PATHS: [&[&str]; 4] = [
     &["solver", "openfoam_case"],
     &["walls", "*", "stl"],
 ];
-
-/// Adds the scene's keys to the fingerprint.
-///
-/// Keys that do not decide the physics are left out: outputs, the end of the run, and the paths of files
-/// (whose contents have been added already).
-fn fingerprint(entries: &Entries, source: &mut SceneSource) {
-    let mut entries = entries.clone();
-    for path in PATHS {
-        change_texts(&mut entries, path, &|_| String::new());
-    }
-    entries.sort_by(|a, b| a.0.cmp(&b.0));
-    for (section, node) in &entries {
-        if section == "output" {
-            continue;
-        }
-        let mut value = node.to_toml();
-        if let (Some(time), "time") = (value.as_table_mut(), section.as_str()) {
-            time.remove("end_s");
-        }
-        // A TOML table is sorted, so the order of keys in the file does not matter.
-        source.add(format!("{section} = {value}\n").as_bytes());
-    }
-}
 
 /// Text of the scene as TOML, with absolute paths of files so that it can be run from any folder.
 fn resolved(entries: &Entries, folder: &Path) -> String {

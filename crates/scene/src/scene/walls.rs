@@ -9,7 +9,7 @@ use crate::scene::OpenFoamSettings;
 use crate::source::SceneSource;
 use crate::stl::{Surface, read_stl};
 use crate::tree::{Range, SceneTable};
-use amberfield_core::{TriangleMesh, Wall, WallCharging, WallShape};
+use amberfield_core::{Fingerprint, TriangleMesh, Wall, WallCharging, WallShape};
 
 /// Keys of a wall.
 const KEYS: [&str; 6] = ["stl", "scale", "plane", "material", "charging", "patch"];
@@ -43,7 +43,7 @@ pub(super) fn read_walls(
     source: &mut SceneSource,
 ) -> Result<ReadWalls, SceneError> {
     let mut read = ReadWalls { walls: Vec::new(), patches: Vec::new(), warnings: Vec::new() };
-    let mut mesh = solver.map(|solver| PolyMesh::of(&solver.openfoam_case));
+    let mut mesh = solver.map(|solver| PolyMesh::of(&solver.openfoam_case, source.mesh()));
     let mut problems = Problems::default();
     for (index, node) in document.items("walls")?.unwrap_or_default().iter().enumerate() {
         let wall = SceneTable::new(node, format!("walls[{index}]"), &KEYS)
@@ -130,12 +130,14 @@ fn read_patch(
     };
     let surface = mesh.surface(patch).map_err(|error| refusal(table, error))?;
     // How the mesh's files are written does not matter, only what they say.
+    let mut print = Fingerprint::new();
     for vertex in &surface.vertices {
-        vertex.iter().for_each(|x| source.add(&x.to_le_bytes()));
+        vertex.iter().for_each(|x| print.add(&x.to_le_bytes()));
     }
     for vertex in surface.triangles.iter().flatten() {
-        source.add(&vertex.to_le_bytes());
+        print.add(&vertex.to_le_bytes());
     }
+    source.add(&format!("patch {patch}"), &print);
     Ok(surface)
 }
 

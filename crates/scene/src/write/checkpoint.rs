@@ -1,31 +1,34 @@
 //! Checkpoints: a header that identifies the file, a payload, and a checksum over both.
 //!
 //! Layout, little endian: magic (8 bytes), format version (u32), length and text of the program version
-//! (u16), fingerprint of the scene (u64), length of the payload (u64), CRC-32 of everything else (u32),
-//! payload (bincode 2). Only this module knows the format: bincode is no longer maintained and may be
-//! replaced here.
+//! (u16), length and bincode of the scene's physics (u32), length of the payload (u64), CRC-32 of
+//! everything else (u32), payload (bincode 2). Only this module knows the format: bincode is no longer
+//! maintained and may be replaced here.
 
 use super::atomic::write_atomically;
 use crate::SceneError;
 use crate::error::shorten;
+use crate::scene::{Physics, told};
 use serde::{Serialize, de::DeserializeOwned};
 use std::path::Path;
 
 /// First bytes of every checkpoint.
 const MAGIC: [u8; 8] = *b"AMBRFLD\x1a";
 /// Version of the layout.
-const FORMAT: u32 = 2;
+const FORMAT: u32 = 3;
 /// Version of the program that writes and reads.
 const PROGRAM: &str = env!("CARGO_PKG_VERSION");
 
-/// Writes a checkpoint of a state, for the scene with the given fingerprint.
+/// Writes a checkpoint of a state, for a scene with the given physics.
 ///
 /// # Errors
 /// Errors of the operating system.
-pub fn write_checkpoint(path: &Path, scene_hash: u64, state: &impl Serialize) -> Result<(), SceneError> {
+pub fn write_checkpoint(path: &Path, physics: &Physics, state: &impl Serialize) -> Result<(), SceneError> {
     let payload = bincode::serde::encode_to_vec(state, bincode::config::standard())
         .map_err(|error| SceneError::unwritable(path, error))?;
-    let header = header(PROGRAM, scene_hash, payload.len() as u64);
+    let physics = bincode::serde::encode_to_vec(physics, bincode::config::standard())
+        .map_err(|error| SceneError::unwritable(path, error))?;
+    let header = header(PROGRAM, &physics, payload.len() as u64);
     let checksum = checksum(&header, &payload);
     write_atomically(path, |writer| {
         writer.write_all(&header)?;
@@ -35,12 +38,13 @@ pub fn write_checkpoint(path: &Path, scene_hash: u64, state: &impl Serialize) ->
 }
 
 /// Header of a checkpoint, without the checksum.
-fn header(program: &str, scene_hash: u64, payload: u64) -> Vec<u8> {
+fn header(program: &str, physics: &[u8], payload: u64) -> Vec<u8> {
     let mut header = MAGIC.to_vec();
     header.extend(FORMAT.to_le_bytes());
     header.extend(u16::try_from(program.len()).expect("versions are short").to_le_bytes());
     header.extend(program.as_bytes());
-    header.extend(scene_hash.to_le_bytes());
+    header.extend(u32::try_from(physics.len()).expect("scenes are short").to_le_bytes());
+    header.extend(physics);
     header.extend(payload.to_le_bytes());
     header
 }
@@ -53,17 +57,17 @@ fn checksum(header: &[u8], payload: &[u8]) -> u32 {
     hasher.finalize()
 }
 
-/// Reads a checkpoint of the scene with the given fingerprint.
+/// Reads a checkpoint of a scene with the given physics.
 ///
 /// # Errors
 /// Files that are no checkpoint, are of another version or another scene, are cut short or damaged.
-pub fn read_checkpoint<T: DeserializeOwned>(path: &Path, scene_hash: u64) -> Result<T, SceneError> {
+pub fn read_checkpoint<T: DeserializeOwned>(path: &Path, physics: &Physics) -> Result<T, SceneError> {
     let bad = |problem: String| SceneError::Checkpoint { path: path.to_path_buf(), problem };
     if path.is_dir() {
         return Err(bad("is a directory; name a checkpoint file (checkpoints/*.amber)".to_owned()));
     }
     let bytes = std::fs::read(path).map_err(|error| bad(format!("cannot be read: {error}")))?;
-    let payload = open(&bytes, scene_hash).map_err(bad)?;
+    let payload = open(&bytes, physics).map_err(bad)?;
     decode(payload)
         .map_err(|error| bad(format!("its state cannot be read ({error}); take another checkpoint")))
 }
@@ -88,10 +92,10 @@ fn decode<T: DeserializeOwned>(payload: &[u8]) -> Result<T, bincode::error::Deco
 }
 
 /// Payload of a file that passes all checks.
-fn open(bytes: &[u8], scene_hash: u64) -> Result<&[u8], String> {
+fn open<'b>(bytes: &'b [u8], physics: &Physics) -> Result<&'b [u8], String> {
     let cut = || "is cut short; take an earlier checkpoint".to_owned();
     let mut rest = bytes;
-    let mut take = |count: usize| -> Option<&[u8]> {
+    let mut take = |count: usize| -> Option<&'b [u8]> {
         let (taken, after) = rest.split_at_checked(count)?;
         rest = after;
         Some(taken)
@@ -108,7 +112,8 @@ fn open(bytes: &[u8], scene_hash: u64) -> Result<&[u8], String> {
     }
     let length = u16::from_le_bytes(take(2).ok_or_else(cut)?.try_into().expect("two bytes"));
     let program = take(usize::from(length)).ok_or_else(cut)?.to_vec();
-    let found = u64::from_le_bytes(take(8).ok_or_else(cut)?.try_into().expect("eight bytes"));
+    let length = u32::from_le_bytes(take(4).ok_or_else(cut)?.try_into().expect("four bytes"));
+    let found = take(length as usize).ok_or_else(cut)?.to_vec();
     let payload = u64::from_le_bytes(take(8).ok_or_else(cut)?.try_into().expect("eight bytes"));
     let expected = u32::from_le_bytes(take(4).ok_or_else(cut)?.try_into().expect("four bytes"));
     if rest.len() as u64 != payload {
@@ -128,13 +133,12 @@ fn open(bytes: &[u8], scene_hash: u64) -> Result<&[u8], String> {
             shorten(&String::from_utf8_lossy(&program))
         ));
     }
-    if found != scene_hash {
-        return Err(format!(
-            "belongs to another scene (fingerprint {found:016x}, this scene has {scene_hash:016x}); \
-             only [output] and time.end_s may change"
-        ));
+    let found: Physics = decode(&found)
+        .map_err(|error| format!("its scene cannot be read ({error}); take another checkpoint"))?;
+    match &physics.changes_since(&found)[..] {
+        [] => Ok(rest),
+        changes => Err(format!("belongs to another scene: {}", told(changes))),
     }
-    Ok(rest)
 }
 
 #[cfg(test)]
@@ -158,18 +162,18 @@ mod tests {
             "x".into(),
             [Tagged::Full { number: f64::NEG_INFINITY, counts: [1, 2, 3] }, Tagged::Plain],
         );
-        write_checkpoint(&path, 42, &state).unwrap();
+        write_checkpoint(&path, &Physics::default(), &state).unwrap();
         (folder, path, state)
     }
 
-    fn problem(path: &Path, hash: u64) -> String {
-        read_checkpoint::<State>(path, hash).unwrap_err().to_string()
+    fn problem(path: &Path) -> String {
+        read_checkpoint::<State>(path, &Physics::default()).unwrap_err().to_string()
     }
 
     #[test]
     fn state_comes_back_bitwise() {
         let (_folder, path, state) = written();
-        assert_eq!(read_checkpoint::<State>(&path, 42).unwrap(), state);
+        assert_eq!(read_checkpoint::<State>(&path, &Physics::default()).unwrap(), state);
     }
 
     #[test]
@@ -177,27 +181,26 @@ mod tests {
         let (_folder, path, _) = written();
         let bytes = std::fs::read(&path).unwrap();
         for length in 0..bytes.len() {
-            assert!(open(&bytes[..length], 42).is_err(), "{length}");
+            assert!(open(&bytes[..length], &Physics::default()).is_err(), "{length}");
         }
         for bit in 0..8 * bytes.len() {
             let mut flipped = bytes.clone();
             flipped[bit / 8] ^= 1 << (bit % 8);
-            assert!(open(&flipped, 42).is_err(), "{bit}");
+            assert!(open(&flipped, &Physics::default()).is_err(), "{bit}");
         }
     }
 
     #[test]
-    fn other_scenes_and_versions_are_named() {
+    fn other_versions_are_named() {
         let (_folder, path, _) = written();
-        assert!(problem(&path, 43).contains("another scene"));
         let payload = [1, 2, 3];
-        let header = header("0.0.9", 42, 3);
+        let header = header("0.0.9", &[0, 0], 3);
         let mut bytes = header.clone();
         bytes.extend(checksum(&header, &payload).to_le_bytes());
         bytes.extend(payload);
         std::fs::write(&path, bytes).unwrap();
-        assert!(problem(&path, 42).contains("version 0.0.9"));
+        assert!(problem(&path).contains("version 0.0.9"));
         std::fs::write(&path, b"# no checkpoint at all").unwrap();
-        assert!(problem(&path, 42).contains("not a checkpoint"));
+        assert!(problem(&path).contains("not a checkpoint"));
     }
 }

@@ -2,7 +2,9 @@
 
 use crate::common::{Folder, GRAINS, PLATE, SCENE};
 use amberfield_core::{CouplingInterval, ForceLimit, Method, Permittivity, Tuning};
-use amberfield_scene::{ElectricFieldSettings, Purpose, parse_scene, read_checkpoint, write_checkpoint};
+use amberfield_scene::{
+    ElectricFieldSettings, Physics, Purpose, parse_scene, read_checkpoint, write_checkpoint,
+};
 use nalgebra::Vector3;
 use proptest::prelude::*;
 use proptest::sample::Index;
@@ -170,7 +172,7 @@ proptest! {
     ) {
         let folder = Folder::good();
         let path = folder.file("a.amber");
-        write_checkpoint(&path, 1, &vec![1.0_f64; 20]).unwrap();
+        write_checkpoint(&path, &Physics::default(), &vec![1.0_f64; 20]).unwrap();
         let good = std::fs::read(&path).unwrap();
         let mut damaged = good.clone();
         for Change { place, byte, .. } in &changes {
@@ -178,8 +180,8 @@ proptest! {
             damaged[at] = *byte;
         }
         std::fs::write(&path, &damaged).unwrap();
-        prop_assert_eq!(read_checkpoint::<Vec<f64>>(&path, 1).is_ok(), damaged == good);
+        prop_assert_eq!(read_checkpoint::<Vec<f64>>(&path, &Physics::default()).is_ok(), damaged == good);
         std::fs::write(&path, &bytes).unwrap();
-        prop_assert!(read_checkpoint::<Vec<f64>>(&path, 1).is_err());
+        prop_assert!(read_checkpoint::<Vec<f64>>(&path, &Physics::default()).is_err());
     }
 }

@@ -39,7 +39,7 @@ fn rolling_model_is_chosen_by_name_and_belongs_to_the_physics() {
         let key = format!("contacts.rolling_model={}", model.name());
         let asked = Folder::good().read(&[&key]).unwrap();
         assert_eq!(asked.rolling_model, model);
-        assert_ne!(asked.hash(), plain.hash());
+        assert_ne!(asked.physics(), plain.physics());
     }
 }
 
@@ -91,18 +91,29 @@ fn the_resolved_scene_is_the_same_scene_from_anywhere() {
     let path = elsewhere.path().join("scene.toml");
     std::fs::write(&path, scene.resolved()).unwrap();
     let again = amberfield_scene::read_scene(&path, &[], Purpose::Run).unwrap();
-    assert_eq!(again.hash(), scene.hash());
+    assert_eq!(again.physics().changes_since(scene.physics()), [""; 0]);
     assert_eq!((again.particles, again.walls.len(), again.time), (scene.particles, 2, scene.time));
 }
 
 #[test]
-fn the_fingerprint_knows_physics_from_output() {
+fn physics_is_known_from_output_and_changes_of_it_are_named() {
     let folder = Folder::good();
-    let hash = folder.read(&[]).unwrap().hash();
-    assert_eq!(folder.read(&["time.end_s=1.0", "output.every_s=0.5"]).unwrap().hash(), hash);
-    assert_ne!(folder.read(&["electric_field.tolerance=1e-3"]).unwrap().hash(), hash);
+    let before = folder.read(&[]).unwrap();
+    let changes = |set: &[&str]| folder.read(set).unwrap().physics().changes_since(before.physics());
+    let technical = [
+        "time.end_s=1.0",
+        "output.every_s=0.5",
+        "time.allow_unstable=true",
+        "electric_field.tuning=model",
+        "electric_field.far_tolerance=1e-9",
+    ];
+    assert_eq!(changes(&technical), [""; 0]);
+    assert_eq!(
+        changes(&["electric_field.tolerance=1e-3", "time.step_s=1e-9"]),
+        ["electric_field.tolerance is 0.001 and was 0.01", "time.step_s is 1e-9 and was not given"]
+    );
     folder.write("grains.csv", GRAINS.replace("0.003", "0.004"));
-    assert_ne!(folder.read(&[]).unwrap().hash(), hash);
+    assert_eq!(changes(&[]), ["grains.csv has other contents"]);
 }
 
 #[test]

@@ -1,6 +1,7 @@
 //! A scene sent through a command of its own process, as a user would: it may fail in any way.
 
-use crate::run::read_scene;
+use crate::failure::Failure;
+use crate::run::{SolverFolder, read_scene};
 use amberfield_core::{Permittivity, Vector3};
 use amberfield_oracle::{ErrorNorms, field_scale};
 use amberfield_scene::{Purpose, read_table};
@@ -31,7 +32,9 @@ fn endure_in(folder: &Path, scene: &Path, set: &[String], extreme: &Extreme) -> 
         let mut endured = sent(folder, &["run", "--no-progress"], scene, set, &out, most);
         let rows: Vec<Row> = read_table(&out.join("history.csv")).unwrap_or_default();
         endured.looks = rows.iter().map(Row::look).collect();
-        if let Ok(scene) = read_scene(scene, set, Purpose::Run) {
+        if let Ok(folder) = SolverFolder::temporary()
+            && let Ok(scene) = read_scene(scene, set, Purpose::Run, &folder)
+        {
             endured.grains = scene.particles.len();
             let moved = rows.iter().filter_map(|row| row.contact_charge_c).map(f64::abs).fold(0.0, f64::max);
             endured.charges_c = scene.particles.charge.iter().map(|charge| charge.abs()).sum::<f64>() + moved;
@@ -113,7 +116,9 @@ fn start(
 /// Relative RMS difference of two files of E.
 fn error_of(scene: &Path, set: &[String], out: &Path, exact: &Path) -> Result<f64, String> {
     let said = |error: amberfield_scene::SceneError| error.to_string();
-    let scene = read_scene(scene, set, Purpose::Field).map_err(said)?;
+    let of_read = |failure: Failure| failure.message().to_owned();
+    let solver_folder = SolverFolder::temporary().map_err(of_read)?;
+    let scene = read_scene(scene, set, Purpose::Field, &solver_folder).map_err(of_read)?;
     let [e, exact] = [out, exact].map(|file| {
         let rows: Vec<FieldRow> = read_table(file)?;
         Ok(rows.iter().map(FieldRow::e).collect::<Vec<_>>())

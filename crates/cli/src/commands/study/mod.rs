@@ -7,7 +7,9 @@ use crate::arguments::StudyOptions;
 use crate::failure::Failure;
 use crate::machine;
 use crate::print::line;
-use crate::run::{Charges, charges_of, connect_solver, domain_of, field_of, parameters, read_scene};
+use crate::run::{
+    Charges, SolverFolder, charges_of, connect_solver, domain_of, field_of, parameters, read_scene,
+};
 use amberfield_core::{Boundary, Domain, FieldSettings, Method, Tuning, Vector3};
 use amberfield_field::{ElectricField, FieldValues, Wanted};
 use amberfield_oracle::field_scale;
@@ -136,6 +138,8 @@ struct Charged {
     settings: FieldSettings,
     positions: Vec<Vector3<f64>>,
     charges: Vec<f64>,
+    /// Folder of its field solver.
+    folder: SolverFolder,
 }
 
 /// A field and its results.
@@ -158,13 +162,15 @@ impl Laboratory for OurMethods {
     }
 
     fn problem(&mut self, scene: &Path, set: &[String]) -> Result<Charged, String> {
-        let scene = read_scene(scene, set, Purpose::Field).map_err(|error| error.to_string())?;
+        let said = |failure: Failure| failure.message().to_owned();
+        let folder = SolverFolder::temporary().map_err(said)?;
+        let scene = read_scene(scene, set, Purpose::Field, &folder).map_err(said)?;
         let settings = scene.electric_field.as_ref().expect("the purpose needs it").field.clone();
         let Charges { position: positions, charge: charges, .. } = charges_of(&scene);
         if positions.is_empty() {
             return Err("no grain takes part in the field".to_owned());
         }
-        Ok(Charged { settings, positions, charges, scene })
+        Ok(Charged { settings, positions, charges, scene, folder })
     }
 
     fn grains(&self, problem: &Charged) -> usize {
@@ -172,7 +178,7 @@ impl Laboratory for OurMethods {
     }
 
     fn exact(&mut self, problem: &Charged, direct_up_to: usize) -> Result<Exact, String> {
-        let Charged { positions, charges, settings, scene } = problem;
+        let Charged { positions, charges, settings, scene, .. } = problem;
         let domain =
             scene.domain.as_ref().ok_or("the scene has no [domain], whose box would be the truth; add it")?;
         let (e, by) = exact_in(domain, settings, positions, charges, direct_up_to)?;
@@ -221,7 +227,7 @@ impl Laboratory for OurMethods {
 
     fn method(&mut self, problem: &mut Charged) -> Result<Built, String> {
         let said = |failure: Failure| failure.message().to_owned();
-        let solver = connect_solver(&mut problem.scene).map_err(said)?.field;
+        let solver = connect_solver(&mut problem.scene, &problem.folder).map_err(said)?.field;
         let domain = domain_of(&problem.scene).map_err(said)?;
         let field = field_of(domain, &problem.settings, solver, &problem.positions, &problem.charges)
             .map_err(said)?;

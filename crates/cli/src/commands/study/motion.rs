@@ -1,6 +1,6 @@
 //! A run of a study.
 
-use crate::run::{connect_solver, read_scene, setup_of};
+use crate::run::{SolverFolder, connect_solver, read_scene, setup_of};
 use amberfield_core::Vector3;
 use amberfield_dem::{ElectricEnergy, Simulation};
 use amberfield_scene::Purpose;
@@ -10,14 +10,15 @@ use std::time::Instant;
 
 /// Runs a scene to its end; `nudge` displaces its grains by so many radii, every other one the other way.
 pub(super) fn simulate(scene: &Path, set: &[String], nudge: f64, looks: usize) -> Result<Moved, String> {
-    let mut scene = read_scene(scene, set, Purpose::Run).map_err(|error| error.to_string())?;
     let said = |failure: crate::failure::Failure| failure.message().to_owned();
+    let folder = SolverFolder::temporary().map_err(said)?;
+    let mut scene = read_scene(scene, set, Purpose::Run, &folder).map_err(said)?;
     let particles = &mut scene.particles;
     for (index, (position, radius)) in particles.position.iter_mut().zip(&particles.radius).enumerate() {
         let way = nudge * radius;
         *position += Vector3::repeat(if index % 2 == 0 { way } else { -way });
     }
-    let solver = connect_solver(&mut scene).map_err(said)?;
+    let solver = connect_solver(&mut scene, &folder).map_err(said)?;
     let setup = setup_of(&scene, None, solver).map_err(said)?;
     let (domain, end_s) = (setup.domain.clone(), setup.time.end_s);
     let mut run = Simulation::new(setup).map_err(|error| error.to_string())?;

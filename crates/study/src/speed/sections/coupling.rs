@@ -85,14 +85,9 @@ pub(crate) fn measure(context: &Context, root: &Path) -> Result<()> {
 
 fn settings_of(case: &Path, start: bool) -> SolverSettings {
     SolverSettings {
-        case: case.to_owned(),
-        application: None,
-        flow: false,
-        start,
-        ranks: 1,
+        workplace: start.then(|| case.with_extension("solver")),
         timeout: Duration::from_secs(120),
-        far_tolerance: 1e-6,
-        log: start.then(|| case.join("log")),
+        ..SolverSettings::awaited(case)
     }
 }
 

@@ -113,14 +113,9 @@ fn ours(root: &Path, place: &Path, lattice: &[[f64; 3]], looks: (f64, usize)) ->
 /// The flow of a case.
 fn solver_of(case: PathBuf, place: &Path) -> Result<ConnectFlow> {
     let settings = SolverSettings {
-        case,
-        application: None,
         flow: true,
-        start: true,
-        ranks: 1,
         timeout: Duration::from_secs(60),
-        far_tolerance: 1e-6,
-        log: Some(place.join("log.amberPimpleFoam")),
+        ..SolverSettings::started(case, place.join("solver"))
     };
     Ok(ConnectFlow::once(Announced::new(settings)?.connect()?.flow()))
 }

@@ -1,0 +1,106 @@
+//! Part of a scene that decides its physics: a run goes on from a checkpoint where that is the same.
+
+use crate::source::SceneSource;
+use crate::tree::Entries;
+use serde::{Deserialize, Serialize};
+use std::collections::BTreeMap;
+
+/// Keys that decide nothing of the physics: outputs, the end of a run, how a solver is run, what chooses
+/// parameters that a checkpoint has.
+const TECHNICAL: [&str; 12] = [
+    "output",
+    "time.end_s",
+    "time.allow_unstable",
+    "electric_field.tuning",
+    "electric_field.far_tolerance",
+    "solver.application",
+    "solver.on_solver_loss",
+    "solver.ranks",
+    "solver.start",
+    "solver.timeout_s",
+    "solver.wait_s",
+    "solver.openfoam_case",
+];
+/// Keys whose values are names of files: their contents count instead.
+const FILES: [&str; 3] = ["particles.file", "particles.generate.charge_C.from_file", "stl"];
+/// Differences that a message names at most.
+const MOST_NAMED: usize = 5;
+
+/// Part of a scene that decides its physics: keys with their values, and fingerprints of the files that they
+/// name.
+#[derive(Clone, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
+pub struct Physics {
+    keys: BTreeMap<String, String>,
+    files: Vec<(String, u64)>,
+}
+
+impl Physics {
+    /// Physics of a scene's keys and of the files that were read.
+    pub(super) fn new(entries: &Entries, source: &SceneSource) -> Self {
+        let mut keys = BTreeMap::new();
+        for (section, node) in entries {
+            flatten(section.clone(), &node.to_toml(), &mut keys);
+        }
+        keys.retain(|key, _| !is_technical(key) && !names_a_file(key));
+        Self { keys, files: source.fingerprints().to_vec() }
+    }
+
+    /// Differences from the physics of an earlier scene, each with both values; empty where there are none.
+    #[must_use]
+    pub fn changes_since(&self, earlier: &Self) -> Vec<String> {
+        let mut changes: Vec<String> = Vec::new();
+        for (key, value) in &self.keys {
+            match earlier.keys.get(key) {
+                Some(before) if before == value => {}
+                Some(before) => changes.push(format!("{key} is {value} and was {before}")),
+                None => changes.push(format!("{key} is {value} and was not given")),
+            }
+        }
+        let gone = earlier.keys.iter().filter(|(key, _)| !self.keys.contains_key(*key));
+        changes.extend(gone.map(|(key, before)| format!("{key} is not given and was {before}")));
+        if self.files.len() != earlier.files.len() {
+            changes.push(format!("{} files are read and were {}", self.files.len(), earlier.files.len()));
+        }
+        let pairs = self.files.iter().zip(&earlier.files);
+        let other = pairs.filter(|((_, now), (_, before))| now != before);
+        changes.extend(other.map(|((name, _), _)| format!("{name} has other contents")));
+        changes
+    }
+}
+
+/// Text that names changes, and what may change.
+pub(crate) fn told(changes: &[String]) -> String {
+    let named = &changes[..changes.len().min(MOST_NAMED)];
+    let more = match changes.len() - named.len() {
+        0 => String::new(),
+        more => format!("; and {more} more"),
+    };
+    format!(
+        "{}{more}; restore that, or start a new run ([output], time.end_s, how a solver is run may change)",
+        named.join("; ")
+    )
+}
+
+/// Adds the values below a key, each with a key of its own.
+fn flatten(key: String, value: &toml::Value, keys: &mut BTreeMap<String, String>) {
+    match value {
+        toml::Value::Table(table) => {
+            table.iter().for_each(|(inner, value)| flatten(format!("{key}.{inner}"), value, keys));
+        }
+        toml::Value::Array(items) if items.iter().any(toml::Value::is_table) => {
+            let numbered = items.iter().enumerate();
+            numbered.for_each(|(index, value)| flatten(format!("{key}[{index}]"), value, keys));
+        }
+        value => drop(keys.insert(key, value.to_string())),
+    }
+}
+
+fn is_technical(key: &str) -> bool {
+    let is_below = |rest: &str| rest.is_empty() || rest.starts_with(['.', '[']);
+    TECHNICAL.iter().any(|technical| key.strip_prefix(technical).is_some_and(is_below))
+}
+
+fn names_a_file(key: &str) -> bool {
+    let is_wall = |file: &str| key.starts_with("walls[") && key.ends_with(&format!("].{file}"));
+    FILES.iter().any(|file| key == *file || is_wall(file))
+}
