@@ -1,8 +1,11 @@
 //! Balance of momentum: the gas gives what grains get, to round-off, whatever the flow does.
 
+mod common;
+
 use amberfield_core::{Boundary, Domain, DragLaw, Gas, GasFlow, GasModel, Vector3};
-use amberfield_field::far::{FarMesh, FarMeshParts};
+use amberfield_field::far::FarMesh;
 use amberfield_gas::{CellShapes, Exchange, FlowRequest, FlowSolver, FlowValues, GasError, GrainsView};
+use common::{ByRule, air, mesh, scattered};
 use proptest::prelude::*;
 use std::sync::{Arc, Mutex};
 
@@ -16,6 +19,14 @@ struct Whimsical {
     calls: u32,
     answer: FlowValues,
     gives: Vector3<f64>,
+}
+
+impl Whimsical {
+    fn new(domain: &Domain, cells: [usize; 3]) -> Self {
+        let (mesh, shapes) = mesh(domain, cells);
+        let (given, void, answer) = Default::default();
+        Self { mesh, shapes, given, void, calls: 0, answer, gives: Vector3::zeros() }
+    }
 }
 
 impl FlowSolver for Whimsical {
@@ -60,26 +71,6 @@ impl FlowSolver for Whimsical {
     }
 }
 
-fn gas(drag: DragLaw, model: GasModel, magnus_lift: bool) -> (Gas, GasFlow) {
-    let flow = GasFlow {
-        model,
-        interval_s: 1.0,
-        smoothing_length_m: None,
-        viscous_force: false,
-        saffman_lift: false,
-        overlap: false,
-    };
-    let gas = Gas {
-        drag,
-        density_kg_m3: 1.2,
-        viscosity_pa_s: 1.8e-5,
-        velocity_m_s: Vector3::zeros(),
-        magnus_lift,
-        flow: Some(flow),
-    };
-    (gas, flow)
-}
-
 proptest! {
     #[test]
     fn momentum_and_volume_are_kept_to_round_off(
@@ -89,19 +80,11 @@ proptest! {
     ) {
         let faces = [[Boundary::Periodic; 2], [Boundary::Grounded; 2], [Boundary::Grounded; 2]];
         let domain = Domain::new(Vector3::zeros(), Vector3::repeat(0.02), faces).unwrap();
-        let mesh = FarMesh::new(FarMeshParts::of_box(&domain, [cells; 3]).unwrap()).unwrap();
-        let (given, void) = (Arc::new(Mutex::new(Vector3::zeros())), Arc::new(Mutex::new(0.0)));
-        let solver = Whimsical {
-            shapes: CellShapes::of_planes(&mesh).unwrap(),
-            mesh,
-            given: Arc::clone(&given),
-            void: Arc::clone(&void),
-            calls: 0,
-            answer: FlowValues::default(),
-            gives: Vector3::zeros(),
-        };
-        let (gas, flow) = gas(DragLaw::ALL[law], if model_b { GasModel::B } else { GasModel::A }, spin);
-        let flow = GasFlow { overlap, ..flow };
+        let solver = Whimsical::new(&domain, [cells; 3]);
+        let (given, void) = (Arc::clone(&solver.given), Arc::clone(&solver.void));
+        let (gas, flow) = air(DragLaw::ALL[law]);
+        let gas = Gas { magnus_lift: spin, ..gas };
+        let flow = GasFlow { overlap, model: if model_b { GasModel::B } else { GasModel::A }, ..flow };
         let mut exchange = Exchange::new(gas, flow, Vector3::zeros(), Box::new(solver), 1e-3).unwrap();
         let mut centre: Vec<_> =
             places.iter().map(|(x, y, z)| [0.02 * x, 0.02 * y, 0.02 * z, 5e-4]).collect();
@@ -153,65 +136,13 @@ fn a_state_of_another_mesh_is_refused() {
         Domain::new(Vector3::zeros(), Vector3::repeat(edge), [[Boundary::Grounded; 2]; 3]).unwrap()
     };
     let exchange = |cells: usize| {
-        let mesh = FarMesh::new(FarMeshParts::of_box(&domain(0.02), [cells; 3]).unwrap()).unwrap();
-        let solver = Whimsical {
-            shapes: CellShapes::of_planes(&mesh).unwrap(),
-            mesh,
-            given: Arc::default(),
-            void: Arc::default(),
-            calls: 0,
-            answer: FlowValues::default(),
-            gives: Vector3::zeros(),
-        };
-        let (gas, flow) = gas(DragLaw::Stokes, GasModel::A, false);
+        let solver = Whimsical::new(&domain(0.02), [cells; 3]);
+        let (gas, flow) = air(DragLaw::Stokes);
         Exchange::new(gas, flow, Vector3::zeros(), Box::new(solver), 1e-3).unwrap()
     };
     let state = exchange(3).state().unwrap();
     let error = exchange(4).restore(&state).unwrap_err().to_string();
     assert!(error.contains("27 cells") && error.contains("64"), "{error}");
-}
-
-/// A gas of one velocity and a mass of its own, which takes all momentum that it is given.
-#[derive(Debug)]
-struct Lump {
-    mesh: FarMesh,
-    shapes: CellShapes,
-    mass: f64,
-    velocity: Vector3<f64>,
-}
-
-impl FlowSolver for Lump {
-    fn mesh(&self) -> &FarMesh {
-        &self.mesh
-    }
-
-    fn shapes(&self) -> &CellShapes {
-        &self.shapes
-    }
-
-    fn ask(&mut self, request: &FlowRequest<'_>) -> Result<(), GasError> {
-        let volumes = self.mesh.volumes();
-        let drag: f64 = request.drag.iter().zip(volumes).map(|(drag, volume)| drag * volume).sum();
-        let source: Vector3<f64> =
-            request.source.iter().zip(volumes).map(|(source, volume)| source * *volume).sum();
-        let interval = request.interval_s;
-        self.velocity = (self.velocity * self.mass + source * interval) / (self.mass + drag * interval);
-        Ok(())
-    }
-
-    fn take(&mut self, values: &mut FlowValues) -> Result<(), GasError> {
-        values.velocity = vec![self.velocity; self.mesh.cell_count()];
-        values.pressure_gradient = vec![Vector3::zeros(); self.mesh.cell_count()];
-        Ok(())
-    }
-
-    fn state(&mut self) -> Result<Vec<Vec<f64>>, GasError> {
-        Ok(Vec::new())
-    }
-
-    fn restore(&mut self, _: &[Vec<f64>]) -> Result<(), GasError> {
-        Ok(())
-    }
 }
 
 /// Largest slip of the second half of two hundred exchanges over that of the first.
@@ -221,15 +152,23 @@ impl FlowSolver for Lump {
 fn slip_that_stays(loading: f64, interval_over_response: f64, overlap: bool) -> f64 {
     let domain =
         Domain::new(Vector3::zeros(), Vector3::repeat(0.02), [[Boundary::Periodic; 2]; 3]).expect("good");
-    let mesh = FarMesh::new(FarMeshParts::of_box(&domain, [3; 3]).expect("good")).expect("good");
-    let (count, mass, radius) = (50, 1e-6, 5e-4);
-    let shapes = CellShapes::of_planes(&mesh).expect("good");
-    let solver = Lump { mesh, shapes, mass: count as f64 * mass / loading, velocity: Vector3::zeros() };
-    let (gas, flow) = gas(DragLaw::Stokes, GasModel::A, false);
+    let (count, mass, radius) = (48, 1e-6, 5e-4);
+    // The gas has one velocity and a mass of its own, and takes all momentum that it is given.
+    let (mass_of_gas, mut velocity_of_gas) = (count as f64 * mass / loading, Vector3::zeros());
+    let lump = move |request: &FlowRequest<'_>, volumes: &[f64]| {
+        let interval = request.interval_s;
+        let drag: f64 = request.drag.iter().zip(volumes).map(|(drag, volume)| drag * volume).sum();
+        let source: Vector3<f64> =
+            request.source.iter().zip(volumes).map(|(source, volume)| source * *volume).sum();
+        velocity_of_gas =
+            (velocity_of_gas * mass_of_gas + source * interval) / (mass_of_gas + drag * interval);
+        vec![velocity_of_gas; volumes.len()]
+    };
+    let (gas, flow) = air(DragLaw::Stokes);
     let flow = GasFlow { overlap, ..flow };
-    let mut exchange = Exchange::new(gas, flow, Vector3::zeros(), Box::new(solver), 1e-3).expect("good");
-    let place = |i: usize| [1.0, 1.7, 2.3].map(|step: f64| 0.02 * (0.37 * step * i as f64).fract());
-    let centre: Vec<_> = (0..count).map(place).map(|[x, y, z]| [x, y, z, radius]).collect();
+    let solver = ByRule::boxed(&domain, [3; 3], lump);
+    let mut exchange = Exchange::new(gas, flow, Vector3::zeros(), solver, 1e-3).expect("good");
+    let centre = scattered([4, 4, 3], [0.02; 3], radius);
     let mut velocity = vec![Vector3::new(1.0, 0.0, 0.0); count];
     let inverse_mass = vec![1.0 / mass; count];
     let interval = interval_over_response * mass / (6.0 * std::f64::consts::PI * 1.8e-5 * radius);

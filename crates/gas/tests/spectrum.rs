@@ -1,13 +1,13 @@
 //! Modes of the exchange: whatever way the gas moves against the grains, from cell to cell, it is slowed
 //! down.
 
-use amberfield_core::{Boundary, Domain, DragLaw, Gas, GasFlow, GasModel, Vector3};
-use amberfield_field::far::{FarMesh, FarMeshParts};
-use amberfield_gas::{CellShapes, Exchange, FlowRequest, FlowSolver, FlowValues, GasError, GrainsView};
+mod common;
+
+use amberfield_core::{Boundary, Domain, DragLaw, Gas, GasFlow, Vector3};
+use amberfield_gas::{Exchange, FlowRequest, GrainsView};
+use common::{ByRule, air, scattered};
 use std::sync::{Arc, Mutex};
 
-const DENSITY: f64 = 1.2;
-const VISCOSITY: f64 = 1.8e-5;
 /// Edge of the box [m], and cells along it.
 const EDGE: f64 = 0.02;
 const CELLS: usize = 5;
@@ -17,52 +17,11 @@ const SLOW: f64 = 1e-12;
 /// Diameters over which grains are smoothed: three and ten cells.
 const LENGTHS: [f64; 2] = [0.012, 0.04];
 
-/// A gas whose cells know nothing of each other: all that joins them are grains.
-#[derive(Debug)]
-struct Cells {
-    mesh: FarMesh,
-    shapes: CellShapes,
-    velocity: Arc<Mutex<Vec<Vector3<f64>>>>,
-}
-
-impl FlowSolver for Cells {
-    fn mesh(&self) -> &FarMesh {
-        &self.mesh
-    }
-
-    fn shapes(&self) -> &CellShapes {
-        &self.shapes
-    }
-
-    fn ask(&mut self, request: &FlowRequest<'_>) -> Result<(), GasError> {
-        let mut velocity = self.velocity.lock().expect("no panic");
-        for (cell, u) in velocity.iter_mut().enumerate() {
-            let mass = DENSITY * request.void_fraction[cell];
-            let drag = request.drag[cell] * request.interval_s;
-            *u = (*u * mass + request.source[cell] * request.interval_s) / (mass + drag);
-        }
-        Ok(())
-    }
-
-    fn take(&mut self, values: &mut FlowValues) -> Result<(), GasError> {
-        values.velocity.clone_from(&self.velocity.lock().expect("no panic"));
-        values.pressure_gradient = vec![Vector3::zeros(); values.velocity.len()];
-        Ok(())
-    }
-
-    fn state(&mut self) -> Result<Vec<Vec<f64>>, GasError> {
-        Ok(Vec::new())
-    }
-
-    fn restore(&mut self, _: &[Vec<f64>]) -> Result<(), GasError> {
-        Ok(())
-    }
-}
-
-/// Grains in a box of such a gas.
+/// Grains in a box of a gas whose cells know nothing of each other: all that joins them are grains.
 struct Setup {
     exchange: Exchange,
     domain: Domain,
+    settings: Gas,
     gas: Arc<Mutex<Vec<Vector3<f64>>>>,
     centre: Vec<[f64; 4]>,
 }
@@ -70,32 +29,23 @@ struct Setup {
 fn setup(length: f64, overlap: bool) -> Setup {
     let domain =
         Domain::new(Vector3::zeros(), Vector3::repeat(EDGE), [[Boundary::Grounded; 2]; 3]).expect("good");
-    let mesh = FarMesh::new(FarMeshParts::of_box(&domain, [CELLS; 3]).expect("good")).expect("good");
-    let gas = Arc::new(Mutex::new(vec![Vector3::zeros(); mesh.cell_count()]));
-    let shapes = CellShapes::of_planes(&mesh).expect("good");
-    let solver = Cells { mesh, shapes, velocity: Arc::clone(&gas) };
-    let flow = GasFlow {
-        model: GasModel::A,
-        interval_s: 1.0,
-        smoothing_length_m: Some(length),
-        viscous_force: false,
-        saffman_lift: false,
-        overlap,
-    };
     // Stokes: linear, so that the answer to any flow is a sum of answers.
-    let settings = Gas {
-        drag: DragLaw::Stokes,
-        density_kg_m3: DENSITY,
-        viscosity_pa_s: VISCOSITY,
-        velocity_m_s: Vector3::zeros(),
-        magnus_lift: false,
-        flow: Some(flow),
+    let (settings, flow) = air(DragLaw::Stokes);
+    let flow = GasFlow { smoothing_length_m: Some(length), overlap, ..flow };
+    let gas = Arc::new(Mutex::new(vec![Vector3::zeros(); CELLS.pow(3)]));
+    let velocity = Arc::clone(&gas);
+    let cells = move |request: &FlowRequest<'_>, _: &[f64]| {
+        let mut velocity = velocity.lock().expect("no panic");
+        for (cell, u) in velocity.iter_mut().enumerate() {
+            let mass = settings.density_kg_m3 * request.void_fraction[cell];
+            let drag = request.drag[cell] * request.interval_s;
+            *u = (*u * mass + request.source[cell] * request.interval_s) / (mass + drag);
+        }
+        velocity.clone()
     };
-    let exchange =
-        Exchange::new(settings, flow, Vector3::zeros(), Box::new(solver), 2.0 * RADIUS).expect("good");
-    let place = |i: usize| [1.0, 1.7, 2.3].map(|step: f64| EDGE * (0.37 * step * i as f64).fract());
-    let centre = (0..300).map(place).map(|[x, y, z]| [x, y, z, RADIUS]).collect();
-    Setup { exchange, domain, gas, centre }
+    let solver = ByRule::boxed(&domain, [CELLS; 3], cells);
+    let exchange = Exchange::new(settings, flow, Vector3::zeros(), solver, 2.0 * RADIUS).expect("good");
+    Setup { exchange, domain, settings, gas, centre: scattered([7, 7, 6], [EDGE; 3], RADIUS) }
 }
 
 /// Velocity that jumps from cell to cell [m/s].
@@ -106,7 +56,7 @@ fn rough(i: usize) -> Vector3<f64> {
 #[test]
 fn each_cells_gas_is_slowed_by_its_own_drag_and_that_of_no_other() {
     for length in LENGTHS {
-        let Setup { mut exchange, domain, gas, centre } = setup(length, false);
+        let Setup { mut exchange, domain, gas, centre, .. } = setup(length, false);
         let count = gas.lock().unwrap().len();
         let at_rest = vec![Vector3::zeros(); centre.len()];
         let heavy = vec![1e-9; centre.len()];
@@ -137,10 +87,10 @@ fn each_cells_gas_is_slowed_by_its_own_drag_and_that_of_no_other() {
 fn no_motion_of_gas_against_grains_stays_whatever_they_weigh() {
     for length in LENGTHS {
         for (loading, overlap) in [(0.2, false), (1.0, false), (30.0, false), (1.0, true), (10.0, true)] {
-            let Setup { mut exchange, domain, gas, centre } = setup(length, overlap);
+            let Setup { mut exchange, domain, settings, gas, centre } = setup(length, overlap);
             let count = centre.len();
-            let mass = loading * DENSITY * EDGE.powi(3) / count as f64;
-            let response = mass / (6.0 * std::f64::consts::PI * VISCOSITY * RADIUS);
+            let mass = loading * settings.density_kg_m3 * EDGE.powi(3) / count as f64;
+            let response = mass / (6.0 * std::f64::consts::PI * settings.viscosity_pa_s * RADIUS);
             gas.lock().unwrap().iter_mut().enumerate().for_each(|(cell, u)| *u = rough(cell));
             let mut velocity: Vec<_> = (0..count).map(|i| rough(i + 3)).collect();
             let inverse_mass = vec![1.0 / mass; count];

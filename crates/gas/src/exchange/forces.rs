@@ -73,7 +73,8 @@ impl Exchange {
             let source = velocity * held.drag - held.push;
             [held.drag, source.x, source.y, source.z]
         };
-        let given: Vec<[f64; 4]> = self.held.iter().zip(grains.velocity).map(gives).collect();
+        let held = self.held.par_iter().zip(grains.velocity).with_min_len(CHUNK);
+        let given: Vec<[f64; 4]> = held.map(gives).collect();
         let given = self.mapping.at_nodes(&self.shares, &given);
         // Both in one go: smoothing takes much of the time.
         let none = [0.0; 4];
@@ -104,7 +105,7 @@ impl Exchange {
         let AtGrain { void_fraction, vorticity, .. } = *flow;
         let diameter = 2.0 * grains.centre[i][3];
         let slip = flow.velocity - grains.velocity[i];
-        let [of_void, of_flow] = self.mapping.variances_of_one(self.cells[i], diameter);
+        let [of_void, of_flow] = self.mapping.variances_of_one(self.placed[i].cell, diameter);
         let itself = Itself::new(1.0 - void_fraction, sphere(diameter), &of_void);
         let spread = spread_of_wind(&of_flow, &slip);
         let void_fraction = 1.0 - itself.others;
@@ -113,15 +114,17 @@ impl Exchange {
             drag::coefficient(self.gas.drag, &known)
         };
         // Drag in the gas that the grain does not disturb, over the slip in the gas as it is.
-        let mut larger = 1.0;
+        let (mut larger, mut speed) = (1.0, slip.norm());
+        let mut drag = beta(speed);
         for _ in 0..ROUNDS {
-            let speed = larger * slip.norm();
             let wind = self_disturbance::per_force(speed, spread, density, viscosity);
             let before = larger;
-            larger = 1.0 / (1.0 - (itself.alone * wind * beta(speed)).min(MOST_WIND));
+            larger = 1.0 / (1.0 - (itself.alone * wind * drag).min(MOST_WIND));
             if (larger - before).abs() < SETTLED {
                 break;
             }
+            speed = larger * slip.norm();
+            drag = beta(speed);
         }
         let over = match self.flow.model {
             GasModel::A => larger,
@@ -134,7 +137,7 @@ impl Exchange {
         if self.gas.magnus_lift && !grains.angular.is_empty() {
             lift += magnus_lift::force(-slip, grains.angular[i], vorticity, diameter, density);
         }
-        Held { drag: over * beta(larger * slip.norm()), push: lift, slot: i as u32, ..Held::default() }
+        Held { drag: over * drag, push: lift, slot: i as u32, ..Held::default() }
     }
 
     /// Sets the force of the flow on every grain until the next exchange.

@@ -27,7 +27,7 @@ impl Exchange {
         }
         let all: Vec<[f64; 4]> =
             (0..self.held.len()).into_par_iter().with_min_len(CHUNK).map(|i| self.got(i)).collect();
-        let mut got = vec![[0.0; 4]; self.places.len()];
+        let mut got = vec![[0.0; 4]; self.placed.len()];
         self.held.iter().zip(all).for_each(|(held, of_grain)| got[held.slot as usize] = of_grain);
         for gone in self.gone.drain(..) {
             got[gone.slot as usize] = gone.got;

@@ -87,10 +87,8 @@ pub struct Exchange {
     solver: Box<dyn FlowSolver>,
     mapping: Mapping,
     held: Vec<Held>,
-    places: Vec<Vector3<f64>>,
-    cells: Vec<u32>,
-    diameters: Vec<f64>,
-    /// Places among the cells at the exchange.
+    /// Grains at the exchange, and their places among the nodes.
+    placed: Vec<Placed>,
     shares: Places,
     /// Time for which the forces of the exchange have acted [s].
     elapsed_s: f64,
@@ -139,9 +137,7 @@ impl Exchange {
             gravity,
             mapping,
             held: Vec::new(),
-            places: Vec::new(),
-            cells: Vec::new(),
-            diameters: Vec::new(),
+            placed: Vec::new(),
             shares: Places::default(),
             elapsed_s: 0.0,
             gone: Vec::new(),
@@ -289,29 +285,15 @@ impl Exchange {
     /// Finds every grain's cell and shares.
     fn place(&mut self, domain: &Domain, grains: &GrainsView<'_>) {
         let mesh = self.solver.mesh();
-        let (held, cells) = (&self.held, &self.cells);
-        let found: Vec<(Vector3<f64>, u32)> = grains
-            .centre
-            .par_iter()
-            .enumerate()
-            .map(|(i, c)| {
-                let place = domain.wrap(Vector3::new(c[0], c[1], c[2]));
-                let last = held.get(i).map(|held| cells[held.slot as usize]);
-                (place, mesh.locate(&place, last).0)
-            })
-            .collect();
-        (self.places, self.cells) = found.into_iter().unzip();
+        let (held, placed) = (&self.held, &self.placed);
+        let one = |(i, &[x, y, z, radius]): (usize, &[f64; 4])| {
+            let centre = domain.wrap(Vector3::new(x, y, z));
+            let last = held.get(i).map(|held| placed[held.slot as usize].cell);
+            Placed { centre, diameter: 2.0 * radius, cell: mesh.locate(&centre, last).0 }
+        };
+        self.placed = grains.centre.par_iter().with_min_len(CHUNK).enumerate().map(one).collect();
         self.held.resize(grains.centre.len(), Held::default());
-        self.find_shares(grains.centre.iter().map(|c| 2.0 * c[3]).collect());
-    }
-
-    /// Finds the shares of grains with diameters [m] at their places.
-    fn find_shares(&mut self, diameters: Vec<f64>) {
-        let places = self.places.iter().zip(&self.cells).zip(&diameters);
-        let grains: Vec<Placed> =
-            places.map(|((&centre, &cell), &diameter)| Placed { centre, diameter, cell }).collect();
-        self.mapping.place(self.solver.mesh(), &grains, &mut self.shares);
-        self.diameters = diameters;
+        self.mapping.place(mesh, &self.placed, &mut self.shares);
     }
 
     /// Fills in the void fraction ε of every cell.

@@ -2,6 +2,7 @@
 
 use super::ledger::Gone;
 use super::{Exchange, Held};
+use crate::mapping::Placed;
 use crate::{FlowValues, GasError};
 use amberfield_core::Vector3;
 use serde::{Deserialize, Serialize};
@@ -58,9 +59,9 @@ impl Exchange {
             drag: self.drag.clone(),
             source: self.source.clone(),
             held: self.held.clone(),
-            places: self.places.clone(),
-            cells: self.cells.clone(),
-            diameters: self.diameters.clone(),
+            places: self.placed.iter().map(|grain| grain.centre).collect(),
+            cells: self.placed.iter().map(|grain| grain.cell).collect(),
+            diameters: self.placed.iter().map(|grain| grain.diameter).collect(),
             owed: self.owed.clone(),
             elapsed_s: self.elapsed_s,
             gone: self.gone.clone(),
@@ -88,8 +89,8 @@ impl Exchange {
         }
         self.solver.restore(&state.solver)?;
         self.held.clone_from(&state.held);
-        self.places.clone_from(&state.places);
-        self.cells.clone_from(&state.cells);
+        let grains = state.places.iter().zip(&state.cells).zip(&state.diameters);
+        self.placed = grains.map(|((&centre, &cell), &diameter)| Placed { centre, diameter, cell }).collect();
         self.owed.clone_from(&state.owed);
         self.elapsed_s = state.elapsed_s;
         self.gone.clone_from(&state.gone);
@@ -102,7 +103,7 @@ impl Exchange {
         self.early.clone_from(&state.early);
         self.drag.clone_from(&state.drag);
         self.source.clone_from(&state.source);
-        self.find_shares(state.diameters.clone());
+        self.mapping.place(self.solver.mesh(), &self.placed, &mut self.shares);
         Ok(())
     }
 }

@@ -48,7 +48,7 @@ pub(crate) const CHUNK: usize = 1024;
 const PART: usize = 256;
 /// Most sums of grains at nodes side by side, and how many of them there are over grains for a node.
 const MOST_SUMS: usize = 8;
-const OVER_NODES: usize = 1;
+const OVER_NODES: usize = 3;
 
 /// Shares of grains in the cells of a mesh.
 #[derive(Clone, Debug)]
@@ -56,11 +56,10 @@ pub struct Mapping {
     length: f64,
     /// Whether all cells are large beside grains.
     is_coarse: bool,
-    volumes: Vec<f64>,
     /// Variance by cell that diffusion adds [m²].
     diffused: Vec<Matrix3<f64>>,
     nodes: Nodes,
-    /// Volume of each node that is a cell's, by cell [m³].
+    /// Share of each cell that is a node's, by cell.
     of_cells: Rows,
     smoothing: Smoothing,
 }
@@ -153,15 +152,16 @@ impl Mapping {
         }
         let length = asked.max(least);
         let nodes = Nodes::new(mesh, shapes);
-        let of_node = |_: usize, node: usize, share: f64| share * nodes.volumes_of_nodes[node];
+        let of_node = |cell: usize, node: usize, share: f64| {
+            share * nodes.volumes_of_nodes[node] / mesh.volumes()[cell]
+        };
         let of_cells = nodes.to_cells.transposed(mesh.cell_count()).with(of_node);
-        let volumes = mesh.volumes().to_vec();
-        let smallest = volumes.iter().copied().fold(f64::INFINITY, f64::min).cbrt();
+        let smallest = mesh.volumes().iter().copied().fold(f64::INFINITY, f64::min).cbrt();
         let is_coarse = smallest > LARGE * largest_diameter;
         let conductances = nodes.conductances(SPREAD * length);
         let diffused = nodes.diffused(SPREAD * length);
         let smoothing = Smoothing::new(&nodes.volumes_of_nodes, conductances);
-        Ok(Self { length, is_coarse, smoothing, volumes, diffused, nodes, of_cells })
+        Ok(Self { length, is_coarse, smoothing, diffused, nodes, of_cells })
     }
 
     /// Length over which grains are smoothed where cells are small [m].
@@ -196,9 +196,15 @@ impl Mapping {
         of_nodes: &mut OfNodes,
         give: &mut impl FnMut(u32, f64),
     ) {
+        let reach = BESIDE * grain.diameter;
+        let seen = self.nodes.seen(grain.cell, &grain.centre, reach);
         let at = |place: [f64; 3]| {
-            let beside = Vector3::from(place) * (BESIDE * grain.diameter);
-            self.nodes.at(mesh, &(grain.centre + beside), grain.cell)
+            let inside = seen.as_ref().and_then(|seen| seen.inside(place));
+            let beside = || grain.centre + Vector3::from(place) * reach;
+            match inside {
+                Some(inside) => (grain.cell as usize, inside),
+                None => self.nodes.at(mesh, &beside(), grain.cell),
+            }
         };
         let (in_centre, in_all);
         let (places, shares) = if self.is_coarse {
@@ -213,11 +219,9 @@ impl Mapping {
             if places[..first].iter().any(|&(known, _)| known == cell) {
                 continue;
             }
-            self.nodes.begin(cell, of_nodes);
-            let others =
-                places[first..].iter().zip(&shares[first..]).filter(|((other, _), _)| *other == cell);
-            others.for_each(|((_, inside), share)| self.nodes.add(inside, *share, of_nodes));
-            self.nodes.weights(cell, of_nodes).for_each(|(node, weight)| give(node, weight));
+            let others = places[first..].iter().zip(&shares[first..]);
+            let others = others.filter(|((other, _), _)| *other == cell);
+            self.nodes.give(cell, others.map(|((_, inside), share)| (inside, *share)), of_nodes, give);
         }
     }
 
@@ -247,13 +251,9 @@ impl Mapping {
 
     /// Numbers per volume of each cell, from sums at the nodes.
     pub(crate) fn to_cells<const N: usize>(&self, sums: &[[f64; N]]) -> Vec<[f64; N]> {
-        let per_volume = sums.iter().zip(&self.nodes.volumes_of_nodes);
-        let smooth = self.smoothing.apply(per_volume.map(|(sum, volume)| sum.map(|x| x / volume)).collect());
-        let mut cells = self.of_cells.times(&smooth);
-        for (cell, volume) in cells.iter_mut().zip(&self.volumes) {
-            cell.iter_mut().for_each(|number| *number /= volume);
-        }
-        cells
+        let per_volume = sums.par_iter().zip(&self.nodes.volumes_of_nodes).with_min_len(CHUNK);
+        let per_volume = per_volume.map(|(sum, volume)| sum.map(|x| x / volume)).collect();
+        self.of_cells.times(&self.smoothing.apply(per_volume))
     }
 
     /// Numbers of grains per volume of each cell.

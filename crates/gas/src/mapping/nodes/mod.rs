@@ -10,28 +10,36 @@
 //!
 //! Grains that fill space evenly thus fill every cell evenly, whatever its shape and next to walls too.
 
+mod block;
+mod finding;
+mod tetrahedron;
+
 use super::numbering::Numbering;
 use super::sparse::Rows;
 use crate::shapes::CellShapes;
 use amberfield_core::Vector3;
-use amberfield_field::far::{CellFace, FarMesh, Neighbour};
+use amberfield_field::far::{CellFace, FarMesh};
+use block::Block;
 use nalgebra::Matrix3;
+use tetrahedron::Tetrahedron;
 
-/// Least volume of a tetrahedron over its cell's: a flatter one holds no grain.
-const FLAT: f64 = 1e-9;
-/// Distance beyond a face at which a point is still on it, over the face's distance from the cell's centre.
-const ON_FACE: f64 = 1e-9;
 /// Part of the wanted spread that the nodes' functions make, and least that diffusion adds: variances along
 /// an axis over the square of a cell's edge.
 const BY_NODES: f64 = 0.2;
 const LEAST: f64 = 0.1;
-/// Cells of a walk at most.
-const LONGEST_WALK: usize = 20;
+/// Position of a place in its cell.
+#[derive(Clone, Copy, Debug)]
+pub(super) enum Inside {
+    /// Coordinates in a parallelepiped.
+    Block(Vector3<f64>),
+    /// Tetrahedron of another cell.
+    Tetrahedron(InTetrahedron),
+}
 
 /// Tetrahedron that a place is in, and its barycentric coordinates: of the cell's centre, the face's, the
 /// corner and the next one.
 #[derive(Clone, Copy, Debug)]
-pub(super) struct Inside {
+pub(super) struct InTetrahedron {
     face: usize,
     corner: usize,
     weights: [f64; 4],
@@ -66,6 +74,8 @@ pub(super) struct Nodes {
     first_corner: Vec<u32>,
     /// Place of each corner of each face among those of its cell; in order around the normal outwards.
     of_face: Vec<u16>,
+    /// Cells that are parallelepipeds; their corners stand in the order of their numbers.
+    blocks: Vec<Option<Block>>,
     /// Volume of each node, ∫ λ dx [m³].
     pub(super) volumes_of_nodes: Vec<f64>,
     /// Share θ of each node that each cell has.
@@ -94,6 +104,7 @@ impl Nodes {
             to_corner: Vec::new(),
             first_corner: vec![0],
             of_face: Vec::new(),
+            blocks: Vec::new(),
             volumes_of_nodes: Vec::new(),
             to_cells: Rows::default(),
             variances: Vec::new(),
@@ -109,7 +120,8 @@ impl Nodes {
                 for corner in 0..nodes.corners(face).len() {
                     let tetrahedron = nodes.tetrahedron(cell, face, corner);
                     let volume = tetrahedron.volume();
-                    nodes.add(&Inside { face, corner, weights: [0.25; 4] }, volume, &mut of_nodes);
+                    let middle = InTetrahedron { face, corner, weights: [0.25; 4] };
+                    nodes.add(&middle, volume, &mut of_nodes);
                     *from_places -= tetrahedron.mean_square() * volume;
                 }
             }
@@ -144,14 +156,21 @@ impl Nodes {
         let mut own: Vec<(u32, u32)> = all.collect();
         own.sort_unstable();
         own.dedup();
+        let seen = |&(point, _): &(u32, u32)| shapes.points()[point as usize] - centre;
+        self.to_face.extend(faces.clone().map(|face| shapes.centre(face) - centre));
+        let block = Block::new(&self.to_face[faces.clone()], &own.iter().map(seen).collect::<Vec<_>>());
+        if let Some((_, numbers)) = &block {
+            own = numbers.map(|place| own[place]).to_vec();
+        }
+        self.blocks.push(block.map(|(block, _)| block));
         for face in faces {
-            let place = |point: &u32| own.partition_point(|(other, _)| other < point) as u16;
-            self.of_face.extend(shapes.corners(face).iter().map(place));
+            let place = |corner: &u32| own.iter().position(|(point, _)| point == corner);
+            let places = shapes.corners(face).iter().filter_map(place);
+            self.of_face.extend(places.map(|place| place as u16));
             self.first_corner.push(self.of_face.len() as u32);
-            self.to_face.push(shapes.centre(face) - centre);
         }
         self.of_cell.extend(own.iter().map(|&(_, node)| node));
-        self.to_corner.extend(own.iter().map(|&(point, _)| shapes.points()[point as usize] - centre));
+        self.to_corner.extend(own.iter().map(seen));
         self.first_of_cell.push(self.of_cell.len() as u32);
     }
 
@@ -232,39 +251,44 @@ impl Nodes {
         Tetrahedron { edges: [self.to_face[face], one, two] }
     }
 
-    /// Cell and tetrahedron of a point [m] that is in a cell or near it.
-    ///
-    /// Beyond a wall it is that of a point on it.
-    pub(super) fn at(&self, mesh: &FarMesh, point: &Vector3<f64>, cell: u32) -> (usize, Inside) {
-        let (mut cell, mut point) = (cell as usize, *point);
-        let mut from = point - self.centres[cell];
-        let mut face = self.ahead(cell, &from);
-        for _ in 0..LONGEST_WALK {
-            if face.ahead <= 1.0 + ON_FACE {
-                break;
-            }
-            let crossed = &mesh.faces_of(cell)[face.number];
-            let Neighbour::Cell { cell: other, shift } = crossed.neighbour else { break };
-            (cell, point) = (other as usize, point - shift);
-            from = point - self.centres[cell];
-            face = self.ahead(cell, &from);
-        }
-        let first = self.first_face[cell] as usize;
-        let face = first + face.number;
-        let inside = self.quick(cell, face, &from).or_else(|| self.best(cell, &from));
-        (cell, inside.unwrap_or(Inside { face, corner: 0, weights: [1.0, 0.0, 0.0, 0.0] }))
-    }
-
     /// Begins with no weights of a cell's nodes.
-    pub(super) fn begin(&self, cell: usize, of_nodes: &mut OfNodes) {
+    fn begin(&self, cell: usize, of_nodes: &mut OfNodes) {
         of_nodes.centre = 0.0;
         of_nodes.weights.clear();
         of_nodes.weights.resize(self.of_cell(cell).len(), 0.0);
     }
 
+    /// Gives the nodes of a cell and their weights for places in it, times their shares.
+    #[inline(always)]
+    pub(super) fn give<'a>(
+        &self,
+        cell: usize,
+        places: impl Iterator<Item = (&'a Inside, f64)>,
+        of_nodes: &mut OfNodes,
+        give: &mut impl FnMut(u32, f64),
+    ) {
+        if self.blocks[cell].is_some() {
+            let mut weights = [0.0; 8];
+            for (inside, share) in places {
+                if let Inside::Block(at) = inside {
+                    Block::add(at, share, &mut weights);
+                }
+            }
+            let nodes = &self.of_cell[self.of_cell(cell)];
+            return nodes.iter().zip(weights).for_each(|(&node, weight)| give(node, weight));
+        }
+        self.begin(cell, of_nodes);
+        for (inside, share) in places {
+            if let Inside::Tetrahedron(inside) = inside {
+                self.add(inside, share, of_nodes);
+            }
+        }
+        self.weights(cell, of_nodes).for_each(|(node, weight)| give(node, weight));
+    }
+
     /// Adds the weights of a tetrahedron's places, times a share.
-    pub(super) fn add(&self, inside: &Inside, share: f64, of_nodes: &mut OfNodes) {
-        let Inside { face, corner, weights: [centre, of_face, one, two] } = *inside;
+    fn add(&self, inside: &InTetrahedron, share: f64, of_nodes: &mut OfNodes) {
+        let InTetrahedron { face, corner, weights: [centre, of_face, one, two] } = *inside;
         let places = self.corners(face);
         let weights = &mut of_nodes.weights;
         of_nodes.centre += share * centre;
@@ -276,70 +300,10 @@ impl Nodes {
     }
 
     /// Nodes of a cell and their weights, with what its centre has.
-    pub(super) fn weights(&self, cell: usize, of_nodes: &OfNodes) -> impl Iterator<Item = (u32, f64)> {
+    fn weights(&self, cell: usize, of_nodes: &OfNodes) -> impl Iterator<Item = (u32, f64)> {
         let nodes = &self.of_cell[self.of_cell(cell)];
         let each = of_nodes.centre / nodes.len() as f64;
         nodes.iter().zip(&of_nodes.weights).map(move |(&node, weight)| (node, weight + each))
-    }
-
-    /// Face through which a ray from the centre of a convex cell leaves it.
-    fn ahead(&self, cell: usize, from: &Vector3<f64>) -> Ahead {
-        let mut face = Ahead { ahead: f64::NEG_INFINITY, number: 0 };
-        for (number, outwards) in self.outwards[self.faces(cell)].iter().enumerate() {
-            let ahead = outwards.dot(from);
-            face.number = if ahead > face.ahead { number } else { face.number };
-            face.ahead = ahead.max(face.ahead);
-        }
-        face
-    }
-
-    /// Tetrahedron of a face that holds a place seen from the cell's centre [m].
-    fn quick(&self, cell: usize, face: usize, from: &Vector3<f64>) -> Option<Inside> {
-        // The place is beside the plane of centre, face's centre and corner by as much as this says.
-        let across = self.to_face[face].cross(from);
-        let (corners, to_corner) = (self.corners(face), &self.to_corner[self.of_cell(cell)]);
-        let beside = |&corner: &u16| across.dot(&to_corner[corner as usize]);
-        // The place is where one corner is on its one side and the next on its other.
-        let last = corners.len() - 1;
-        let (mut corner, mut before, mut is_before) = (0, last, beside(&corners[last]) <= 0.0);
-        for (number, point) in corners.iter().enumerate() {
-            let here = beside(point);
-            // A choice without a branch, which nothing could foretell.
-            corner = if is_before & (here >= 0.0) { before } else { corner };
-            (before, is_before) = (number, here <= 0.0);
-        }
-        let [a, b, c] = self.tetrahedron(cell, face, corner).edges;
-        let normal = b.cross(&c);
-        let per_volume = 1.0 / a.dot(&normal);
-        let of_face = from.dot(&normal) * per_volume;
-        let one = across.dot(&c) * per_volume;
-        let two = -across.dot(&b) * per_volume;
-        let weights = [1.0 - of_face - one - two, of_face, one, two];
-        // Of a flat one these are no numbers, or large ones of either sign.
-        weights.iter().all(|&weight| weight >= 0.0).then_some(Inside { face, corner, weights })
-    }
-
-    /// Tetrahedron of a cell that a place is least outside of.
-    fn best(&self, cell: usize, from: &Vector3<f64>) -> Option<Inside> {
-        let (mut nearest, mut best) = (f64::NEG_INFINITY, None);
-        for face in self.faces(cell) {
-            for corner in 0..self.corners(face).len() {
-                let tetrahedron = self.tetrahedron(cell, face, corner);
-                if tetrahedron.volume() < FLAT * self.volumes[cell] {
-                    continue;
-                }
-                let weights = tetrahedron.coordinates(from);
-                let least = weights.iter().copied().fold(f64::INFINITY, f64::min);
-                if least > nearest {
-                    (nearest, best) = (least, Some(Inside { face, corner, weights }));
-                }
-            }
-        }
-        best.map(|inside| {
-            let weights = inside.weights.map(|weight| weight.max(0.0));
-            let sum: f64 = weights.iter().sum();
-            Inside { weights: weights.map(|weight| weight / sum), ..inside }
-        })
     }
 }
 
@@ -349,51 +313,5 @@ fn of_diffusion(spread: f64, squared: f64) -> f64 {
     (spread * spread / squared - BY_NODES).max(LEAST)
 }
 
-/// Face ahead of a point as a cell's centre sees it.
-#[derive(Clone, Copy)]
-struct Ahead {
-    /// Distance of the point along the face's normal over that of the face; above 1 the point is beyond it.
-    ahead: f64,
-    /// Number of the face among the cell's.
-    number: usize,
-}
-
-/// A tetrahedron of a cell's centre and three more places.
-struct Tetrahedron {
-    /// Vectors from the centre to the others [m].
-    edges: [Vector3<f64>; 3],
-}
-
-impl Tetrahedron {
-    /// Volume [m³], of either sign for either order of the corners.
-    fn signed(&self) -> f64 {
-        self.edges[0].dot(&self.edges[1].cross(&self.edges[2])) / 6.0
-    }
-
-    /// Edge of the cell that is its side [m].
-    fn edge(&self) -> Vector3<f64> {
-        self.edges[2] - self.edges[1]
-    }
-
-    /// Mean square of the place from the cell's centre [m²].
-    fn mean_square(&self) -> Matrix3<f64> {
-        let sum: Vector3<f64> = self.edges.iter().sum();
-        let squares: Matrix3<f64> = self.edges.iter().chain([&sum]).map(|edge| edge * edge.transpose()).sum();
-        squares / 20.0
-    }
-
-    /// Volume [m³].
-    fn volume(&self) -> f64 {
-        self.signed().abs()
-    }
-
-    /// Barycentric coordinates of a place seen from the centre [m].
-    fn coordinates(&self, place: &Vector3<f64>) -> [f64; 4] {
-        let [a, b, c] = &self.edges;
-        let per_volume = 1.0 / a.dot(&b.cross(c));
-        let first = place.dot(&b.cross(c)) * per_volume;
-        let second = place.dot(&c.cross(a)) * per_volume;
-        let third = place.dot(&a.cross(b)) * per_volume;
-        [1.0 - first - second - third, first, second, third]
-    }
-}
+#[cfg(test)]
+mod tests;
