@@ -17,7 +17,7 @@ use crate::shapes::CellShapes;
 use amberfield_core::Vector3;
 use amberfield_field::far::FarMesh;
 use nalgebra::Matrix3;
-use nodes::{Nodes, OfNodes};
+use nodes::{FromCrossing, Nodes, OfNodes};
 use rayon::prelude::*;
 use smoothing::Smoothing;
 use sparse::{Rows, add};
@@ -106,6 +106,11 @@ impl Part {
         let mut of_nodes = OfNodes::default();
         for grain in grains {
             let begin = entries.len();
+            if let Some(crossing) = mapping.crossing(grain) {
+                crossing.give(mapping.places(grain), |node, weight| entries.push((node, weight)));
+                ends.push(entries.len() as u32);
+                continue;
+            }
             mapping.place_one(mesh, grain, &mut of_nodes, &mut |node, weight| {
                 let known: &mut usize = &mut known[node as usize % 256];
                 match entries[begin..].get_mut(known.wrapping_sub(begin)) {
@@ -196,33 +201,32 @@ impl Mapping {
         of_nodes: &mut OfNodes,
         give: &mut impl FnMut(u32, f64),
     ) {
-        let reach = BESIDE * grain.diameter;
-        let seen = self.nodes.seen(grain.cell, &grain.centre, reach);
-        let at = |place: [f64; 3]| {
-            let inside = seen.as_ref().and_then(|seen| seen.inside(place));
-            let beside = || grain.centre + Vector3::from(place) * reach;
-            match inside {
-                Some(inside) => (grain.cell as usize, inside),
-                None => self.nodes.at(mesh, &beside(), grain.cell),
-            }
-        };
-        let (in_centre, in_all);
-        let (places, shares) = if self.is_coarse {
-            in_centre = [at(PLACES[0])];
-            (&in_centre[..], &[1.0][..])
-        } else {
-            in_all = PLACES.map(at);
-            (&in_all[..], &SHARES[..])
-        };
-        // Cell by cell, each as often as a place is in it.
-        for (first, &(cell, _)) in places.iter().enumerate() {
-            if places[..first].iter().any(|&(known, _)| known == cell) {
-                continue;
-            }
-            let others = places[first..].iter().zip(&shares[first..]);
-            let others = others.filter(|((other, _), _)| *other == cell);
-            self.nodes.give(cell, others.map(|((_, inside), share)| (inside, *share)), of_nodes, give);
+        let mut places = [None; PLACES.len()];
+        for (found, (beside, share)) in places.iter_mut().zip(self.places(grain)) {
+            let (cell, inside) = self.nodes.at(mesh, &(grain.centre + beside), grain.cell);
+            *found = Some((cell, inside, share));
         }
+        // Cell by cell, each as often as a place is in it.
+        for first in 0..places.len() {
+            let Some((cell, ..)) = places[first] else { continue };
+            let here =
+                places[first..].iter_mut().filter_map(|place| place.take_if(|(other, ..)| *other == cell));
+            self.nodes.give(cell, here.map(|(_, inside, share)| (inside, share)), of_nodes, give);
+        }
+    }
+
+    /// Places at which a grain is looked for, as seen from its centre [m], and their shares.
+    fn places(&self, grain: &Placed) -> impl Iterator<Item = (Vector3<f64>, f64)> {
+        let reach = BESIDE * grain.diameter;
+        let all = PLACES.into_iter().map(move |place| Vector3::from(place) * reach).zip(SHARES);
+        let count = if self.is_coarse { 1 } else { PLACES.len() };
+        all.take(count).map(move |(place, share)| (place, if count == 1 { 1.0 } else { share }))
+    }
+
+    /// Crossing of cuboids that all places of a grain are in.
+    fn crossing(&self, grain: &Placed) -> Option<FromCrossing<'_>> {
+        let reach = if self.is_coarse { 0.0 } else { BESIDE * grain.diameter };
+        self.nodes.crossing(grain.cell, &grain.centre, reach)
     }
 
     /// Sums of numbers of grains at the nodes; their order depends on counts alone.

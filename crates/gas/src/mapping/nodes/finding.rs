@@ -4,7 +4,6 @@ use super::block::{Block, EVEN};
 use super::{InTetrahedron, Inside, Nodes};
 use amberfield_core::Vector3;
 use amberfield_field::far::{FarMesh, Neighbour};
-use nalgebra::Matrix3;
 
 /// Least volume of a tetrahedron over its cell's: a flatter one holds no grain.
 const FLAT: f64 = 1e-9;
@@ -14,22 +13,6 @@ const ON_BLOCK: f64 = EVEN;
 const ON_FACE: f64 = 1e-9;
 /// Cells of a walk at most.
 const LONGEST_WALK: usize = 20;
-
-/// Parallelepiped as seen from a place: coordinates of places beside it.
-pub(in super::super) struct Seen {
-    at: Vector3<f64>,
-    /// Coordinates along each axis of what is beside the place there.
-    beside: Matrix3<f64>,
-}
-
-impl Seen {
-    /// Coordinates of a place that is in the parallelepiped, in reaches from where it is seen.
-    #[inline(always)]
-    pub(in super::super) fn inside(&self, place: [f64; 3]) -> Option<Inside> {
-        let at = self.at + self.beside * Vector3::from(place);
-        (at.amax() <= 1.0).then_some(Inside::Block(at))
-    }
-}
 
 /// Face ahead of a point as a cell's centre sees it.
 #[derive(Clone, Copy)]
@@ -56,14 +39,6 @@ impl Ahead {
 }
 
 impl Nodes {
-    /// Parallelepiped as seen from a point [m] in reaches [m]; none where a cell is another shape.
-    #[inline(always)]
-    pub(in super::super) fn seen(&self, cell: u32, point: &Vector3<f64>, reach: f64) -> Option<Seen> {
-        let block = self.blocks[cell as usize].as_ref()?;
-        let at = block.coordinates(&(point - self.centres[cell as usize]));
-        Some(Seen { at, beside: block.coordinates_of(reach) })
-    }
-
     /// Cell of a point [m] that is in a cell or near it, and where it is there.
     ///
     /// Beyond a wall it is that of the point on it towards the cell's centre.

@@ -11,6 +11,7 @@
 //! Grains that fill space evenly thus fill every cell evenly, whatever its shape and next to walls too.
 
 mod block;
+mod crossing;
 mod finding;
 mod tetrahedron;
 
@@ -20,6 +21,8 @@ use crate::shapes::CellShapes;
 use amberfield_core::Vector3;
 use amberfield_field::far::{CellFace, FarMesh};
 use block::Block;
+use crossing::Crossing;
+pub(super) use crossing::FromCrossing;
 use nalgebra::Matrix3;
 use tetrahedron::Tetrahedron;
 
@@ -76,6 +79,8 @@ pub(super) struct Nodes {
     of_face: Vec<u16>,
     /// Cells that are parallelepipeds; their corners stand in the order of their numbers.
     blocks: Vec<Option<Block>>,
+    /// Cuboids around each node, where there are no other cells.
+    crossings: Vec<Option<Crossing>>,
     /// Volume of each node, ∫ λ dx [m³].
     pub(super) volumes_of_nodes: Vec<f64>,
     /// Share θ of each node that each cell has.
@@ -105,6 +110,7 @@ impl Nodes {
             first_corner: vec![0],
             of_face: Vec::new(),
             blocks: Vec::new(),
+            crossings: Vec::new(),
             volumes_of_nodes: Vec::new(),
             to_cells: Rows::default(),
             variances: Vec::new(),
@@ -133,6 +139,7 @@ impl Nodes {
                 from_nodes[node as usize] += square;
             }
         }
+        nodes.crossings = Crossing::of_nodes(&nodes, count as usize);
         let shares = Rows::new(count as usize, entries);
         nodes.volumes_of_nodes = (0..shares.len()).map(|node| shares.sum(node)).collect();
         nodes.to_cells = shares.with(|node, _, volume| volume / nodes.volumes_of_nodes[node]);
@@ -260,10 +267,10 @@ impl Nodes {
 
     /// Gives the nodes of a cell and their weights for places in it, times their shares.
     #[inline(always)]
-    pub(super) fn give<'a>(
+    pub(super) fn give(
         &self,
         cell: usize,
-        places: impl Iterator<Item = (&'a Inside, f64)>,
+        places: impl Iterator<Item = (Inside, f64)>,
         of_nodes: &mut OfNodes,
         give: &mut impl FnMut(u32, f64),
     ) {
@@ -271,7 +278,7 @@ impl Nodes {
             let mut weights = [0.0; 8];
             for (inside, share) in places {
                 if let Inside::Block(at) = inside {
-                    Block::add(at, share, &mut weights);
+                    Block::add(&at, share, &mut weights);
                 }
             }
             let nodes = &self.of_cell[self.of_cell(cell)];
@@ -280,7 +287,7 @@ impl Nodes {
         self.begin(cell, of_nodes);
         for (inside, share) in places {
             if let Inside::Tetrahedron(inside) = inside {
-                self.add(inside, share, of_nodes);
+                self.add(&inside, share, of_nodes);
             }
         }
         self.weights(cell, of_nodes).for_each(|(node, weight)| give(node, weight));

@@ -7,7 +7,7 @@ fn weights(nodes: &Nodes, mesh: &FarMesh, point: &Vector3<f64>, from: u32) -> Ve
     let (cell, inside) = nodes.at(mesh, point, from);
     let mut all = vec![0.0; nodes.count()];
     let mut give = |node: u32, weight: f64| all[node as usize] += weight;
-    nodes.give(cell, std::iter::once((&inside, 1.0)), &mut OfNodes::default(), &mut give);
+    nodes.give(cell, std::iter::once((inside, 1.0)), &mut OfNodes::default(), &mut give);
     all
 }
 
@@ -56,4 +56,32 @@ fn a_parallelepiped_shares_a_place_among_its_corners() {
     let mut moved = corners;
     moved[3] += edges[0] * 0.01;
     assert!(Block::new(&to_face, &moved).is_none());
+}
+
+/// Case of places around points in cuboids that meet at corners: their nodes are found at once.
+#[test]
+fn a_crossing_gives_places_to_the_nodes_of_the_cells_that_they_are_in() {
+    let faces = [[Boundary::Periodic; 2], [Boundary::Grounded; 2], [Boundary::Grounded; 2]];
+    let edges = Vector3::new(3.0, 2.0, 5.0);
+    let domain = Domain::new(Vector3::zeros(), edges, faces).unwrap();
+    let mesh = FarMesh::new(FarMeshParts::of_box(&domain, [3, 4, 5]).unwrap()).unwrap();
+    let nodes = Nodes::new(&mesh, &CellShapes::of_planes(&mesh).unwrap());
+    let reach = 0.2;
+    for i in 0..500 {
+        let along = |step: f64| (step * f64::from(i)).fract();
+        let mut point = Vector3::new(along(0.37), along(0.53), along(0.71)).component_mul(&edges);
+        (1..3).for_each(|axis| point[axis] = point[axis].clamp(reach, edges[axis] - reach));
+        let cell = mesh.locate(&point, None).0;
+        let beside = [[1.0, -1.0, 1.0], [0.0, 0.5, 0.2], [-1.0; 3]].map(|place| Vector3::from(place) * reach);
+        let mut all = vec![0.0; nodes.count()];
+        let crossing = nodes.crossing(cell, &point, reach).expect("cuboids are there");
+        crossing.give(beside.iter().map(|place| (*place, 1.0)), |node, weight| all[node as usize] += weight);
+        for place in beside {
+            let one = weights(&nodes, &mesh, &(point + place), cell);
+            all.iter_mut().zip(one).for_each(|(all, weight)| *all -= weight);
+        }
+        assert!(all.iter().all(|off| off.abs() < 1e-13), "{point} {all:?}");
+    }
+    // Where a place is farther than the cells reach, there is none.
+    assert!(nodes.crossing(0, &mesh.centres()[0], 0.6).is_none());
 }
