@@ -1,11 +1,10 @@
 //! Function object in another solver: Debian's DPMFoam on the Goldschmidt bed of OpenFOAM's examples.
 
-use super::{difference, good};
+use super::{copy_example, difference, good};
 use amberfield_tests::{CsvTable, Workbench};
-use std::path::Path;
 
-/// Folder of the bed in the package `openfoam-examples`.
-const EXAMPLE: &str = "/usr/share/doc/openfoam-examples/examples/lagrangian/DPMFoam/Goldschmidt";
+/// Folder of the bed among OpenFOAM's examples.
+const EXAMPLE: &str = "lagrangian/DPMFoam/Goldschmidt";
 const POTENTIAL: &str = "FoamFile { version 2.0; format ascii; class volScalarField; object phiE; }
 dimensions [1 2 -3 0 0 -1 0];
 internalField uniform 0;
@@ -49,7 +48,7 @@ history_every_s = 1e-5
 /// Copy of the example with 10 steps of the gas, cut into two parts for two ranks.
 fn bed() -> Workbench {
     let bench = Workbench::new(SCENE);
-    copy(Path::new(EXAMPLE), &bench.path("foam"));
+    copy_example(&bench, EXAMPLE);
     bench.write("foam/0/phiE", POTENTIAL);
     let change = |file: &str, changes: &[(&str, &str)]| {
         let text = changes.iter().fold(bench.read(file), |text, (old, new)| {
@@ -71,21 +70,6 @@ fn bed() -> Workbench {
         ],
     );
     bench
-}
-
-fn copy(from: &Path, to: &Path) {
-    std::fs::create_dir_all(to).unwrap();
-    for entry in std::fs::read_dir(from)
-        .expect("openfoam-examples is installed; `cargo xtask openfoam` does it")
-        .flatten()
-    {
-        let target = to.join(entry.file_name());
-        if entry.path().is_dir() {
-            copy(&entry.path(), &target);
-        } else {
-            std::fs::copy(entry.path(), target).unwrap();
-        }
-    }
 }
 
 fn run(bench: &Workbench, out: &str, options: &[&str]) -> CsvTable {

@@ -16,8 +16,13 @@ mod patches;
 mod sharing;
 mod stated_error;
 mod thin_walls;
+mod tutorials;
 
-use amberfield_tests::Answer;
+use amberfield_tests::{Answer, Workbench};
+use std::path::Path;
+
+/// Folder of the examples, of the package `openfoam-examples`.
+const EXAMPLES: &str = "/usr/share/doc/openfoam-examples/examples";
 
 /// Relative difference of two fields with tolerances of 1e-2, whose squares add.
 pub(crate) const AGREEMENT: f64 = 1.4e-2;
@@ -33,4 +38,24 @@ fn good(answer: &Answer) {
 pub(crate) fn difference(a: &[f64], b: &[f64]) -> f64 {
     let square = |values: &mut dyn Iterator<Item = f64>| values.map(|v| v * v).sum::<f64>();
     (square(&mut a.iter().zip(b).map(|(a, b)| a - b)) / square(&mut b.iter().copied())).sqrt()
+}
+
+/// Copies one of OpenFOAM's examples to the folder `foam`.
+fn copy_example(bench: &Workbench, folder: &str) {
+    copy(&Path::new(EXAMPLES).join(folder), &bench.path("foam"));
+}
+
+fn copy(from: &Path, to: &Path) {
+    std::fs::create_dir_all(to).unwrap();
+    for entry in std::fs::read_dir(from)
+        .expect("openfoam-examples is installed; `cargo xtask openfoam` does it")
+        .flatten()
+    {
+        let target = to.join(entry.file_name());
+        if entry.path().is_dir() {
+            copy(&entry.path(), &target);
+        } else {
+            std::fs::copy(entry.path(), target).unwrap();
+        }
+    }
 }
