@@ -35,8 +35,10 @@ pub enum BedMesh {
     Polyhedra,
     /// Hexahedra around a square in a pipe.
     Pipe,
-    /// Cuboids that shrink twentyfold towards the middle, to 0.15 mm.
+    /// Cuboids that shrink towards the middle, to 0.12 mm.
     FineInside,
+    /// Hexahedra around a square in a pipe of 27.6 mm: the geometry of CFDEMcoupling's ErgunTestMPI.
+    ErgunTest,
 }
 
 impl BedMesh {
@@ -85,11 +87,12 @@ impl BedMesh {
                 block([16, 16, 8], &format!("{layers} {layers} 1"))
             }
             Self::FineInside => {
-                let shrink = "((0.5 0.5 0.05) (0.5 0.5 20))";
+                let shrink = "((0.5 0.5 0.038462) (0.5 0.5 26))";
                 block([20; 3], &format!("{shrink} {shrink} {shrink}"))
             }
             Self::Wedges => wedge(),
-            Self::Pipe => pipe(),
+            Self::Pipe => pipe(RADIUS_MM, EDGE_MM, 0.42, [12, 5, 8]),
+            Self::ErgunTest => pipe(13.8, 55.3, 0.5, [8, 4, 24]),
             _ => block([8; 3], "1 1 1"),
         };
         write_gas_case(
@@ -181,19 +184,20 @@ fn wedge() -> String {
     )
 }
 
-/// Recipe of a pipe along z with an inner square.
-fn pipe() -> String {
-    let (r, e) = (RADIUS_MM, EDGE_MM);
+/// Recipe of a pipe along z of a radius and a length [mm], around the line at this radius from both other
+/// axes, with an inner square of a half edge over the radius; cells along its edge, from it to the wall, and
+/// along the pipe.
+fn pipe(r: f64, e: f64, square_over_radius: f64, [along, out, layers]: [usize; 3]) -> String {
     let square = [[-1.0, -1.0], [1.0, -1.0], [1.0, 1.0], [-1.0, 1.0]];
     let mut vertices = String::new();
     for z in [0.0, e] {
-        for scale in [0.42 * r, r / 2.0_f64.sqrt()] {
+        for scale in [square_over_radius * r, r / 2.0_f64.sqrt()] {
             for [x, y] in square {
                 write!(vertices, "({} {} {z})", r + scale * x, r + scale * y).unwrap();
             }
         }
     }
-    let mut blocks = "hex (0 1 2 3 8 9 10 11) (12 12 8) simpleGrading (1 1 1)\n".to_owned();
+    let mut blocks = format!("hex (0 1 2 3 8 9 10 11) ({along} {along} {layers}) simpleGrading (1 1 1)\n");
     let (mut mantle, mut below, mut above, mut edges) =
         (String::new(), "(0 3 2 1)".to_owned(), "(8 9 10 11)".to_owned(), String::new());
     for a in 0..4 {
@@ -201,7 +205,7 @@ fn pipe() -> String {
         let (c, d) = (b + 4, a + 4);
         writeln!(
             blocks,
-            "hex ({a} {d} {c} {b} {} {} {} {}) (5 12 8) simpleGrading (1 1 1)",
+            "hex ({a} {d} {c} {b} {} {} {} {}) ({out} {along} {layers}) simpleGrading (1 1 1)",
             a + 8,
             d + 8,
             c + 8,

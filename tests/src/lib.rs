@@ -5,6 +5,7 @@ pub mod foam_beds;
 mod foam_box;
 pub mod foam_case;
 pub mod foam_refinement;
+pub mod packing;
 mod workbench;
 
 pub use foam_box::{DEADLINE, FoamBox};

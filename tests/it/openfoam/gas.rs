@@ -126,11 +126,16 @@ fn lattice(counts: [usize; 3], spacing: f64) -> impl Iterator<Item = [f64; 3]> {
     (0..x * y * z).map(move |i| [at(i % x), at(i / x % y), at(i / (x * y))])
 }
 
-/// Ergun's pressure drop [Pa/m] for a void fraction, a diameter [m] and a superficial velocity [m/s].
+/// Ergun's pressure drop of air [Pa/m] for a void fraction, a diameter [m] and a superficial velocity [m/s].
 pub(super) fn ergun(void: f64, diameter: f64, superficial: f64) -> f64 {
+    ergun_of([VISCOSITY, DENSITY], void, diameter, superficial)
+}
+
+/// Ergun's pressure drop [Pa/m] of a gas of a viscosity [Pa s] and a density [kg/m³].
+pub(super) fn ergun_of([viscosity, density]: [f64; 2], void: f64, diameter: f64, superficial: f64) -> f64 {
     let solid = 1.0 - void;
-    150.0 * VISCOSITY * solid * solid * superficial / (void.powi(3) * diameter * diameter)
-        + 1.75 * DENSITY * solid * superficial * superficial / (void.powi(3) * diameter)
+    150.0 * viscosity * solid * solid * superficial / (void.powi(3) * diameter * diameter)
+        + 1.75 * density * solid * superficial * superficial / (void.powi(3) * diameter)
 }
 
 #[test]

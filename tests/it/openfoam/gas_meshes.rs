@@ -216,7 +216,13 @@ fn write_report() {
         let [dense, sparse, left, right] = [dense, sparse, left, right].map(percent);
         writeln!(of_halves, "| {} | {dense} | {sparse} | {left} | {right} |", told(mesh).0).unwrap();
     }
-    let page = include_str!("gas_report.txt").replace("ROWS\n", &rows).replace("HALVES\n", &of_halves);
+    let (of_layers, of_all) = super::gas_packed::errors();
+    let lowest = of_layers.iter().copied().fold(f64::INFINITY, f64::min);
+    let highest = of_layers.iter().copied().fold(f64::NEG_INFINITY, f64::max);
+    let packed = [of_all, lowest, highest].map(|x| format!("{:+.1} %", 100.0 * x));
+    let packed = format!("| {} |\n", packed.join(" | "));
+    let page = include_str!("gas_report.txt");
+    let page = page.replace("ROWS\n", &rows).replace("HALVES\n", &of_halves).replace("PACKED\n", &packed);
     let path = Path::new(env!("CARGO_MANIFEST_DIR")).join("../docs/reports/gas.md");
     std::fs::write(path, page).unwrap();
 }
@@ -235,5 +241,6 @@ fn told(mesh: BedMesh) -> (&'static str, &'static str) {
         BedMesh::Polyhedra => ("polyhedra (polyDualMesh)", "not measured"),
         BedMesh::Pipe => ("an O-grid in a pipe", "48 to 82 %"),
         BedMesh::FineInside => ("cuboids that shrink towards the middle", "not measured"),
+        BedMesh::ErgunTest => ("an O-grid of CFDEMcoupling's", "not measured"),
     }
 }

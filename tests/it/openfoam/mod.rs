@@ -9,6 +9,7 @@ mod function_object;
 mod gas;
 mod gas_alone;
 mod gas_meshes;
+mod gas_packed;
 mod gas_runs;
 mod meshes;
 mod parts;
