@@ -14,7 +14,8 @@ mod stand_in;
 
 pub use case::{CaseContents, Stop, Workplace, foam_command};
 pub use dem_side::{
-    Announced, PatientSolver, RemoteFlow, RemoteSolver, SolverSettings, program_name, solver_program,
+    Announced, PatientSolver, RemoteFlow, RemoteSolver, SolverSettings, Surroundings, program_name,
+    solver_program,
 };
 pub use error::CouplingError;
 pub use field_side::{FieldSide, FlowReply, GrainsInCells, Question, Reply};

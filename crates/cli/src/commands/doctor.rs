@@ -30,9 +30,8 @@ pub(crate) fn doctor(options: &DoctorOptions) -> Result<(), Failure> {
         )),
         None => line(format_args!("shared memory: no /dev/shm; a run cannot have a field solver")),
     }
-    match openfoam() {
-        Some(place) => line(format_args!("OpenFOAM: found at {}", place.display())),
-        None => line(format_args!("OpenFOAM: not found; without [solver] the internal grid is used")),
+    if openfoam().is_none() {
+        line(format_args!("OpenFOAM: not found; without [solver] the internal grid is used"));
     }
     solver(options.clean);
     stale_runs(options.clean)
@@ -51,8 +50,16 @@ fn openfoam() -> Option<PathBuf> {
 /// Prints the programs of the solvers, and the runs in shared memory whose DEM process is gone.
 #[cfg(feature = "coupling")]
 fn solver(clean: bool) {
-    line(format_args!("field solver: {}", amberfield_coupling::solver_program(false).display()));
-    line(format_args!("gas solver: {}", amberfield_coupling::solver_program(true).display()));
+    let [field, gas] = [false, true].map(amberfield_coupling::solver_program);
+    line(format_args!("field solver: {}", field.display()));
+    line(format_args!("gas solver: {}", gas.display()));
+    let surroundings = amberfield_coupling::Surroundings::of(&field);
+    for fact in &surroundings.found {
+        line(format_args!("{fact}"));
+    }
+    for problem in &surroundings.wrong {
+        line(format_args!("warning: {problem}"));
+    }
     let stale = amberfield_coupling::stale_runs(clean);
     if stale.is_empty() {
         line(format_args!("stale shared memory: none"));

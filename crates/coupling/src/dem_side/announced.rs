@@ -1,9 +1,10 @@
 //! A run whose field solver has not come yet.
 
 use super::far::RemoteSolver;
-use super::launch::{Process, RUN, program_name};
+use super::launch::{Process, RUN, program_name, solver_program};
 use super::remote::{Remote, alive, check_sender, of_solver};
 use super::settings::SolverSettings;
+use super::surroundings::Surroundings;
 use crate::CouplingError;
 use crate::meeting::{Link, Message, RunRoot, SideOf};
 use crate::mesh::{MeshPart, assemble, shapes_of};
@@ -83,6 +84,12 @@ impl Announced {
                 }
                 Err(CouplingError::Lost { how, .. }) if how == STOPPED => {
                     return Err(CouplingError::Stopped("no field solver had come".to_owned()));
+                }
+                Err(CouplingError::Lost { peer, how, solve }) => {
+                    let program = solver_program(settings.flow);
+                    let wrong = Surroundings::of(&program).wrong;
+                    let how = std::iter::once(how).chain(wrong).collect::<Vec<_>>().join("; ");
+                    return Err(CouplingError::Lost { peer, how, solve });
                 }
                 // Who ends before its mesh is there cannot use the case.
                 Err(CouplingError::Ended { reason, .. }) => return Err(CouplingError::Refused(reason)),

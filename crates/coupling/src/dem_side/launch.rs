@@ -1,8 +1,9 @@
 //! Starting the field process, watching it, ending it.
 
 use super::settings::SolverSettings;
+use super::surroundings::existing;
 use crate::CouplingError;
-use crate::case::{Workplace, foam_command, last_words, on_path};
+use crate::case::{Workplace, foam_command, last_words};
 use std::ffi::OsString;
 use std::fs::File;
 use std::os::unix::process::CommandExt as _;
@@ -42,13 +43,13 @@ impl Process {
         let program =
             settings.application.as_ref().map_or_else(|| solver_program(settings.flow), PathBuf::from);
         let missing = |name: &Path| CouplingError::NoProgram { program: name.display().to_string() };
-        let program = found(&program).ok_or_else(|| missing(&program))?;
+        let program = existing(&program).ok_or_else(|| missing(&program))?;
         let place = Workplace::open(&settings.case, workplace)?;
         place.provide_mesh(settings.stop)?;
         let mut command = foam_command(&program);
         if settings.ranks > 1 {
             let dictionary = place.provide_parts(settings.ranks, settings.stop)?;
-            let mpirun = found(Path::new(MPI)).ok_or_else(|| missing(Path::new(MPI)))?;
+            let mpirun = existing(Path::new(MPI)).ok_or_else(|| missing(Path::new(MPI)))?;
             command = foam_command(mpirun);
             command.args(["--oversubscribe", "--allow-run-as-root", "-np"]).arg(settings.ranks.to_string());
             command.arg(&program).arg("-parallel");
@@ -123,11 +124,6 @@ pub fn solver_program(flow: bool) -> PathBuf {
         Some(named) => named,
         None => near_this_program(name).unwrap_or_else(|| name.into()),
     }
-}
-
-/// Path of a program: of a name alone, that on the PATH.
-fn found(program: &Path) -> Option<PathBuf> {
-    if program.components().count() == 1 { on_path(program.to_str()?) } else { program.canonicalize().ok() }
 }
 
 /// A file beside this program, or that the project has built above it.

@@ -9,6 +9,7 @@ mod patient;
 mod remote;
 mod settings;
 mod shared;
+mod surroundings;
 
 pub use announced::Announced;
 pub use far::RemoteSolver;
@@ -16,3 +17,4 @@ pub use flow::RemoteFlow;
 pub use launch::{program_name, solver_program};
 pub use patient::PatientSolver;
 pub use settings::SolverSettings;
+pub use surroundings::Surroundings;
