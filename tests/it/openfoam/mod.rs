@@ -16,6 +16,7 @@ mod parts;
 mod patches;
 mod sharing;
 mod stated_error;
+mod surroundings;
 mod thin_walls;
 mod tutorials;
 

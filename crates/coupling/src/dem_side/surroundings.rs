@@ -33,7 +33,8 @@ impl Surroundings {
         let mut all = Self::default();
         let Some(program) = existing(program) else {
             all.wrong.push(format!(
-                "there is no program {}; `cargo xtask openfoam` builds it, or ./Allwmake in a sourced OpenFOAM",
+                "there is no program {}; `cargo xtask openfoam` builds it, or ./Allwmake where OpenFOAM is \
+                 sourced",
                 program.display()
             ));
             return all;
@@ -93,8 +94,8 @@ impl Surroundings {
         let wants_open_mpi = library.name.starts_with(OPEN_MPI.0);
         if wants_open_mpi != version.contains(OPEN_MPI.1) {
             self.wrong.push(format!(
-                "{} is \"{version}\", but the field solver is linked to {}; put the mpirun of that MPI first on \
-                 the PATH",
+                "{} is \"{version}\", but the field solver is linked to {}; put the mpirun of that MPI first \
+                 on the PATH",
                 starter.display(),
                 library.name
             ));
