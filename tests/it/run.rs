@@ -31,6 +31,8 @@ fn a_run_writes_what_it_promises() {
     let steps = history.numbers("step");
     assert!(steps.windows(2).all(|pair| pair[0] < pair[1]));
     assert_eq!(steps.last(), Some(&1000.0));
+    let forces = CsvTable::parse(&bench.read("out/wall_forces.csv"));
+    assert_eq!((forces.rows.len(), &forces.numbers("wall")[..3]), (2002, &[0.0, 1.0, 0.0][..]));
     let summary: serde_json::Value = serde_json::from_str(&bench.read("out/summary.json")).unwrap();
     assert_eq!((summary["ending"].as_str(), summary["grains"].as_u64()), (Some("complete"), Some(60)));
     for line in bench.read("out/log.jsonl").lines() {
@@ -73,6 +75,7 @@ fn a_continued_run_is_bitwise_the_uninterrupted_one() {
     let history =
         |folder: &str| CsvTable::parse(&bench.read(&format!("{folder}/history.csv"))).without_clocks();
     assert_eq!(history("parts"), history("whole"));
+    assert_eq!(bench.read("parts/wall_forces.csv"), bench.read("whole/wall_forces.csv"));
     assert_eq!(last_frame(&bench, "parts"), last_frame(&bench, "whole"));
     assert_eq!(bench.names("parts/particles"), bench.names("whole/particles"));
     assert_eq!(bench.read("parts/particles.pvd"), bench.read("whole/particles.pvd"));

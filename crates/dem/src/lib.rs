@@ -15,6 +15,7 @@ mod simulation;
 mod wall_cover;
 
 pub use charging::{Facet, Ledger};
+pub use contacts::walls::WallLoad;
 pub use error::DemError;
 pub use field_stage::{Intervals, Limited};
 pub use setup::{FieldStageSetup, GasSetup, Setup};

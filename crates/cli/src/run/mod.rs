@@ -15,6 +15,7 @@ mod setup;
 mod solver;
 mod solver_folder;
 mod summary;
+mod wall_forces;
 
 pub(crate) use folder::{Existing, RunFolder, checkpoints, is_stale, remove_leftovers};
 pub(crate) use name::scene_name;

@@ -4,6 +4,7 @@ use super::folder::RunFolder;
 use super::histogram::Histogram;
 use super::picture::draw;
 use super::schedule::Schedule;
+use super::wall_forces::WallForces;
 use crate::failure::Failure;
 use amberfield_core::WallCharging;
 use amberfield_dem::{Energies, Facet, Simulation};
@@ -20,6 +21,8 @@ pub(crate) struct Record {
     series: PvdSeries,
     /// Files of the charge on walls; `None` where no wall takes charge.
     walls: Option<PvdSeries>,
+    /// Forces on walls; `None` where there are no walls.
+    wall_forces: Option<WallForces>,
     /// Histograms of the charges; `None` where charges do not change.
     histogram: Option<Histogram>,
     /// Step of the last row.
@@ -98,7 +101,8 @@ impl Record {
             folder.make("walls")?;
         }
         let histogram = columns.transfer.then(|| Histogram::create(folder)).transpose()?;
-        Ok(Self { history, columns, series, walls, histogram, last_row: None, last_frame: None })
+        let wall_forces = WallForces::create(folder, simulation)?;
+        Ok(Self { history, columns, series, walls, wall_forces, histogram, last_row: None, last_frame: None })
     }
 
     /// Opens the records of a run that is continued.
@@ -115,6 +119,7 @@ impl Record {
         let history = HistoryFile::resume(&folder.file("history.csv"), &columns.names(), reached, |step| {
             schedule.history.is_due(step)
         })?;
+        let wall_forces = WallForces::resume(folder, simulation, |step| schedule.history.is_due(step))?;
         let is_kept =
             |name: &str| step_of(name).is_some_and(|step| step <= reached && schedule.frame_is_due(step));
         let series = PvdSeries::resume(&folder.file("particles.pvd"), is_kept);
@@ -128,7 +133,7 @@ impl Record {
             // A file that cannot be removed does no harm, since the series does not name it.
             let _ = std::fs::remove_file(file.path());
         }
-        Ok(Self { history, columns, series, walls, histogram, last_row: None, last_frame: None })
+        Ok(Self { history, columns, series, walls, wall_forces, histogram, last_row: None, last_frame: None })
     }
 
     /// Appends a row to the history, at most once for each step.
@@ -165,6 +170,9 @@ impl Record {
         row.extend(self.columns.solver.then(|| HistoryValue::Count(simulation.solver_iterations())));
         row.push(HistoryValue::Number(clock.wall_s));
         row.extend(clock.stages.iter().map(|seconds| HistoryValue::Number(*seconds)));
+        if let Some(forces) = &mut self.wall_forces {
+            forces.append(simulation)?;
+        }
         Ok(self.history.append(&row)?)
     }
 

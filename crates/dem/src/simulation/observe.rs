@@ -4,6 +4,7 @@ use super::Simulation;
 use super::energy::{self, ElectricEnergy, Energies};
 use super::guards::Guard;
 use super::timing::STAGE_NAMES;
+use crate::contacts::walls::WallLoad;
 use crate::error::DemError;
 use crate::field_stage::{FieldStage, Intervals, Limited};
 use amberfield_core::{Particles, Plan, Vector3};
@@ -136,6 +137,15 @@ impl Simulation {
     #[must_use]
     pub fn contacts(&self) -> usize {
         self.contacts.count()
+    }
+
+    /// Loads of the grains on each wall, in the order of the set-up, at the last step; `None` without walls,
+    /// and before the first step of a run that goes on.
+    ///
+    /// In a periodic box torques take grains where they are in the box.
+    #[must_use]
+    pub fn wall_loads(&self) -> Option<Vec<WallLoad>> {
+        self.contacts.walls.as_ref()?.loads()
     }
 
     /// Account of the force limit; `None` without a field.

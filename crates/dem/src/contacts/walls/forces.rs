@@ -1,7 +1,7 @@
 //! Forces of walls on the grains of a chunk, and contacts that are the same from step to step.
 
 use super::parts::Part;
-use super::{ChunkWalls, WallContact, touches};
+use super::{ChunkWalls, WallContact, WallLoad, touches};
 use crate::contacts::law::{Contact, History, respond};
 use crate::contacts::material_pairs::{PairConstants, PairTable};
 use crate::contacts::walls::surfaces::{Found, MOST_CONTACTS, Surfaces};
@@ -34,8 +34,10 @@ impl ChunkWalls {
         loads: ChunkLoads<'_>,
     ) {
         let &Scene { surfaces, parts, shifts, grains, table, rolling_model, step } = scene;
-        let Self { entries, triangles, contacts, charging: memory, scratch, deepest } = self;
+        let Self { entries, triangles, contacts, charging: memory, scratch, loads: on_walls, deepest } = self;
         *deepest = 0.0;
+        on_walls.clear();
+        on_walls.resize(if entries.is_empty() { 0 } else { parts.len() }, WallLoad::default());
         for entry in entries {
             let local = entry.local as usize;
             let i = k * CHUNK + local;
@@ -66,7 +68,9 @@ impl ChunkWalls {
                 );
                 (wall_contact.spring, wall_contact.rolling) = history.to_store();
                 *deepest = deepest.max(wall_contact.overlap / radius);
-                loads.force[local] += response.force - lean(pair, radius, found);
+                let lean = lean(pair, radius, found);
+                loads.force[local] += response.force - lean;
+                on_walls[part.wall as usize].add_contact(wall_contact, &response, lean, centre, arm);
                 if FRICTION || ROLLING {
                     loads.torque[local] += response.twist * arm + response.rolling;
                 }

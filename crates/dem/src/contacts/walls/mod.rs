@@ -1,11 +1,13 @@
 //! Contacts with plane and mesh walls.
 
 mod forces;
+mod loads;
 mod near;
 mod parts;
 pub(crate) mod surfaces;
 mod touches;
 
+pub use loads::WallLoad;
 pub(crate) use touches::{Surface, Touch, WallSlot};
 
 use crate::contacts::material_pairs::{Features, PairTable};
@@ -77,6 +79,8 @@ pub(crate) struct ChunkWalls {
     /// Charging of the contacts; empty without charge transfer.
     charging: Vec<Memory>,
     scratch: Vec<ClosestPoint>,
+    /// Loads on each wall at the last evaluation; empty where no grain is near one.
+    loads: Vec<WallLoad>,
     /// Largest overlap over the grain's radius at the last evaluation.
     deepest: f64,
 }
@@ -91,12 +95,14 @@ pub(crate) struct ContactWalls {
     /// Whether contacts move charge.
     charge: bool,
     chunks: Vec<ChunkWalls>,
+    /// Whether forces were evaluated since the run began or went on.
+    evaluated: bool,
 }
 
 impl ContactWalls {
     pub(crate) fn new(walls: &[Wall], shifts: [[f64; 3]; 32], charge: bool) -> Result<Self, String> {
         let (surfaces, parts) = surfaces_of(walls)?;
-        Ok(Self { surfaces, parts, shifts, charge, chunks: Vec::new() })
+        Ok(Self { surfaces, parts, shifts, charge, chunks: Vec::new(), evaluated: false })
     }
 
     /// Finds the grains near walls; histories stay with their grain and wall.
@@ -151,6 +157,7 @@ impl ContactWalls {
         step: f64,
         loads: &mut Loads,
     ) {
+        self.evaluated = true;
         let near = &mut self.chunks[..];
         let Self { surfaces, parts, shifts, .. } = self;
         let rolling_model = features.rolling_model;
@@ -175,6 +182,15 @@ impl ContactWalls {
     /// Largest overlap over the grain's radius at the last evaluation.
     pub(crate) fn deepest(&self) -> f64 {
         self.chunks.iter().map(|chunk| chunk.deepest).fold(0.0, f64::max)
+    }
+
+    /// Loads on each wall of the scene at the last evaluation; `None` before it.
+    pub(crate) fn loads(&self) -> Option<Vec<WallLoad>> {
+        let mut sum = vec![WallLoad::default(); self.parts.len()];
+        for chunk in &self.chunks {
+            chunk.loads.iter().zip(&mut sum).for_each(|(part, sum)| sum.add(part));
+        }
+        self.evaluated.then_some(sum)
     }
 
     /// Number of touching contacts.
