@@ -33,6 +33,8 @@ mod heap;
 mod impact;
 #[path = "madelung/check.rs"]
 mod madelung;
+#[path = "particle-impacts/check.rs"]
+mod particle_impacts;
 #[path = "settling-charged-bed/check.rs"]
 mod settling_charged_bed;
 #[path = "stiffness-collapse/check.rs"]
