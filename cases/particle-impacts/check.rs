@@ -6,8 +6,8 @@ use std::fmt::Write as _;
 
 /// Error of the integration with some hundred steps in a contact.
 const INTEGRATION: f64 = 2e-3;
-/// Effect of the overlap on the lever arm of friction, over the change of the spin. Overlaps reach 2.7 % of the
-/// radius in test 5.
+/// Effect of the overlap on the lever arm of friction, over the change of the spin. Overlaps reach 2.7 % of
+/// the radius in test 5.
 const LEVER: f64 = 0.035;
 
 /// Material of a test: density [kg/m³], Young's modulus [Pa], Poisson ratio, restitution, friction.
@@ -58,7 +58,7 @@ fn case(spheres: &[Sphere], [soft, hard]: [Stuff; 2], plane: bool, longest: f64)
     }
     let (step, end_s) = (longest / 600.0, 1.5 * longest);
     let end = end.replace("2e-8", &format!("{step:e}")).replace("5e-5", &format!("{end_s:e}"));
-    let _ = write!(text, "[particles]{end}history_every_s = {step:e}\n");
+    let _ = writeln!(text, "[particles]{end}history_every_s = {step:e}");
     scene = text;
     case.write("scene.toml", &scene);
     let mut rows = "id,x_m,y_m,z_m,radius_m,material,vx_m_s,vz_m_s,wy_rad_s\n".to_owned();
@@ -291,10 +291,10 @@ fn spinning_spheres_leave_spheres_of_their_size_or_larger_as_a_plane() {
         let longest = 2.5 * contact_time(soft, 0.1, 0.2);
         let case = case(&spheres, [soft, other], false, longest);
         let after = case.run(&[]).last_particles();
-        for k in 0..SPINS.len() {
+        for (k, spin) in SPINS.iter().enumerate() {
             Oblique {
                 along: [0.0, after.column("vx_m_s")[2 * k]],
-                spin: [SPINS[k], after.column("wy_rad_s")[2 * k]],
+                spin: [*spin, after.column("wy_rad_s")[2 * k]],
                 normal: 0.2,
                 radius: 0.1,
             }

@@ -45,6 +45,21 @@ fn the_printed_forms_are_scenes_of_the_same_field() {
 }
 
 #[test]
+fn explain_and_log_tell_what_the_step_costs_how_long_it_takes_and_where_walls_are() {
+    let bench = Workbench::new(&plain());
+    let answer = bench.run(&["explain", "scene.toml", "--set", "time.end_s=3e4"]).stdout;
+    for part in
+        ["restitution: ", "glass 0.8 acts as 0.8", "steps take some", "walls[0]", "normal [0.0, 0.0, 1.0]"]
+    {
+        assert!(answer.contains(part), "no {part:?} in {answer}");
+    }
+    assert!(!bench.run(&["explain", "scene.toml"]).stdout.contains("steps take some"));
+    assert_eq!(bench.run(&["run", "scene.toml", "--out", "out", "--steps", "1"]).code, Some(0));
+    let log = bench.read("out/log.jsonl");
+    assert!(log.contains("walls[0]") && log.contains("plane through"), "{log}");
+}
+
+#[test]
 fn a_scene_without_a_field_says_so() {
     let bench = Workbench::new(&plain());
     let answer = bench.run(&["explain", "scene.toml"]);

@@ -1,6 +1,16 @@
-//! Text of a plan.
+//! Text of a plan, and of what a run has and costs.
 
-use amberfield_core::Plan;
+use amberfield_core::{Plan, WallShape};
+use amberfield_dem::Simulation;
+use amberfield_scene::Scene;
+
+/// Number of steps above which a run is told how long it takes.
+const MANY_STEPS: f64 = 1e9;
+/// Seconds that a step takes apart from its grains, and those of a grain in it on one processor: plain beds
+/// of 10³ to 10⁶ grains in docs/reports/speed.md, to a factor of some two.
+const STEP_TAKES: [f64; 2] = [2e-6, 2e-7];
+/// Speed for which restitutions are told where nothing moves [m/s].
+const USUAL_SPEED: f64 = 1.0;
 
 /// Lines of a plan: the stages that run, then those that are left out.
 pub(crate) fn lines(plan: &Plan) -> Vec<String> {
@@ -10,4 +20,43 @@ pub(crate) fn lines(plan: &Plan) -> Vec<String> {
     lines.push("left out:".to_owned());
     lines.extend(plan.left_out().iter().map(|entry| format!("  {:width$}  {}", entry.stage, entry.reason)));
     lines
+}
+
+/// Lines with the place of each wall.
+pub(crate) fn walls(scene: &Scene) -> Vec<String> {
+    let place = |shape: &WallShape| match shape {
+        WallShape::Plane { point, normal } => {
+            format!("plane through {:?} m, normal {:?}", point.as_slice(), normal.as_slice())
+        }
+        WallShape::Mesh(mesh) => mesh.bounds().map_or_else(
+            || "no triangles".to_owned(),
+            |[low, high]| format!("{:?} to {:?} m", low.as_slice(), high.as_slice()),
+        ),
+    };
+    scene.walls.iter().map(|wall| format!("{}: {}", wall.name, place(&wall.shape))).collect()
+}
+
+/// Line with what the step costs in accuracy of impacts; `None` where there are no grains.
+pub(crate) fn restitution(scene: &Scene, simulation: &Simulation) -> Option<String> {
+    let (_, fastest) = simulation.fastest()?;
+    let speed = if fastest > 0.0 { 2.0 * fastest } else { USUAL_SPEED };
+    let (steps, found) = simulation.restitutions(&scene.materials, speed);
+    let found: Vec<String> =
+        found.iter().map(|of| format!("{} {} acts as {:.4}", of.material, of.asked, of.found)).collect();
+    Some(format!("restitution: {steps:.1} steps in a contact at {speed:.3} m/s; {}", found.join(", ")))
+}
+
+/// Line with how long very many steps take [steps]; `None` where they are not so many.
+pub(crate) fn duration(simulation: &Simulation, steps: f64) -> Option<String> {
+    let [step, grain] = STEP_TAKES;
+    #[expect(clippy::cast_precision_loss, reason = "an estimate")]
+    let grains = simulation.len() as f64 / rayon::current_num_threads() as f64;
+    let seconds = steps * (step + grain * grains);
+    (steps > MANY_STEPS).then(|| {
+        format!(
+            "{steps:.2e} steps take some {:.1} days without field and gas; make time.step_s larger, the \
+             grains softer (young_Pa), or time.end_s smaller",
+            seconds / 86_400.0
+        )
+    })
 }

@@ -5,7 +5,7 @@
 //! a `Simulation`. Both print the same numbers.
 
 #[path = "../src/contacts/mod.rs"]
-#[expect(dead_code, unused_imports, reason = "a plain bed needs a part of them")]
+#[expect(dead_code, unused_imports, unreachable_pub, reason = "a plain bed needs a part of them")]
 mod contacts;
 #[path = "../src/motion/mod.rs"]
 #[expect(dead_code, reason = "a plain bed needs a part of it")]

@@ -31,6 +31,7 @@
 //! assert_eq!((bearable, forecast(bearable), share(bearable, 1.0)), (2.0, 1.0, 1.0 / 1.5));
 //! ```
 
+use crate::hertz_mindlin;
 use nalgebra::SimdRealField;
 
 /// Largest product λ of damping rate and step.
@@ -67,6 +68,48 @@ pub fn share<T: SimdRealField<Element = f64> + Copy>(bearable: T, stiffness: T) 
 #[must_use]
 pub fn largest<T: SimdRealField<Element = f64> + Copy>(normal: T, tangential: T, rolling: T) -> T {
     normal.simd_max(T::splat(SURFACE) * tangential) + rolling
+}
+
+/// Restitution of an impact that takes a number of steps, elastic, of a Hertz contact with the damping ratio
+/// β of [`crate::restitution`]: the mean over where in a step it begins.
+///
+/// ```
+/// use amberfield_laws::{damped_step::restitution_in_steps, restitution::damping_ratio};
+/// assert!((restitution_in_steps(damping_ratio(0.5), 4.4) - 0.493).abs() < 1e-3);
+/// assert!((restitution_in_steps(damping_ratio(0.5), 100.0) - 0.5).abs() < 1e-3);
+/// ```
+#[must_use]
+pub fn restitution_in_steps(damping_ratio: f64, steps: f64) -> f64 {
+    (0..PHASES).map(|n| rebound(damping_ratio, steps, (f64::from(n) + 0.5) / f64::from(PHASES))).sum::<f64>()
+        / f64::from(PHASES)
+}
+
+/// Places in a step over which [`restitution_in_steps`] takes the mean.
+const PHASES: u32 = 20;
+
+/// Speed after an impact of speed 1 that begins a part `phase` into a step: m* = 1, F = δ^{3/2} + γ v.
+fn rebound(damping_ratio: f64, steps: f64, phase: f64) -> f64 {
+    // (4/3) Y* = 1.
+    let step = hertz_mindlin::contact_time(0.75, 1.0, 1.0, 1.0) / steps;
+    let (mut overlap, mut speed, mut acceleration): (f64, f64, f64) = (-phase * step, 1.0, 0.0);
+    loop {
+        let middle = speed + 0.5 * step * acceleration;
+        overlap += step * middle;
+        if overlap < 0.0 && middle < 0.0 {
+            return -middle;
+        }
+        let forecast = middle + 0.5 * step * acceleration;
+        acceleration = 0.0;
+        if overlap > 0.0 {
+            let stiffness = 1.5 * overlap.sqrt();
+            let damping = hertz_mindlin::damping(damping_ratio, stiffness, 1.0);
+            let bearable = bearable(damping * step, 0.0);
+            let seen = middle + self::forecast(bearable) * (forecast - middle);
+            let acting = damping * share(bearable, stiffness * step * step);
+            acceleration = -overlap.powf(1.5) - acting * seen;
+        }
+        speed = middle + 0.5 * step * acceleration;
+    }
 }
 
 #[cfg(test)]

@@ -3,7 +3,8 @@
 use crate::SceneError;
 use crate::tree::SceneTable;
 use amberfield_core::Fingerprint;
-use std::io::ErrorKind;
+use std::fs::File;
+use std::io::{BufRead as _, BufReader, ErrorKind, Read};
 use std::path::{Path, PathBuf};
 
 /// Folder of a scene, and fingerprints of the files that were read from it.
@@ -45,6 +46,30 @@ impl SceneSource {
         Ok(bytes)
     }
 
+    /// Opens the file that a key names; [`Self::add`] its fingerprint when it is read.
+    pub(crate) fn open_file(
+        &self,
+        table: &SceneTable<'_>,
+        key: &str,
+        name: &str,
+    ) -> Result<SceneFile, SceneError> {
+        let path = self.path(name);
+        let file = open(&path).map_err(|reason| table.bad(key, reason))?;
+        let mut file = BufReader::with_capacity(BLOCK, file);
+        match file.fill_buf() {
+            Ok([]) => return Err(table.bad(key, empty(&path))),
+            Ok(_) => {}
+            Err(error) => return Err(table.bad(key, unreadable(&path, &error))),
+        }
+        Ok(SceneFile { file, print: Fingerprint::new() })
+    }
+
+    /// Error of a file that is not UTF-8 text; `None` where it is, or cannot be read once more.
+    pub(crate) fn not_text(&self, name: &str) -> Option<SceneError> {
+        let bytes = read_bytes(&self.path(name)).ok()?;
+        decode(name, &bytes).err()
+    }
+
     /// Keeps the fingerprint of what was read otherwise.
     pub(crate) fn add(&mut self, name: &str, print: &Fingerprint) {
         self.read.push((name.to_owned(), print.value()));
@@ -56,25 +81,54 @@ impl SceneSource {
     }
 }
 
-/// Reads a file or pipe that is not empty.
+/// Bytes of a file read at once.
+const BLOCK: usize = 1 << 20;
+
+/// Open file that is fingerprinted as it is read.
+#[derive(Debug)]
+pub(crate) struct SceneFile {
+    file: BufReader<File>,
+    /// Fingerprint of what was read so far.
+    pub(crate) print: Fingerprint,
+}
+
+impl Read for SceneFile {
+    fn read(&mut self, buffer: &mut [u8]) -> std::io::Result<usize> {
+        let count = self.file.read(buffer)?;
+        self.print.add(&buffer[..count]);
+        Ok(count)
+    }
+}
+
+fn empty(path: &Path) -> String {
+    format!("{} is empty; check that it was written", path.display())
+}
+
+fn unreadable(path: &Path, error: &std::io::Error) -> String {
+    match error.kind() {
+        ErrorKind::NotFound => format!("there is no file {}; check the path", path.display()),
+        _ => format!("cannot read {}: {error}", path.display()),
+    }
+}
+
+/// Opens a file or pipe.
 ///
 /// Devices are refused, since some of them never end.
-pub(crate) fn read_bytes(path: &Path) -> Result<Vec<u8>, String> {
+fn open(path: &Path) -> Result<File, String> {
     if path.is_dir() {
         return Err(format!("{} is a directory; name a file", path.display()));
     }
     if is_device(path) {
         return Err(format!("{} is a device; name a file", path.display()));
     }
-    let bytes = std::fs::read(path).map_err(|error| match error.kind() {
-        ErrorKind::NotFound => format!("there is no file {}; check the path", path.display()),
-        _ => format!("cannot read {}: {error}", path.display()),
-    })?;
-    if bytes.is_empty() {
-        Err(format!("{} is empty; check that it was written", path.display()))
-    } else {
-        Ok(bytes)
-    }
+    File::open(path).map_err(|error| unreadable(path, &error))
+}
+
+/// Reads a file or pipe that is not empty.
+pub(crate) fn read_bytes(path: &Path) -> Result<Vec<u8>, String> {
+    let mut bytes = Vec::new();
+    open(path)?.read_to_end(&mut bytes).map_err(|error| unreadable(path, &error))?;
+    if bytes.is_empty() { Err(empty(path)) } else { Ok(bytes) }
 }
 
 #[cfg(unix)]

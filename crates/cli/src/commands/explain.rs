@@ -8,7 +8,7 @@ use crate::run::{
     scene_name, setup_of,
 };
 use crate::{machine, plan_text};
-use amberfield_core::{Axis, Boundary, Domain, Side, WallShape};
+use amberfield_core::{Axis, Boundary, Domain, Side};
 use amberfield_dem::Simulation;
 use amberfield_field::ElectricField;
 use amberfield_field::far::Connect;
@@ -34,7 +34,7 @@ pub(crate) fn explain(options: &ExplainOptions) -> Result<(), Failure> {
     for warning in &solver.warnings {
         line(format_args!("warning: {warning}"));
     }
-    if scene.time.is_some() { explain_run(&scene, solver) } else { explain_field(&scene, solver.field) }
+    if scene.time.is_some() { explain_run(&mut scene, solver) } else { explain_field(&scene, solver.field) }
 }
 
 /// Prints the content of a scene.
@@ -54,12 +54,8 @@ fn print_scene(name: &str, scene: &Scene) {
         particles.net_charge()
     ));
     line(format_args!("walls: {}, materials: {}", scene.walls.len(), scene.materials.len()));
-    for wall in &scene.walls {
-        if let WallShape::Mesh(mesh) = &wall.shape
-            && let Some([low, high]) = mesh.bounds()
-        {
-            line(format_args!("  {}: {:?} to {:?} m", wall.name, low.as_slice(), high.as_slice()));
-        }
+    for wall in plan_text::walls(scene) {
+        line(format_args!("  {wall}"));
     }
     if let Some(domain) = &scene.domain {
         let (min, max) = (domain.min(), domain.max());
@@ -95,7 +91,7 @@ fn print_settings(field: &ElectricFieldSettings) {
 }
 
 /// Prints the plan, the error, the memory and the step of a run.
-fn explain_run(scene: &Scene, solver: SolverConnections) -> Result<(), Failure> {
+fn explain_run(scene: &mut Scene, solver: SolverConnections) -> Result<(), Failure> {
     let simulation =
         Simulation::new(setup_of(scene, None, solver)?).map_err(|error| Failure::at_start(&error))?;
     for text in plan_text::lines(simulation.plan()) {
@@ -107,12 +103,18 @@ fn explain_run(scene: &Scene, solver: SolverConnections) -> Result<(), Failure> 
     let motion = simulation.len() * BYTES_PER_MOVING_GRAIN;
     print_memory(motion, simulation.field());
     let end_s = scene.time.as_ref().map_or(0.0, |time| time.end_s);
+    let steps = (end_s / simulation.step_s()).ceil();
     line(format_args!(
-        "time step: {:e} s, {:.0} steps to {end_s} s; neighbour skin {:e} m",
+        "time step: {:e} s, {steps:.0} steps to {end_s} s; neighbour skin {:e} m",
         simulation.step_s(),
-        (end_s / simulation.step_s()).ceil(),
         simulation.skin_m()
     ));
+    if let Some(text) = plan_text::duration(&simulation, steps) {
+        line(format_args!("warning: {text}"));
+    }
+    if let Some(text) = plan_text::restitution(scene, &simulation) {
+        line(format_args!("{text}"));
+    }
     line(format_args!("limits on the time step now:"));
     for guard in simulation.guards() {
         if guard.limit_s.is_finite() {

@@ -11,7 +11,7 @@ use crate::run::{
 };
 use crate::{interrupt, plan_text, print};
 use amberfield_dem::Simulation;
-use amberfield_scene::{Physics, Purpose, read_checkpoint, write_json, write_text};
+use amberfield_scene::{Physics, Purpose, Scene, read_checkpoint, write_json, write_text};
 use std::path::{Path, PathBuf};
 
 /// Share of the steps with limited grains above which a run ends with a warning.
@@ -54,7 +54,7 @@ pub(crate) fn run(options: &RunOptions, common: &Common, log: &Log) -> Result<()
     for warning in &solver.warnings {
         tracing::warn!("{warning}");
     }
-    let setup = setup_of(&scene, None, solver)?;
+    let setup = setup_of(&mut scene, None, solver)?;
 
     let (simulation, earlier) = match saved {
         Some(Saved { state, history, wall_s, stage_s, .. }) => {
@@ -73,7 +73,7 @@ pub(crate) fn run(options: &RunOptions, common: &Common, log: &Log) -> Result<()
     if let (Some(field), None) = (simulation.field(), &earlier) {
         write_json(&folder.file("tuning.json"), field.choice())?;
     }
-    announce(&simulation);
+    announce(&scene, &simulation);
 
     let mut session = match earlier {
         Some(earlier) => Session::resume(&folder, &scene, simulation, earlier, contents)?,
@@ -145,7 +145,10 @@ fn out_folder(options: &RunOptions) -> Result<PathBuf, Failure> {
 }
 
 /// Logs the size of the run and the errors of its field.
-fn announce(simulation: &Simulation) {
+fn announce(scene: &Scene, simulation: &Simulation) {
+    for wall in plan_text::walls(scene) {
+        tracing::info!("wall {wall}");
+    }
     for line in plan_text::lines(simulation.plan()) {
         tracing::debug!("{line}");
     }
@@ -156,6 +159,10 @@ fn announce(simulation: &Simulation) {
         simulation.skin_m(),
         rayon::current_num_threads()
     );
+    let end_s = scene.time.as_ref().map_or(0.0, |time| time.end_s);
+    if let Some(text) = plan_text::duration(simulation, (end_s / simulation.step_s()).ceil()) {
+        tracing::warn!("{text}");
+    }
     if let Some(field) = simulation.field() {
         match (field.error_estimated(), field.error_measured()) {
             (Some(estimated), Some(measured)) => tracing::info!(

@@ -16,8 +16,10 @@ const CHARGE: f64 = 1e-9;
 /// Quantities of a run to which later ones are compared.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Health {
-    /// Number of grains.
-    grains: usize,
+    /// Number of grains that had left at the last check.
+    left: usize,
+    /// Energy of the field at the last check [J].
+    electric: f64,
     /// Kinetic energy at the start [J].
     kinetic: f64,
     /// Highest potential energy so far: gravity, contacts, field [J].
@@ -57,9 +59,10 @@ impl Health {
     /// Quantities of a run that begins or continues now.
     pub(crate) fn new(simulation: &Simulation, energies: &Energies, allowed: Allowed) -> Self {
         Self {
-            grains: simulation.len(),
+            left: simulation.left().grains,
+            electric: energies.electric.unwrap_or(0.0),
             kinetic: energies.kinetic,
-            highest: potential(energies),
+            highest: potential(simulation, energies),
             charge: charge(simulation).net,
             allowed,
         }
@@ -70,27 +73,29 @@ impl Health {
     /// The energies may use a forecast of the field. What looks wrong by them is checked again with the field
     /// itself.
     pub(crate) fn check(&mut self, simulation: &mut Simulation, energies: &Energies) -> Result<(), Failure> {
-        if simulation.len() != self.grains {
-            // Grains that left took their energy and charge with them.
-            *self = Self::new(simulation, energies, self.allowed);
+        let electric = energies.electric.unwrap_or(0.0);
+        if self.left != simulation.left().grains {
+            // A charge that others held back took its negative energy along: nothing that could be released.
+            self.highest += (electric - self.electric).max(0.0);
         }
+        (self.left, self.electric) = (simulation.left().grains, electric);
         let time_s = simulation.time_s();
         if let Some(id) = simulation.not_finite() {
             return Err(unsound(format!("the position or velocity of grain {id} is not a number"), time_s));
         }
-        self.highest = self.highest.max(potential(energies));
-        if self.is_too_fast(energies) {
+        self.highest = self.highest.max(potential(simulation, energies));
+        if self.is_too_fast(simulation, energies) {
             let exact = simulation
                 .energies(ElectricEnergy::Evaluated)
                 .map_err(|error| Failure::while_running(&error))?;
-            if self.is_too_fast(&exact) {
+            if self.is_too_fast(simulation, &exact) {
                 let (id, _) = simulation.fastest().unwrap_or_default();
                 return Err(unsound(
                     format!(
                         "the grains have {:.3e} J of kinetic energy, more than {ENERGY} times the {:.3e} J \
                          that could have been released; the fastest is grain {id} {}",
                         exact.kinetic,
-                        self.released(&exact),
+                        self.released(simulation, &exact),
                         whereabouts(simulation, id)
                     ),
                     time_s,
@@ -111,14 +116,14 @@ impl Health {
     }
 
     /// Energy that the grains had at the start or could have gained since then [J].
-    fn released(&self, energies: &Energies) -> f64 {
-        (self.kinetic + self.highest - potential(energies)).max(0.0)
+    fn released(&self, simulation: &Simulation, energies: &Energies) -> f64 {
+        (self.kinetic + self.highest - potential(simulation, energies)).max(0.0)
     }
 
     /// Tells whether the kinetic energy is larger than the energy that could have been released.
-    fn is_too_fast(&self, energies: &Energies) -> bool {
+    fn is_too_fast(&self, simulation: &Simulation, energies: &Energies) -> bool {
         let sizes = energies.gravity.abs() + energies.contact.abs() + energies.electric.unwrap_or(0.0).abs();
-        let most = ENERGY * self.released(energies) + ROUND_OFF * sizes;
+        let most = ENERGY * self.released(simulation, energies) + ROUND_OFF * sizes;
         !self.allowed.work && energies.kinetic > most
     }
 }
@@ -144,9 +149,9 @@ fn whereabouts(simulation: &Simulation, id: u64) -> String {
     })
 }
 
-/// Potential energy [J].
-fn potential(energies: &Energies) -> f64 {
-    energies.gravity + energies.contact + energies.electric.unwrap_or(0.0)
+/// Potential energy [J], with the gravity of the grains that have left.
+fn potential(simulation: &Simulation, energies: &Energies) -> f64 {
+    energies.gravity + simulation.left().gravity + energies.contact + energies.electric.unwrap_or(0.0)
 }
 
 /// Charges of a run.
@@ -157,11 +162,12 @@ struct ChargeBalance {
     sizes: f64,
 }
 
-/// Charges of grains and walls.
+/// Charges of grains and walls, and of the grains that have left.
 fn charge(simulation: &Simulation) -> ChargeBalance {
     let particles = simulation.particles();
     let (walls, moved) =
         simulation.ledger().map_or((0.0, 0.0), |ledger| (ledger.walls.iter().sum(), ledger.moved));
     let sizes: f64 = particles.charge.iter().map(|charge| charge.abs()).sum();
-    ChargeBalance { net: particles.net_charge() + walls, sizes: sizes + moved }
+    let left = simulation.left().charge;
+    ChargeBalance { net: particles.net_charge() + walls + left, sizes: sizes + moved + left.abs() }
 }

@@ -92,9 +92,9 @@ pub(crate) struct SolverConnections {
 }
 
 /// Set-up of the simulation of a scene, with its solver; `choice` are field parameters that were chosen
-/// earlier.
+/// earlier. The scene's particles are moved into it.
 pub(crate) fn setup_of(
-    scene: &Scene,
+    scene: &mut Scene,
     choice: Option<Choice>,
     solver: SolverConnections,
 ) -> Result<Setup, Failure> {
@@ -111,7 +111,7 @@ pub(crate) fn setup_of(
         domain: domain_of(scene)?.clone(),
         materials: scene.materials.clone(),
         rolling_model: scene.rolling_model,
-        particles: scene.particles.clone(),
+        particles: std::mem::take(&mut scene.particles),
         walls: scene.walls.clone(),
         time,
         gas: scene.gas.map(|gas| GasSetup { gas, solver: solver.flow }),

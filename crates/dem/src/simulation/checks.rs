@@ -9,7 +9,6 @@ use crate::error::DemError;
 use crate::motion::grains::Grains;
 use crate::setup::Setup;
 use amberfield_core::{Axis, Material, Particles, Skin, Step};
-use std::collections::HashSet;
 
 /// `skin_m = "auto"` is this fraction of a small radius (see [`skin`]).
 const SKIN_OVER_RADIUS: f64 = 0.2;
@@ -57,17 +56,26 @@ pub(crate) fn check(setup: &Setup) -> Result<(), DemError> {
     Ok(())
 }
 
+/// Id that two grains have.
+fn used_twice(ids: &[u64]) -> Option<u64> {
+    if ids.is_sorted_by(|a, b| a < b) {
+        return None;
+    }
+    let mut ids = ids.to_vec();
+    ids.sort_unstable();
+    ids.windows(2).find(|pair| pair[0] == pair[1]).map(|pair| pair[0])
+}
+
 fn check_particles(particles: &Particles, setup: &Setup) -> Result<(), DemError> {
     if particles.len() > INDEX_MASK as usize {
         return Err(bad(format!("{} grains are more than the {INDEX_MASK} that fit", particles.len())));
     }
-    let mut ids = HashSet::with_capacity(particles.len());
+    if let Some(id) = used_twice(&particles.id) {
+        return Err(bad(format!("grain id {id} is used twice; give every grain its own id")));
+    }
     for i in 0..particles.len() {
         let grain = particles.grain(i);
         let id = grain.id;
-        if !ids.insert(id) {
-            return Err(bad(format!("grain id {id} is used twice; give every grain its own id")));
-        }
         if !(grain.radius.is_finite() && grain.radius > 0.0) {
             return Err(bad(format!(
                 "grain {id}: radius must be positive and finite, got {} m",

@@ -5,7 +5,24 @@ use crate::error::DemError;
 use crate::motion::verlet::Beyond;
 use amberfield_core::{OnExit, Side};
 
+/// Sums over the grains that have left since a run began or went on.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct Left {
+    /// Number of grains.
+    pub grains: usize,
+    /// Charge that they took along [C].
+    pub charge: f64,
+    /// Energy −Σ m g·x where they left [J].
+    pub gravity: f64,
+}
+
 impl Simulation {
+    /// Sums over the grains that have left since the run began or went on.
+    #[must_use]
+    pub fn left(&self) -> Left {
+        self.left
+    }
+
     /// Ends the run or removes the grains outside the box, as the scene says; whether any was removed.
     pub(super) fn handle_exits(&mut self) -> Result<bool, DemError> {
         let outside: Vec<usize> = (0..self.grains.len())
@@ -43,6 +60,12 @@ impl Simulation {
             return;
         }
         self.trade_between_grains();
+        for &i in gone {
+            self.left.grains += 1;
+            self.left.charge += self.particles.charge[self.grains.original[i].index()];
+            self.left.gravity -=
+                self.grains.position(i).dot(&self.time.gravity_m_s2) / self.grains.inverse_mass[i];
+        }
         let mut keep: Vec<u32> = (0..self.grains.len() as u32).collect();
         keep.retain(|&i| gone.binary_search(&(i as usize)).is_err());
         self.list(&keep);

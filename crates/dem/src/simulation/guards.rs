@@ -35,6 +35,17 @@ pub struct Guard {
     pub margin: f64,
 }
 
+/// Restitution that impacts of two grains of a material have at the step.
+#[derive(Clone, Debug, PartialEq)]
+pub struct StepRestitution {
+    /// Name of the material.
+    pub material: String,
+    /// Restitution of the material.
+    pub asked: f64,
+    /// Restitution at the step, on the mean.
+    pub found: f64,
+}
+
 /// Limits on the time step, without the step.
 #[derive(Clone, Debug)]
 pub(crate) struct Limits {
@@ -127,6 +138,11 @@ impl Limits {
         }
         let motion = grains.velocity.iter().zip(&grains.centre);
         motion.map(|(velocity, centre)| velocity.norm() / centre[3]).fold(0.0, f64::max)
+    }
+
+    /// Steps of a length [s] in the shortest contact of two equal grains that meet at a speed [m/s].
+    pub(crate) fn steps_in_contact(&self, step: f64, speed: f64) -> f64 {
+        self.hertz * speed.powf(-0.2) / step
     }
 
     /// Whether a grain moves too far in a step [s], at a largest speed over radius [1/s].

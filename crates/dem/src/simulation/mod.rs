@@ -3,7 +3,7 @@
 pub(crate) mod checks;
 mod electric;
 pub(crate) mod energy;
-mod exits;
+pub(crate) mod exits;
 pub(crate) mod guards;
 mod observe;
 mod overlaps;
@@ -70,6 +70,8 @@ pub struct Simulation {
     /// Largest overlaps that the run may have at present.
     allowed: Depths,
     scratch: Scratch,
+    /// Sums over the grains that have left.
+    left: exits::Left,
     /// State before a step in which another process may be lost.
     rescued: Option<State>,
     watch: StageClock,

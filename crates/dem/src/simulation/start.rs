@@ -1,5 +1,6 @@
 //! Starting a run, afresh or from a checkpoint.
 
+use super::exits::Left;
 use super::guards::Limits;
 use super::state::{Progress, State};
 use super::timing::StageClock;
@@ -149,6 +150,7 @@ impl Simulation {
             field,
             allowed: Depths { grains: f64::INFINITY, walls: f64::INFINITY },
             scratch: Scratch::default(),
+            left: Left::default(),
             rescued: None,
             watch: StageClock::default(),
         };

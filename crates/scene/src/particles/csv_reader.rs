@@ -8,7 +8,7 @@ use crate::source::decode;
 use amberfield_core::{Domain, Grain, GroupId, MaterialId, Particles};
 use csv::StringRecord;
 use nalgebra::Vector3;
-use std::collections::HashMap;
+use std::io::Read;
 
 /// Columns of a particles CSV.
 const COLUMNS: [&str; 15] = [
@@ -85,21 +85,19 @@ impl ColumnIndices {
     }
 }
 
-fn csv_reader(bytes: &[u8]) -> csv::Reader<&[u8]> {
-    let bytes = bytes.strip_prefix(b"\xef\xbb\xbf").unwrap_or(bytes);
+fn csv_reader<R: Read>(bytes: R) -> csv::Reader<R> {
     csv::ReaderBuilder::new().flexible(false).from_reader(bytes)
 }
 
-/// Reads a particles CSV.
+/// Reads a particles CSV, row by row: a file of 10⁷ grains is as large as the grains.
 ///
 /// # Errors
 /// Bad header, bad values, duplicate ids, grains outside the domain: with line, column and value.
 pub(crate) fn read_particles(
     file: &str,
-    bytes: &[u8],
+    bytes: impl Read,
     context: &CsvContext<'_>,
 ) -> Result<ReadParticles, SceneError> {
-    decode(file, bytes)?;
     let mut reader = csv_reader(bytes);
     let header = reader.headers().map_err(|error| csv_error(file, &error))?;
     let columns = CsvColumns::new(file, header, &COLUMNS, &REQUIRED)?;
@@ -109,23 +107,33 @@ pub(crate) fn read_particles(
         groups: vec!["all".to_owned()],
         has_charge: indices.charge.is_some(),
     };
-    let mut lines_by_id: HashMap<u64, u64> = HashMap::new();
-    for record in reader.records() {
-        let record = record.map_err(|error| csv_error(file, &error))?;
+    let (mut record, mut lines) = (StringRecord::new(), Vec::new());
+    while reader.read_record(&mut record).map_err(|error| csv_error(file, &error))? {
         let grain = read_grain(&columns, &indices, &record, context, &mut read.groups)?;
-        if let Some(before) = lines_by_id.insert(grain.id, line(&record)) {
-            return Err(columns.bad(
-                &record,
-                indices.id,
-                &format!("line {before} has this id already; give each grain its own"),
-            ));
-        }
         read.particles.push(grain);
+        // More than 2³² lines do not fit anyway.
+        lines.push(u32::try_from(line(&record)).unwrap_or(u32::MAX));
     }
     if read.particles.is_empty() {
         return Err(SceneError::file(file, "a header row but no grains; add rows"));
     }
+    if let Some([before, again]) = used_twice(&read.particles.id) {
+        let (id, before, line) = (read.particles.id[again], lines[before], lines[again]);
+        let problem = format!("id = \"{id}\": line {before} has this id already; give each grain its own");
+        return Err(SceneError::data(file, line.into(), problem));
+    }
     Ok(read)
+}
+
+/// Rows of the first id that was used before, and where.
+fn used_twice(ids: &[u64]) -> Option<[usize; 2]> {
+    if ids.is_sorted_by(|a, b| a < b) {
+        return None;
+    }
+    let mut rows: Vec<usize> = (0..ids.len()).collect();
+    rows.sort_by_key(|row| ids[*row]);
+    let pairs = rows.windows(2).filter(|rows| ids[rows[0]] == ids[rows[1]]);
+    pairs.map(|rows| [rows[0], rows[1]]).min_by_key(|rows| rows[1])
 }
 
 fn read_grain(

@@ -45,8 +45,11 @@ pub(super) fn read_section(
         }
         (None, None) => return Err(table.missing("file", "give file = \"grains.csv\" or generate = { … }")),
         (Some(file), None) => {
-            let bytes = source.read_file(&table, "file", file)?;
-            read_particles(file, &bytes, &CsvContext { domain, materials, allow_points })?
+            let mut bytes = source.open_file(&table, "file", file)?;
+            let read = read_particles(file, &mut bytes, &CsvContext { domain, materials, allow_points });
+            source.add(file, &bytes.print);
+            // What is no text is no table either: that says more than the first cell that is odd.
+            read.map_err(|error| source.not_text(file).unwrap_or(error))?
         }
         (None, Some(node)) => {
             let Some(domain) = domain else {

@@ -19,7 +19,7 @@ pub(super) fn simulate(scene: &Path, set: &[String], nudge: f64, looks: usize) -
         *position += Vector3::repeat(if index % 2 == 0 { way } else { -way });
     }
     let solver = connect_solver(&mut scene, &folder).map_err(said)?;
-    let setup = setup_of(&scene, None, solver).map_err(said)?;
+    let setup = setup_of(&mut scene, None, solver).map_err(said)?;
     let (domain, end_s) = (setup.domain.clone(), setup.time.end_s);
     let mut run = Simulation::new(setup).map_err(|error| error.to_string())?;
     let start = run.particles();

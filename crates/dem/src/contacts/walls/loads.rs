@@ -16,8 +16,8 @@ pub struct WallLoad {
 }
 
 impl WallLoad {
-    /// Adds one contact of a grain at `centre` [m], at the distance `arm` [m] from it. `lean` [N] is taken off
-    /// the force on the grain, at its centre.
+    /// Adds one contact of a grain at `centre` [m], at the distance `arm` [m] from it. `lean` [N] is taken
+    /// off the force on the grain, at its centre.
     #[inline(always)]
     pub(super) fn add_contact(
         &mut self,

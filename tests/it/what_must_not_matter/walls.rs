@@ -1,5 +1,6 @@
 //! Changes of walls and scenes that physics does not see, after which grains move as before: a line each.
 
+#[path = "../../../crates/dem/tests/common/mod.rs"]
 mod common;
 
 use amberfield_core::{Grain, Material, Matrix3, TriangleMesh, Vector3, Wall, WallShape};
