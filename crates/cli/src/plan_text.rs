@@ -1,7 +1,7 @@
 //! Text of a plan, and of what a run has and costs.
 
 use amberfield_core::{Plan, WallShape};
-use amberfield_dem::Simulation;
+use amberfield_dem::Outlook;
 use amberfield_scene::Scene;
 
 /// Number of steps above which a run is told how long it takes.
@@ -36,21 +36,21 @@ pub(crate) fn walls(scene: &Scene) -> Vec<String> {
     scene.walls.iter().map(|wall| format!("{}: {}", wall.name, place(&wall.shape))).collect()
 }
 
-/// Line with what the step costs in accuracy of impacts; `None` where there are no grains.
-pub(crate) fn restitution(scene: &Scene, simulation: &Simulation) -> Option<String> {
-    let (_, fastest) = simulation.fastest()?;
+/// Line with what the step costs in accuracy of impacts.
+pub(crate) fn restitution(scene: &Scene, outlook: &Outlook) -> String {
+    let fastest = outlook.fastest_m_s;
     let speed = if fastest > 0.0 { 2.0 * fastest } else { USUAL_SPEED };
-    let (steps, found) = simulation.restitutions(&scene.materials, speed);
+    let (steps, found) = outlook.restitutions(&scene.materials, speed);
     let found: Vec<String> =
         found.iter().map(|of| format!("{} {} acts as {:.4}", of.material, of.asked, of.found)).collect();
-    Some(format!("restitution: {steps:.1} steps in a contact at {speed:.3} m/s; {}", found.join(", ")))
+    format!("restitution: {steps:.1} steps in a contact at {speed:.3} m/s; {}", found.join(", "))
 }
 
 /// Line with how long very many steps take [steps]; `None` where they are not so many.
-pub(crate) fn duration(simulation: &Simulation, steps: f64) -> Option<String> {
+pub(crate) fn duration(grains: usize, steps: f64) -> Option<String> {
     let [step, grain] = STEP_TAKES;
     #[expect(clippy::cast_precision_loss, reason = "an estimate")]
-    let grains = simulation.len() as f64 / rayon::current_num_threads() as f64;
+    let grains = grains as f64 / rayon::current_num_threads() as f64;
     let seconds = steps * (step + grain * grains);
     (steps > MANY_STEPS).then(|| {
         format!(

@@ -22,6 +22,7 @@ pub use setup::{FieldStageSetup, GasSetup, Setup};
 pub use simulation::energy::{ElectricEnergy, Energies};
 pub use simulation::exits::Left;
 pub use simulation::guards::{Guard, StepRestitution};
+pub use simulation::outlook::Outlook;
 pub use simulation::state::State;
 pub use simulation::{Deepest, Simulation};
 pub use wall_cover::WallCover;

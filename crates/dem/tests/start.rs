@@ -120,3 +120,15 @@ fn leaving_grain_stops_the_run_or_is_removed() {
     assert_eq!(simulation.particles().id, [5, 6]);
     assert!(simulation.particles().velocity[1].z > 0.0);
 }
+
+#[test]
+fn outlook_without_a_start_is_that_of_the_run() {
+    let mut scene = two(2.5 * RADIUS);
+    scene.particles.velocity[1] = Vector3::new(0.3, 0.0, 0.0);
+    scene.time.step = amberfield_core::Step::Auto;
+    let alone = amberfield_dem::Outlook::of(&scene).expect("a good scene").expect("no field");
+    let started = Simulation::new(scene).expect("a good scene").outlook();
+    assert_eq!((alone.step_s, alone.skin_m), (started.step_s, started.skin_m));
+    assert_eq!((alone.guards, alone.plan), (started.guards, started.plan));
+    assert_eq!((alone.grains, alone.fastest_m_s), (2, started.fastest_m_s));
+}

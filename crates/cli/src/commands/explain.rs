@@ -9,7 +9,7 @@ use crate::run::{
 };
 use crate::{machine, plan_text};
 use amberfield_core::{Axis, Boundary, Domain, Side};
-use amberfield_dem::Simulation;
+use amberfield_dem::{Outlook, Simulation};
 use amberfield_field::ElectricField;
 use amberfield_field::far::Connect;
 use amberfield_scene::{ElectricFieldSettings, Purpose, Scene};
@@ -18,6 +18,9 @@ use std::mem::size_of;
 /// Memory for the motion of a grain [bytes]: state, forces, and neighbour lists with the usual 8 to 12
 /// partners.
 const BYTES_PER_MOVING_GRAIN: usize = 1200;
+
+/// Number of grains above which a scene without a field is explained without placing them.
+const MANY: usize = 1_000_000;
 
 /// Prints what a scene will do.
 pub(crate) fn explain(options: &ExplainOptions) -> Result<(), Failure> {
@@ -91,32 +94,46 @@ fn print_settings(field: &ElectricFieldSettings) {
 }
 
 /// Prints the plan, the error, the memory and the step of a run.
+///
+/// Very many grains are not placed for it.
 fn explain_run(scene: &mut Scene, solver: SolverConnections) -> Result<(), Failure> {
-    let simulation =
-        Simulation::new(setup_of(scene, None, solver)?).map_err(|error| Failure::at_start(&error))?;
-    for text in plan_text::lines(simulation.plan()) {
+    let setup = setup_of(scene, None, solver)?;
+    let at_start = |error| Failure::at_start(&error);
+    if setup.particles.len() > MANY
+        && let Some(outlook) = Outlook::of(&setup).map_err(at_start)?
+    {
+        print_outlook(scene, &outlook, None);
+        line(format_args!("more than {MANY} grains: overlaps are looked for when the run starts"));
+        return Ok(());
+    }
+    let simulation = Simulation::new(setup).map_err(at_start)?;
+    print_outlook(scene, &simulation.outlook(), simulation.field());
+    Ok(())
+}
+
+/// Prints the plan, the error, the memory and the step.
+fn print_outlook(scene: &Scene, outlook: &Outlook, field: Option<&ElectricField>) {
+    for text in plan_text::lines(&outlook.plan) {
         line(format_args!("{text}"));
     }
-    if let Some(field) = simulation.field() {
+    if let Some(field) = field {
         print_error(scene, field);
     }
-    let motion = simulation.len() * BYTES_PER_MOVING_GRAIN;
-    print_memory(motion, simulation.field());
+    print_memory(outlook.grains * BYTES_PER_MOVING_GRAIN, field);
     let end_s = scene.time.as_ref().map_or(0.0, |time| time.end_s);
-    let steps = (end_s / simulation.step_s()).ceil();
+    let steps = (end_s / outlook.step_s).ceil();
     line(format_args!(
         "time step: {:e} s, {steps:.0} steps to {end_s} s; neighbour skin {:e} m",
-        simulation.step_s(),
-        simulation.skin_m()
+        outlook.step_s, outlook.skin_m
     ));
-    if let Some(text) = plan_text::duration(&simulation, steps) {
+    if let Some(text) = plan_text::duration(outlook.grains, steps) {
         line(format_args!("warning: {text}"));
     }
-    if let Some(text) = plan_text::restitution(scene, &simulation) {
-        line(format_args!("{text}"));
+    if outlook.grains > 0 {
+        line(format_args!("{}", plan_text::restitution(scene, outlook)));
     }
     line(format_args!("limits on the time step now:"));
-    for guard in simulation.guards() {
+    for guard in &outlook.guards {
         if guard.limit_s.is_finite() {
             line(format_args!(
                 "  {:14}  {:.4e} s, {:.1} times the step",
@@ -126,7 +143,6 @@ fn explain_run(scene: &mut Scene, solver: SolverConnections) -> Result<(), Failu
             line(format_args!("  {:14}  none", guard.name));
         }
     }
-    Ok(())
 }
 
 /// Prints the plan, the error and the memory of a field without motion.

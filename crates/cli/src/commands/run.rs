@@ -160,7 +160,7 @@ fn announce(scene: &Scene, simulation: &Simulation) {
         rayon::current_num_threads()
     );
     let end_s = scene.time.as_ref().map_or(0.0, |time| time.end_s);
-    if let Some(text) = plan_text::duration(simulation, (end_s / simulation.step_s()).ceil()) {
+    if let Some(text) = plan_text::duration(simulation.len(), (end_s / simulation.step_s()).ceil()) {
         tracing::warn!("{text}");
     }
     if let Some(field) = simulation.field() {

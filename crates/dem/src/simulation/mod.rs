@@ -6,6 +6,7 @@ pub(crate) mod energy;
 pub(crate) mod exits;
 pub(crate) mod guards;
 mod observe;
+pub(crate) mod outlook;
 mod overlaps;
 mod plan;
 mod start;

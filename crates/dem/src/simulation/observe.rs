@@ -2,17 +2,13 @@
 
 use super::Simulation;
 use super::energy::{self, ElectricEnergy, Energies};
-use super::guards::{Guard, StepRestitution};
+use super::guards::Guard;
 use super::timing::STAGE_NAMES;
 use crate::contacts::walls::WallLoad;
 use crate::error::DemError;
 use crate::field_stage::{FieldStage, Intervals, Limited};
-use amberfield_core::{Material, Particles, Plan, Vector3};
+use amberfield_core::{Particles, Plan, Vector3};
 use amberfield_field::ElectricField;
-use amberfield_laws::{damped_step, restitution};
-
-/// Fewest steps in a contact for which a restitution is stated; a guard refuses fewer.
-const FEWEST_STEPS: f64 = 4.0;
 
 impl Simulation {
     /// Exchange of grains with a gas that flows; `None` without one.
@@ -184,22 +180,6 @@ impl Simulation {
             limits.set_electric(stiffness, field.plasma_limit);
         }
         limits.guards(&self.progress).collect()
-    }
-
-    /// Steps in the shortest contact of two equal grains that meet at a speed [m/s], and what restitution
-    /// each of the materials, with itself, has in so few.
-    #[must_use]
-    pub fn restitutions(&self, materials: &[Material], speed: f64) -> (f64, Vec<StepRestitution>) {
-        let steps = self.limits.steps_in_contact(self.progress.step_s, speed);
-        let at_step = |material: &Material| StepRestitution {
-            material: material.name.clone(),
-            asked: material.restitution,
-            found: damped_step::restitution_in_steps(
-                restitution::damping_ratio(material.restitution),
-                steps.max(FEWEST_STEPS),
-            ),
-        };
-        (steps, materials.iter().map(at_step).collect())
     }
 
     /// The field; `None` without a field stage.

@@ -231,13 +231,13 @@ fn is_charged(field: &FieldStageSetup, particles: &Particles) -> bool {
 }
 
 /// Largest speed over radius [1/s].
-fn pace(particles: &Particles) -> f64 {
+pub(super) fn pace(particles: &Particles) -> f64 {
     let motion = particles.velocity.iter().zip(&particles.radius);
     motion.map(|(velocity, radius)| velocity.norm() / radius).fold(0.0, f64::max)
 }
 
 /// The box that grains may not leave: infinite along periodic axes.
-fn bounds(domain: &Domain) -> Bounds {
+pub(super) fn bounds(domain: &Domain) -> Bounds {
     let side = |corner: Vector3<f64>, infinite: f64| {
         std::array::from_fn(|a| if domain.is_periodic(Axis::ALL[a]) { infinite } else { corner[a] })
     };
