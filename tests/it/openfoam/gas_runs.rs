@@ -137,6 +137,29 @@ fn a_run_in_a_gas_that_was_killed_ends_as_if_it_had_not_been() {
 }
 
 #[test]
+fn a_gas_starts_from_the_time_that_the_case_names_at_a_resume_too() {
+    let bench = bed(SCENE);
+    let controls = bench.read("foam/system/controlDict");
+    let latest = controls.replace("startFrom startTime", "startFrom latestTime");
+    let latest = latest.replace("writeInterval 1;", "writeInterval 1e-3;").replace("timeStep", "runTime");
+    assert_ne!(latest, controls);
+    bench.write("foam/system/controlDict", latest);
+    good(&run(&bench, "whole", &[]));
+    assert!(bench.names("whole/solver").len() > 8, "{:?}", bench.names("whole/solver"));
+    for options in [&["--steps", "150"][..], &["--steps", "150", "--overwrite"]] {
+        good(&run(&bench, "parts", options));
+    }
+    let checkpoint = format!("parts/checkpoints/{}", bench.names("parts/checkpoints").pop().expect("one"));
+    let history = bench.read("parts/history.csv");
+    let ranks = run(&bench, "parts", &["--resume", &checkpoint, "--set", "solver.ranks=2"]);
+    assert_eq!(ranks.code, Some(2), "{}", ranks.stderr);
+    assert!(ranks.stderr.contains("solver.ranks is 2 and was not given"), "{}", ranks.stderr);
+    assert_eq!(bench.read("parts/history.csv"), history);
+    good(&run(&bench, "parts", &["--resume", &checkpoint]));
+    assert_eq!(grains(&bench, "parts"), grains(&bench, "whole"));
+}
+
+#[test]
 fn a_run_in_a_gas_needs_no_charge_and_is_the_same_with_two_ranks() {
     let scene = SCENE.replace("charge_C = { bipolar = 2e-12 }", "charge_C = { constant = 0.0 }");
     let scene = scene.replace("[electric_field]\ntuning = 'model'\ntolerance = 2e-2\n", "");

@@ -21,6 +21,9 @@ const TECHNICAL: [&str; 12] = [
     "solver.wait_s",
     "solver.openfoam_case",
 ];
+/// Flow of a gas that a solver computes, and the key of how many ranks this has.
+const OF_SOLVER: &str = "solver";
+const RANKS: &str = "solver.ranks";
 /// Keys whose values are names of files: their contents count instead.
 const FILES: [&str; 3] = ["particles.file", "particles.generate.charge_C.from_file", "stl"];
 /// Differences that a message names at most.
@@ -41,7 +44,9 @@ impl Physics {
         for (section, node) in entries {
             flatten(section.clone(), &node.to_toml(), &mut keys);
         }
-        keys.retain(|key, _| !is_technical(key) && !names_a_file(key));
+        // The state of a flow is known rank by rank.
+        let flows = keys.get("gas.flow").is_some_and(|flow| flow.contains(OF_SOLVER));
+        keys.retain(|key, _| (!is_technical(key) || (flows && key == RANKS)) && !names_a_file(key));
         Self { keys, files: source.fingerprints().to_vec() }
     }
 
