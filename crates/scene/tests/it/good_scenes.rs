@@ -110,7 +110,7 @@ fn physics_is_known_from_output_and_changes_of_it_are_named() {
     assert_eq!(changes(&technical), [""; 0]);
     assert_eq!(
         changes(&["electric_field.tolerance=1e-3", "time.step_s=1e-9"]),
-        ["electric_field.tolerance is 0.001 and was 0.01", "time.step_s is 1e-9 and was not given"]
+        ["electric_field.tolerance is 0.001 and was 0.01", "time.step_s is 0.000000001 and was 0.000001"]
     );
     folder.write("grains.csv", GRAINS.replace("0.003", "0.004"));
     assert_eq!(changes(&[]), ["grains.csv has other contents"]);
