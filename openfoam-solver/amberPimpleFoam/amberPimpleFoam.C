@@ -16,34 +16,33 @@ Usage
 \*---------------------------------------------------------------------------*/
 
 #include "fvCFD.H"
+#include "caseChecks.H"
+#include "caseFunctions.H"
 #include "electricField.H"
 #include "gasFlow.H"
 
-int main(int argc, char *argv[])
+namespace
 {
-    argList::addNote("Gas and electric field of moving grains, for amberfield.");
-    argList::addOption("start", "name", "Time to start from, instead of that of controlDict");
-    argList::addOption("run", "name", "Run of the DEM process; default: the one that waits");
-    argList::noFunctionObjects();
-    argList::noBanner();
 
-    #include "setRootCase.H"
-    #include "createTime.H"
-    #include "startTime.H"
+void answerAll(const Foam::argList& args, Foam::fieldSide& demProcess)
+{
+    runClock runTime(args);
+    caseChecks::checkMesh(runTime, demProcess);
     #include "createMesh.H"
+    caseChecks::checkGas(mesh, demProcess);
 
-    string run;
-    args.readIfPresent("run", run);
+    caseFunctions functions(runTime, demProcess);
+    gasFlow gas(runTime, mesh, demProcess, functions);
 
-    fieldSide demProcess(run);
     autoPtr<electricField> field;
-    const word potentialTime
-    (
-        runTime.findInstance(mesh.dbDir(), "phiE", IOobject::READ_IF_PRESENT)
-    );
-    if (IOobject("phiE", potentialTime, mesh).typeHeaderOk<volScalarField>(true))
+    if (electricField::isWanted(mesh))
     {
         field.reset(new electricField(mesh, demProcess, true));
+        if (functions.any())
+        {
+            field->show("electricField");
+        }
+        field->sendMesh();
     }
     else
     {
@@ -56,16 +55,15 @@ int main(int argc, char *argv[])
         );
         demProcess.sendMesh(meshDescription(noPotential, demProcess, true));
     }
-    gasFlow gas(runTime, mesh, demProcess);
 
     while (demProcess.wait())
     {
         switch (demProcess.request().question)
         {
             case AmberfieldQuestion_Field:
-                if (!field.valid())
+                if (!field)
                 {
-                    demProcess.fail
+                    demProcess.refuse
                     (
                         "the scene has an electric field, the case no potential 0/phiE; add it"
                     );
@@ -86,8 +84,26 @@ int main(int argc, char *argv[])
                 break;
         }
     }
+    functions.end();
 
     Info<< "The run is over." << nl << endl;
+}
 
-    return 0;
+} // End anonymous namespace
+
+
+int main(int argc, char *argv[])
+{
+    argList::addNote("Gas and electric field of moving grains, for amberfield.");
+    argList::addOption("start", "name", "Time to start from, instead of that of controlDict");
+    argList::addOption("run", "name", "Run of the DEM process; default: the one that waits");
+    argList::noBanner();
+
+    #include "setRootCase.H"
+
+    string run;
+    args.readIfPresent("run", run);
+    fieldSide demProcess(run);
+
+    return demProcess.lead([&] { answerAll(args, demProcess); });
 }

@@ -5,11 +5,13 @@
 
 #include "gasFlow.H"
 #include "constrainPressure.H"
+#include "differences.H"
 #include "findRefCell.H"
 #include "fvc.H"
 #include "fvm.H"
 #include "gaussLaplacianScheme.H"
 #include "linear.H"
+#include "meanVelocityForce.H"
 #include "zeroGradientFvPatchFields.H"
 
 #include <algorithm>
@@ -66,19 +68,91 @@ void visitField(Foam::GeometricField<Type, PatchField, GeoMesh>& field, const vi
     }
 }
 
-//- Fields of a type that a case keeps, by name
+//- A field as it was a time step before, and whether also the one before that
+//  is known, which nothing needs any more but its being there
 template<class FieldType>
-void visitWritten(Foam::fvMesh& mesh, const visitor& visit)
+void visitOld(FieldType& field, const visitor& visit)
 {
+    Foam::scalar known = field.nOldTimes() > 1 ? 1 : 0;
+    visit(&known, 1);
+    FieldType& old = field.oldTime();
+    if (known > 0)
+    {
+        old.oldTime();
+    }
+    // Else it would be taken for a field of a time before
+    field.timeIndex() = field.time().timeIndex();
+    visitField(old, visit);
+}
+
+//- Names of the fields of a type that a case keeps; a field of the step before
+//  belongs to its own
+template<class FieldType>
+Foam::wordList written(const Foam::fvMesh& mesh)
+{
+    Foam::DynamicList<Foam::word> names;
     for (const Foam::word& name : mesh.sortedNames<FieldType>())
     {
-        FieldType& field = mesh.lookupObjectRef<FieldType>(name);
-        if (field.writeOpt() == Foam::IOobject::AUTO_WRITE)
+        const FieldType& field = mesh.lookupObject<FieldType>(name);
+        if (field.writeOpt() == Foam::IOobject::AUTO_WRITE && !name.ends_with("_0"))
         {
-            visitField(field, visit);
+            names.append(name);
+        }
+    }
+    return Foam::wordList(names);
+}
+
+template<class FieldType>
+void visitNamed
+(
+    const Foam::wordList& names,
+    Foam::fvMesh& mesh,
+    const bool isLongMemory,
+    const visitor& visit
+)
+{
+    for (const Foam::word& name : names)
+    {
+        FieldType& field = mesh.lookupObjectRef<FieldType>(name);
+        visitField(field, visit);
+        if (isLongMemory)
+        {
+            visitOld(field, visit);
         }
     }
 }
+
+//- Whether any term has the scheme backward, which knows two steps before
+bool hasBackward(const Foam::fvMesh& mesh)
+{
+    for (const Foam::entry& term : schemesOf(mesh).subOrEmptyDict("ddtSchemes"))
+    {
+        for (const Foam::token& word : term.stream())
+        {
+            if (word.isWord() && word.wordToken() == "backward")
+            {
+                return true;
+            }
+        }
+    }
+    return false;
+}
+
+//- The pressure gradient of a meanVelocityForce, which it keeps to itself
+class meanForce
+:
+    public Foam::fv::meanVelocityForce
+{
+    using Foam::fv::meanVelocityForce::meanVelocityForce;
+
+public:
+
+    static void visit(Foam::fv::meanVelocityForce& force, const visitor& visit)
+    {
+        visit(&(force.*(&meanForce::gradP0_)), 1);
+        visit(&(force.*(&meanForce::dGradP_)), 1);
+    }
+};
 
 //- Mean of two cells at their face, each weighted by its own distance from it:
 //  that of things in series, one behind the other
@@ -97,11 +171,19 @@ Foam::tmp<Foam::GeometricField<Type, Foam::fvsPatchField, Foam::surfaceMesh>> in
 } // End anonymous namespace
 
 
-Foam::gasFlow::gasFlow(Time& time, fvMesh& mesh, fieldSide& demProcess)
+Foam::gasFlow::gasFlow
+(
+    runClock& time,
+    fvMesh& mesh,
+    fieldSide& demProcess,
+    caseFunctions& functions
+)
 :
     time_(time),
     mesh_(mesh),
     demProcess_(demProcess),
+    functions_(functions),
+    caseTime_(time.value()),
     p_(known("p", mesh), mesh),
     U_(known("U", mesh), mesh),
     alpha_
@@ -115,6 +197,7 @@ Foam::gasFlow::gasFlow(Time& time, fvMesh& mesh, fieldSide& demProcess)
     alphaPhi_(made("alphaPhi", mesh, false), phi_),
     transport_(U_, phi_),
     turbulence_(turbulenceType::New(alpha_, U_, alphaPhi_, phi_, transport_)),
+    options_(fv::options::New(mesh)),
     drag_
     (
         made("drag", mesh, false),
@@ -133,19 +216,42 @@ Foam::gasFlow::gasFlow(Time& time, fvMesh& mesh, fieldSide& demProcess)
     slope_(p_, U_),
     nNonOrthogonalCorrectors_
     (
-        pimple_.dict().lookupOrDefault<label>
+        pimple_.dict().getOrDefault<label>
         (
             "nNonOrthogonalCorrectors", slope_.isOblique() ? 1 : 0
         )
     ),
     pRefCell_(0),
     pRefValue_(0),
+    scalars_(written<volScalarField>(mesh)),
+    vectors_(written<volVectorField>(mesh)),
+    tensors_(written<volSymmTensorField>(mesh)),
+    isLongMemory_(hasBackward(mesh)),
+    isTimeKnown_(false),
     begun_(false),
     isAdvised_(false),
     iterations_(0)
 {
     setRefCell(p_, pimple_.dict(), pRefCell_, pRefValue_);
     mesh_.setFluxRequired(p_.name());
+
+    // Entries that cases of other solvers lack are missed before anything is computed
+    mesh_.divScheme("div(alphaPhi,U)");
+    for (const word& name : {p_.name(), U_.name()})
+    {
+        mesh_.solver(name + "Final");
+    }
+}
+
+
+Foam::scalar Foam::gasFlow::mostCourant() const
+{
+    const dictionary& control = time_.controlDict();
+    const bool isControlled = control.getOrDefault("adjustTimeStep", false);
+    return pimple_.dict().getOrDefault<scalar>
+    (
+        "maxCo", isControlled ? control.getOrDefault<scalar>("maxCo", 1) : 1
+    );
 }
 
 
@@ -156,7 +262,7 @@ void Foam::gasFlow::checkGas() const
     const scalar theirs = gas.viscosity_pa_s/gas.density_kg_m3;
     if (mag(ours - theirs) > sameViscosity*theirs)
     {
-        demProcess_.fail
+        demProcess_.refuse
         (
             "nu of constant/transportProperties is " + Foam::name(ours)
           + " m2/s, the scene's gas.viscosity_Pa_s over gas.density_kg_m3 is "
@@ -188,6 +294,12 @@ void Foam::gasFlow::answer()
     label steps = 0;
     iterations_ = 0;
     checkGas();
+    if (!isTimeKnown_)
+    {
+        isTimeKnown_ = true;
+        time_.begin(question.time_s);
+    }
+    functions_.begin();
 
     scalarField voidFraction(mesh_.nCells());
     takeGrains(voidFraction, question.density_kg_m3);
@@ -204,7 +316,7 @@ void Foam::gasFlow::answer()
     {
         const scalarField through(fvc::surfaceSum(mag(phi_))().primitiveField());
         courant = 0.5*question.interval_s*gMax(scalarField(through/mesh_.V().field()));
-        const scalar most = pimple_.dict().lookupOrDefault<scalar>("maxCo", 1);
+        const scalar most = mostCourant();
         steps = max(label(1), label(std::ceil(courant/most)));
         courant /= steps;
         const scalarField before(alpha_.primitiveField());
@@ -222,6 +334,7 @@ void Foam::gasFlow::answer()
             step(question.model_b == 1);
             residual = max(residual, missing());
             time_.write();
+            functions_.execute();
         }
         Info<< "Gas at " << time_.value() << " s: steps " << steps << ", Courant number " << courant
             << ", void fraction " << gMin(voidFraction) << " to " << gMax(voidFraction)
@@ -253,6 +366,15 @@ Foam::string Foam::gasFlow::advice() const
                 " interstitialInletVelocity the superficial velocity. ";
         }
     }
+    if (caseTime_ != time_.startTime().value())
+    {
+        advice += "the flow starts from the fields that the case has at the time " + Foam::name(caseTime_)
+          + " s (startFrom and startTime of system/controlDict). ";
+    }
+    if (pimple_.dict().getOrDefault("consistent", false))
+    {
+        advice += "PIMPLE's entry consistent is not used. ";
+    }
     word scheme;
     mesh_.gradScheme("grad(U)") >> scheme;
     if (scheme == "Gauss" && slope_.isOblique())
@@ -275,9 +397,10 @@ void Foam::gasFlow::step(const bool modelB)
           + turbulence_->divDevRhoReff(U_)
           + fvm::Sp(drag_, U_)
          ==
-            source_
+            source_ + options_(alpha_, U_)
         );
         UEqn.relax();
+        options_.constrain(UEqn);
 
         if (pimple_.momentumPredictor())
         {
@@ -289,6 +412,7 @@ void Foam::gasFlow::step(const bool modelB)
             {
                 solve(UEqn == -alpha_*slope_());
             }
+            options_.correct(U_);
         }
         while (pimple_.correct())
         {
@@ -398,6 +522,7 @@ void Foam::gasFlow::correctPressure(const fvVectorMatrix& UEqn, const bool model
     slope_.update(resistance, acts, drag_, source_, phi_);
     U_ = (UEqn.H() - acts*slope_())/UEqn.A();
     U_.correctBoundaryConditions();
+    options_.correct(U_);
 }
 
 
@@ -451,13 +576,19 @@ void Foam::gasFlow::answer(const scalar density, const AmberfieldFlowAnswer& out
 
 void Foam::gasFlow::visitState(const std::function<void(scalar*, label)>& visit)
 {
-    // With those of the turbulence model, which are registered
-    visitWritten<volScalarField>(mesh_, visit);
-    visitWritten<volVectorField>(mesh_, visit);
-    visitWritten<volSymmTensorField>(mesh_, visit);
+    visitNamed<volScalarField>(scalars_, mesh_, isLongMemory_, visit);
+    visitNamed<volVectorField>(vectors_, mesh_, isLongMemory_, visit);
+    visitNamed<volSymmTensorField>(tensors_, mesh_, isLongMemory_, visit);
     visitField(phi_, visit);
     visitField(alphaPhi_, visit);
     visitField(slope_.values(), visit);
+    for (fv::option& option : static_cast<fv::optionList&>(options_))
+    {
+        if (isA<fv::meanVelocityForce>(option))
+        {
+            meanForce::visit(refCast<fv::meanVelocityForce>(option), visit);
+        }
+    }
 }
 
 
@@ -465,7 +596,7 @@ void Foam::gasFlow::save()
 {
     DynamicList<scalar> state;
     state.append(begun_ ? 1 : 0);
-    state.append(time_.value());
+    state.append(time_.numbers());
     visitState
     (
         [&state](scalar* numbers, const label count)
@@ -479,14 +610,15 @@ void Foam::gasFlow::save()
 
 void Foam::gasFlow::restore()
 {
-    label size = 2;
+    label size = 1 + runClock::size;
     visitState([&size](scalar*, const label count) { size += count; });
     scalarField state(size);
     demProcess_.takeState(state);
 
     begun_ = state[0] == 1;
-    time_.setTime(state[1], time_.timeIndex());
-    label place = 2;
+    isTimeKnown_ = true;
+    time_.take(SubField<scalar>(state, runClock::size, 1));
+    label place = 1 + runClock::size;
     visitState
     (
         [&state, &place](scalar* numbers, const label count)

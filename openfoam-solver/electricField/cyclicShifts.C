@@ -5,6 +5,7 @@
 
 #include "cyclicShifts.H"
 #include "cyclicPolyPatch.H"
+#include "differences.H"
 #include "processorCyclicPolyPatch.H"
 #include "processorPolyPatch.H"
 #include "syncTools.H"
@@ -59,7 +60,7 @@ void Foam::cyclicShifts::checkKinds(const volScalarField& V) const
         }
         if (patch.type() != cyclicPolyPatch::typeName)
         {
-            demProcess_.fail
+            demProcess_.refuse
             (
                 "patch " + patch.name() + " is of type " + patch.type() + "; only patches of type"
               + " cyclic are possible, whose faces match one by one: make the mesh alike on both"
@@ -68,7 +69,7 @@ void Foam::cyclicShifts::checkKinds(const volScalarField& V) const
         }
         if (condition != cyclicPolyPatch::typeName)
         {
-            demProcess_.fail
+            demProcess_.refuse
             (
                 "patch " + patch.name() + " of field " + V.name() + " has the condition "
               + condition + ", but the potential cannot jump; give it cyclic"
@@ -116,12 +117,9 @@ void Foam::cyclicShifts::measure()
             sizes_[cyclici] = max(sizes_[cyclici], sqrt(mag(patch.faceAreas()[i])));
         }
     }
-    Pstream::listCombineGather(least, minEqOp<vector>());
-    Pstream::listCombineScatter(least);
-    Pstream::listCombineGather(most, maxEqOp<vector>());
-    Pstream::listCombineScatter(most);
-    Pstream::listCombineGather(sizes_, maxEqOp<scalar>());
-    Pstream::listCombineScatter(sizes_);
+    combineOfRanks(least, minEqOp<vector>());
+    combineOfRanks(most, maxEqOp<vector>());
+    combineOfRanks(sizes_, maxEqOp<scalar>());
 
     forAll(shifts_, patchi)
     {
@@ -132,7 +130,7 @@ void Foam::cyclicShifts::measure()
         const word& name = patches[patchi].name();
         if (cmptMax(most[patchi] - least[patchi]) > same*sizes_[patchi])
         {
-            demProcess_.fail
+            demProcess_.refuse
             (
                 "patch " + name + " turns what crosses it; only cyclic patches that move it along"
               + " x, y or z are possible: make the whole ring, or give this patch and its"
@@ -151,7 +149,7 @@ void Foam::cyclicShifts::measure()
         }
         if (along > 1)
         {
-            demProcess_.fail
+            demProcess_.refuse
             (
                 "patch " + name + " moves what crosses it by (" + Foam::name(shift.x()) + " "
               + Foam::name(shift.y()) + " " + Foam::name(shift.z()) + ") m, along no axis; turn the"
@@ -180,7 +178,7 @@ Foam::scalar Foam::cyclicShifts::period(const direction axis, const boundBox& bo
         const scalar known = mag(shifts_[first][axis]);
         if (mag(length - known) > same*sizes_[patchi])
         {
-            demProcess_.fail
+            demProcess_.refuse
             (
                 "patch " + patches[first].name() + " is " + Foam::name(known)
               + " m from its neighbour along " + axes[axis] + ", patch " + patches[patchi].name()
@@ -197,7 +195,7 @@ Foam::scalar Foam::cyclicShifts::period(const direction axis, const boundBox& bo
     const scalar extent = box.max()[axis] - box.min()[axis];
     if (mag(extent - found) > same*sizes_[first])
     {
-        demProcess_.fail
+        demProcess_.refuse
         (
             "patch " + patches[first].name() + " is " + Foam::name(found)
           + " m from its neighbour along " + axes[axis] + ", but the mesh is "
@@ -229,7 +227,7 @@ void Foam::cyclicShifts::checkEnds(const direction axis, const boundBox& box) co
         }
         if (returnReduce(atEnd, orOp<bool>()))
         {
-            demProcess_.fail
+            demProcess_.refuse
             (
                 "patch " + patch.name() + " stands beside cyclic patches at an end of the mesh"
               + " along " + axes[axis] + "; one end cannot be half cyclic and half wall: make it"

@@ -4,6 +4,7 @@
 \*---------------------------------------------------------------------------*/
 
 #include "electricField.H"
+#include "differences.H"
 #include "fixedGradientFvPatchFields.H"
 #include "fvmLaplacian.H"
 #include "fvMatrices.H"
@@ -41,19 +42,7 @@ Foam::IOobject own(const char* name, const Foam::fvMesh& mesh)
 Foam::electricField::electricField(const fvMesh& mesh, fieldSide& demProcess, const bool withGas)
 :
     mesh_(mesh),
-    phiE_
-    (
-        IOobject
-        (
-            "phiE",
-            mesh.time().findInstance(mesh.dbDir(), "phiE", IOobject::MUST_READ),
-            mesh,
-            IOobject::MUST_READ,
-            IOobject::NO_WRITE,
-            false
-        ),
-        mesh
-    ),
+    phiE_(phiE(mesh, demProcess), mesh),
     description_(phiE_, demProcess, withGas),
     parts_(mesh, true),
     floating_(floating(parts_, parts_.nRegions(), phiE_)),
@@ -76,15 +65,59 @@ Foam::electricField::electricField(const fvMesh& mesh, fieldSide& demProcess, co
     controls_(controls(mesh)),
     nNonOrthogonalCorrectors_
     (
-        mesh.solutionDict().subOrEmptyDict("electricField").lookupOrDefault<label>
+        mesh.solutionDict().subOrEmptyDict("electricField").getOrDefault<label>
         (
             "nNonOrthogonalCorrectors",
             gMax(mag(mesh.nonOrthCorrectionVectors().primitiveField())()) > 0.1 ? 3 : 0
         )
     ),
     demProcess_(demProcess)
+{}
+
+
+void Foam::electricField::show(const word& name)
 {
-    demProcess_.sendMesh(description_);
+    const auto shown = [&](const char* what)
+    {
+        return IOobject(name + ':' + what, mesh_.time().timeName(), mesh_);
+    };
+    shownV_.reset(new volScalarField(shown("V"), mesh_, V_.dimensions()));
+    shownE_.reset(new volVectorField(shown("E"), mesh_, E_.dimensions()));
+    *shownV_ == V_;
+    *shownE_ == E_;
+}
+
+
+bool Foam::electricField::isWanted(const fvMesh& mesh)
+{
+    // Where OpenFOAM finds a field of the start time: at it, or before
+    const word place
+    (
+        mesh.time().findInstance(mesh.dbDir(), "phiE", IOobject::READ_IF_PRESENT)
+    );
+    return IOobject("phiE", place, mesh).typeHeaderOk<volScalarField>(true);
+}
+
+
+Foam::IOobject Foam::electricField::phiE(const fvMesh& mesh, fieldSide& demProcess)
+{
+    if (!isWanted(mesh))
+    {
+        demProcess.refuse
+        (
+            "the case has no potential 0/phiE, a volScalarField, at or before the time "
+          + mesh.time().timeName() + "; add it"
+        );
+    }
+    return IOobject
+    (
+        "phiE",
+        mesh.time().findInstance(mesh.dbDir(), "phiE", IOobject::MUST_READ),
+        mesh,
+        IOobject::MUST_READ,
+        IOobject::NO_WRITE,
+        false
+    );
 }
 
 
@@ -134,9 +167,14 @@ void Foam::electricField::answer()
 
     const std::chrono::duration<scalar> taken = std::chrono::steady_clock::now() - begun;
 
-    if (demProcess_.request().far.wants_e)
+    if (demProcess_.request().far.wants_e || shownE_)
     {
         E_ = -fvc::grad(V_);
+    }
+    if (shownE_)
+    {
+        *shownV_ == V_;
+        *shownE_ == E_;
     }
 
     demProcess_.reply
@@ -161,7 +199,7 @@ Foam::solverPerformance Foam::electricField::solve(const dimensionedScalar& epsi
         performance = VEqn.solve(controls_);
     }
     // OpenFOAM keeps a record of every solve until the time changes, which here it may not
-    const_cast<dictionary&>(mesh_.solverPerformanceDict()).remove(V_.name());
+    const_cast<dictionary&>(performanceOf(mesh_)).remove(V_.name());
     return performance;
 }
 
@@ -212,10 +250,8 @@ void Foam::electricField::removeMeans(const scalar epsilon)
             net[parts_[pV.patch().faceCells()[i]]] += flux[i];
         }
     }
-    Pstream::listCombineGather(net, plusEqOp<scalar>());
-    Pstream::listCombineScatter(net);
-    Pstream::listCombineGather(volume, plusEqOp<scalar>());
-    Pstream::listCombineScatter(volume);
+    combineOfRanks(net, plusEqOp<scalar>());
+    combineOfRanks(volume, plusEqOp<scalar>());
 
     const scalar all = gSum(mag(rho_.primitiveField())*mesh_.V());
     forAll(floating_, parti)
@@ -227,7 +263,7 @@ void Foam::electricField::removeMeans(const scalar epsilon)
          && mag(net[parti]) > mostMismatch*all
         )
         {
-            demProcess_.fail
+            demProcess_.refuse
             (
                 "net charge " + Foam::name(net[parti]) + " C of " + Foam::name(all)
               + " C on a mesh no face of which takes it; set neutralising_background = true"
@@ -262,8 +298,7 @@ Foam::boolList Foam::electricField::floating
             }
         }
     }
-    Pstream::listCombineGather(floating, andEqOp<bool>());
-    Pstream::listCombineScatter(floating);
+    combineOfRanks(floating, andEqOp<bool>());
     return floating;
 }
 
@@ -280,8 +315,7 @@ Foam::labelList Foam::electricField::references
     {
         rank[parti] = Pstream::myProcNo();
     }
-    Pstream::listCombineGather(rank, minEqOp<label>());
-    Pstream::listCombineScatter(rank);
+    combineOfRanks(rank, minEqOp<label>());
 
     DynamicList<label> cells;
     boolList wanted(floating);

@@ -25,11 +25,14 @@ Foam::functionObjects::electricField::electricField
 )
 :
     fvMeshFunctionObject(name, runTime, dict),
-    demProcess_(dict.lookupOrDefault<string>("run", getEnv("AMBERFIELD_RUN"))),
+    demProcess_(dict.getOrDefault<string>("run", getEnv("AMBERFIELD_RUN"))),
     field_(mesh_, demProcess_),
     pending_(false),
     over_(false)
-{}
+{
+    field_.show(name);
+    field_.sendMesh();
+}
 
 
 bool Foam::functionObjects::electricField::read(const dictionary& dict)
@@ -70,12 +73,7 @@ bool Foam::functionObjects::electricField::execute()
 
 bool Foam::functionObjects::electricField::write()
 {
-    if (!time_.writeTime())
-    {
-        return true;
-    }
-    volVectorField(IOobject(name() + ":E", time_.timeName(), mesh_), field_.E()).write();
-    return true;
+    return !time_.writeTime() || field_.shownE().write();
 }
 
 

@@ -6,8 +6,12 @@
 #include "fieldSide.H"
 #include "PstreamReduceOps.H"
 #include "error.H"
+#include "foamVersion.H"
+#include "OSspecific.H"
 
+#include <cctype>
 #include <cfenv>
+#include <cstdlib>
 
 static_assert(sizeof(Foam::scalar) == sizeof(double), "build OpenFOAM in double precision");
 
@@ -32,30 +36,182 @@ public:
     }
 };
 
+//- The run that is open
+Foam::fieldSide* opened = nullptr;
+
+//- Longest part of a message that is passed on: what follows are lists of all
+//  possible words
+const std::size_t most = 300;
+
+//- A message in one line
+Foam::string oneLine(const Foam::string& message)
+{
+    Foam::string line;
+    for (const char c : message)
+    {
+        const bool isBlank = std::isspace(c);
+        if (!isBlank)
+        {
+            line += c;
+        }
+        else if (!line.empty() && line.back() != ' ')
+        {
+            line += ' ';
+        }
+    }
+    if (line.size() > most)
+    {
+        line = line.substr(0, most) + " ...";
+    }
+    while (!line.empty() && line.back() == ' ')
+    {
+        line.pop_back();
+    }
+    return line;
+}
+
 } // End anonymous namespace
 
 
 Foam::fieldSide::fieldSide(const string& run)
 :
     field_(nullptr),
-    request_()
+    request_(),
+    cause_("OpenFOAM ended the program")
 {
-    noTraps quiet;
-    field_ = amberfield_field_open
-    (
-        run.c_str(),
-        uint32_t(Pstream::parRun() ? Pstream::myProcNo() : 0),
-        uint32_t(Pstream::parRun() ? Pstream::nProcs() : 1)
-    );
+    {
+        noTraps quiet;
+        field_ = amberfield_field_open
+        (
+            run.c_str(),
+            uint32_t(Pstream::parRun() ? Pstream::myProcNo() : 0),
+            uint32_t(Pstream::parRun() ? Pstream::nProcs() : 1)
+        );
+    }
     const bool failed = amberfield_field_error(field_)[0] != '\0';
     check(failed ? AmberfieldStatus_Failed : AmberfieldStatus_Ok);
+    opened = this;
+    std::atexit(leave);
+    checkVersion();
 }
 
 
 Foam::fieldSide::~fieldSide()
 {
+    opened = nullptr;
     noTraps quiet;
     amberfield_field_close(field_);
+}
+
+
+void Foam::fieldSide::checkVersion()
+{
+    Info<< "Built for OpenFOAM v" << OPENFOAM << ", runs with v" << foamVersion::api << nl << endl;
+    if (foamVersion::api != OPENFOAM)
+    {
+        refuse
+        (
+            "this program was built for OpenFOAM v" + Foam::name(OPENFOAM)
+          + ", but the libraries that it finds are of v" + Foam::name(foamVersion::api)
+          + "; build it for these, or source the environment of the other"
+        );
+    }
+}
+
+
+int Foam::fieldSide::lead(const std::function<void()>& program)
+{
+    FatalError.throwExceptions();
+    FatalIOError.throwExceptions();
+    try
+    {
+        program();
+        return 0;
+    }
+    catch (const IOerror& error)
+    {
+        tellOf(error);
+        Perr<< nl << error << endl;
+    }
+    catch (const error& error)
+    {
+        tellOf(error);
+        Perr<< nl << error << endl;
+    }
+    Pstream::exit(1);
+    return 1;
+}
+
+
+Foam::string Foam::fieldSide::doing(const string& cause)
+{
+    const string before(cause_);
+    cause_ = cause;
+    return before;
+}
+
+
+void Foam::fieldSide::tell(const string& reason, const bool isInput)
+{
+    if (!field_)
+    {
+        return;
+    }
+    noTraps quiet;
+    if (isInput)
+    {
+        amberfield_field_refuse(field_, reason.c_str());
+    }
+    else
+    {
+        amberfield_field_fail(field_, reason.c_str());
+    }
+    amberfield_field_close(field_);
+    field_ = nullptr;
+}
+
+
+void Foam::fieldSide::tellOf(const IOerror& error)
+{
+    if (!Pstream::master())
+    {
+        // The first rank knows the file; the others had their text of it
+        Foam::sleep(1);
+    }
+    string place(error.ioFileName());
+    if (!place.empty() && error.ioStartLineNumber() > 0)
+    {
+        place += ", line " + Foam::name(error.ioStartLineNumber());
+    }
+    tell(oneLine(error.message()) + (place.empty() ? place : " (" + place + ')'), true);
+}
+
+
+void Foam::fieldSide::tellOf(const error& error)
+{
+    // Before the mesh is sent it is a fault of the case for the DEM process
+    tell(oneLine(error.message()), false);
+}
+
+
+void Foam::fieldSide::leave()
+{
+    if (!opened)
+    {
+        return;
+    }
+    if (!FatalIOError.message().empty())
+    {
+        opened->tellOf(FatalIOError);
+    }
+    else if (!FatalError.message().empty())
+    {
+        opened->tellOf(FatalError);
+    }
+    else
+    {
+        opened->tell(opened->cause_ + "; the log of the field solver says more", true);
+    }
 }
 
 
@@ -63,15 +219,10 @@ void Foam::fieldSide::check(const AmberfieldStatus status)
 {
     const bool failed = status == AmberfieldStatus_Failed;
     const string reason(failed ? amberfield_field_error(field_) : "");
-    if (failed)
-    {
-        amberfield_field_fail(field_, reason.c_str());
-    }
     if (returnReduce(failed, orOp<bool>()))
     {
         // No destructor runs on the way out
-        amberfield_field_close(field_);
-        field_ = nullptr;
+        tell(failed ? reason : string("another rank failed"), false);
         FatalErrorInFunction
             << (failed ? reason : string("another rank failed"))
             << exit(FatalError);
@@ -100,7 +251,7 @@ void Foam::fieldSide::mustBe(const AmberfieldQuestion question)
 {
     if (request_.question != question)
     {
-        fail
+        refuse
         (
             "this program solves for the electric field only; a gas that flows needs"
             " amberPimpleFoam"
@@ -196,11 +347,8 @@ void Foam::fieldSide::reply
 }
 
 
-void Foam::fieldSide::fail(const string& reason)
+void Foam::fieldSide::refuse(const string& reason)
 {
-    noTraps quiet;
-    amberfield_field_fail(field_, reason.c_str());
-    amberfield_field_close(field_);
-    field_ = nullptr;
+    tell(reason, true);
     FatalErrorInFunction << reason << exit(FatalError);
 }

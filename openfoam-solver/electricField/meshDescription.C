@@ -10,6 +10,8 @@
 #include "fixedValueFvPatchFields.H"
 #include "globalIndex.H"
 #include "processorPolyPatch.H"
+#include "slipFvPatchFields.H"
+#include "StringStream.H"
 #include "symmetryFvPatchFields.H"
 #include "symmetryPlaneFvPatchFields.H"
 #include "syncTools.H"
@@ -21,7 +23,28 @@ namespace
 //- Whether a patch prescribes the potential
 bool isConductor(const Foam::fvPatchScalarField& V)
 {
-    return V.type() == Foam::fixedValueFvPatchScalarField::typeName;
+    return V.type() == Foam::fixedValueFvPatchScalarField::typeName
+        || V.type() == "uniformFixedValue";
+}
+
+//- Whether what a patch prescribes is a function of time, as its entry says
+bool varies(const Foam::fvPatchScalarField& V)
+{
+    if (V.type() != "uniformFixedValue")
+    {
+        return false;
+    }
+    Foam::OStringStream written;
+    V.write(written);
+    Foam::IStringStream text(written.str());
+    const Foam::dictionary entries(text);
+    if (entries.isDict("uniformValue"))
+    {
+        return entries.subDict("uniformValue").get<Foam::word>("type") != "constant";
+    }
+    Foam::ITstream& value = entries.lookup("uniformValue");
+    const Foam::token first(value);
+    return !first.isNumber() && !(first.isWord() && first.wordToken() == "constant");
 }
 
 //- Whether a patch prescribes the slope
@@ -29,6 +52,7 @@ bool isInsulator(const Foam::fvPatchScalarField& V)
 {
     return V.type() == Foam::fixedGradientFvPatchScalarField::typeName
         || V.type() == Foam::zeroGradientFvPatchScalarField::typeName
+        || V.type() == Foam::slipFvPatchScalarField::typeName
         || V.type() == Foam::symmetryFvPatchScalarField::typeName
         || V.type() == Foam::symmetryPlaneFvPatchScalarField::typeName;
 }
@@ -104,6 +128,10 @@ Foam::wordList Foam::meshDescription::farTypes(const volScalarField& V)
         if (isInsulator(V.boundaryField()[patchi]))
         {
             types[patchi] = fixedGradientFvPatchScalarField::typeName;
+        }
+        else if (isConductor(V.boundaryField()[patchi]))
+        {
+            types[patchi] = fixedValueFvPatchScalarField::typeName;
         }
     }
     return types;
@@ -183,7 +211,16 @@ Foam::meshDescription::meshDescription
             {
                 continue;
             }
-            demProcess.fail(whyNot(pV));
+            demProcess.refuse(whyNot(pV));
+        }
+        if (varies(pV))
+        {
+            demProcess.refuse
+            (
+                "patch " + patch.name() + " of field " + V.name() + " has the condition " + pV.type()
+              + " with a value that changes in time; only a constant one is possible: give it"
+              + " fixedValue"
+            );
         }
         patches_.append(patchi);
         const scalarField values(prescribed(pV));

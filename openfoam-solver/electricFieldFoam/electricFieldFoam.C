@@ -16,34 +16,54 @@ Usage
 \*---------------------------------------------------------------------------*/
 
 #include "fvCFD.H"
+#include "caseChecks.H"
+#include "caseFunctions.H"
 #include "electricField.H"
+
+namespace
+{
+
+void answerAll(const Foam::argList& args, Foam::fieldSide& demProcess)
+{
+    runClock runTime(args);
+    caseChecks::checkMesh(runTime, demProcess);
+    #include "createMesh.H"
+
+    electricField field(mesh, demProcess);
+    caseFunctions functions(runTime, demProcess);
+    if (functions.any())
+    {
+        field.show("electricField");
+    }
+    field.sendMesh();
+
+    while (demProcess.wait())
+    {
+        demProcess.mustBe(AmberfieldQuestion_Field);
+        functions.advanceTo(demProcess.request().far.time_s);
+        field.answer();
+    }
+    functions.execute();
+    functions.end();
+
+    Info<< "The run is over." << nl << endl;
+}
+
+} // End anonymous namespace
+
 
 int main(int argc, char *argv[])
 {
     argList::addNote("The smooth electric field of charged grains, for amberfield.");
     argList::addOption("start", "name", "Time to start from, instead of that of controlDict");
     argList::addOption("run", "name", "Run of the DEM process; default: the one that waits");
-    argList::noFunctionObjects();
     argList::noBanner();
 
     #include "setRootCase.H"
-    #include "createTime.H"
-    #include "startTime.H"
-    #include "createMesh.H"
 
     string run;
     args.readIfPresent("run", run);
-
     fieldSide demProcess(run);
-    electricField field(mesh, demProcess);
 
-    while (demProcess.wait())
-    {
-        demProcess.mustBe(AmberfieldQuestion_Field);
-        field.answer();
-    }
-
-    Info<< "The run is over." << nl << endl;
-
-    return 0;
+    return demProcess.lead([&] { answerAll(args, demProcess); });
 }

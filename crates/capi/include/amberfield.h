@@ -361,6 +361,12 @@ enum AmberfieldStatus amberfield_field_reply(struct AmberfieldField *field, cons
 // `field` comes from amberfield_field_open and is not closed; `reason` is a C string.
 void amberfield_field_fail(struct AmberfieldField *field, const char *reason);
 
+// Tells the DEM process what is wrong with the case or the scene: its run ends as with any bad input.
+//
+// # Safety
+// `field` comes from amberfield_field_open and is not closed; `reason` is a C string.
+void amberfield_field_refuse(struct AmberfieldField *field, const char *reason);
+
 // Closes a handle of the field side. NULL is allowed.
 //
 // # Safety

@@ -341,6 +341,22 @@ pub unsafe extern "C" fn amberfield_field_fail(field: *mut AmberfieldField, reas
     }
 }
 
+/// Tells the DEM process what is wrong with the case or the scene: its run ends as with any bad input.
+///
+/// # Safety
+/// `field` comes from amberfield_field_open and is not closed; `reason` is a C string.
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn amberfield_field_refuse(field: *mut AmberfieldField, reason: *const c_char) {
+    // SAFETY: the caller's promise.
+    unsafe {
+        let reason = CStr::from_ptr(reason).to_string_lossy();
+        with(field, |side| {
+            side.refuse(&reason);
+            Ok(AmberfieldStatus::Ok)
+        });
+    }
+}
+
 /// Closes a handle of the field side. NULL is allowed.
 ///
 /// # Safety

@@ -16,8 +16,8 @@ pub use field_flow::{
 pub use field_side::{
     AmberfieldFar, AmberfieldField, AmberfieldMesh, AmberfieldQuestion, AmberfieldRequest,
     amberfield_field_boundary, amberfield_field_close, amberfield_field_density, amberfield_field_error,
-    amberfield_field_fail, amberfield_field_guess, amberfield_field_open, amberfield_field_reply,
-    amberfield_field_send_mesh, amberfield_field_wait,
+    amberfield_field_fail, amberfield_field_guess, amberfield_field_open, amberfield_field_refuse,
+    amberfield_field_reply, amberfield_field_send_mesh, amberfield_field_wait,
 };
 pub use host_side::{
     AmberfieldBoundary, AmberfieldFace, AmberfieldHost, AmberfieldHostSettings, amberfield_host_close,

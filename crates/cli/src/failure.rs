@@ -58,8 +58,11 @@ impl Failure {
     /// Failure of a simulation that cannot continue.
     pub(crate) fn while_running(error: &DemError) -> Self {
         match error {
-            DemError::Field(error @ FieldError::Solver(_)) => Self::of_field(error),
+            DemError::Field(error @ (FieldError::Solver(_) | FieldError::Refused(_))) => {
+                Self::of_field(error)
+            }
             DemError::Gas(GasError::Solver(message)) => Self::of_peer(message),
+            DemError::Gas(GasError::Refused(message)) => Self::bad_input(message),
             error => Self::outside_tolerance(error.to_string()),
         }
     }

@@ -109,7 +109,7 @@ pub enum CouplingError {
 impl From<CouplingError> for FieldError {
     fn from(error: CouplingError) -> Self {
         match error {
-            CouplingError::Refused(_) | CouplingError::Case(_) => Self::Settings(error.to_string()),
+            CouplingError::Refused(_) | CouplingError::Case(_) => Self::Refused(error.to_string()),
             CouplingError::NotConverged { .. } => Self::NotConverged(error.to_string()),
             error => Self::Solver(error.to_string()),
         }

@@ -47,6 +47,9 @@ pub enum FieldError {
     /// The field solver of another process is lost or makes no sense.
     #[error("{0}")]
     Solver(String),
+    /// The field solver of another process does not take its case.
+    #[error("{0}")]
+    Refused(String),
     /// The linear solver of another process gave up before its tolerance.
     #[error("{0}")]
     NotConverged(String),

@@ -5,7 +5,7 @@ use iceoryx2::prelude::ZeroCopySend;
 use std::mem::{align_of, offset_of, size_of};
 
 /// Raised with every change of a message.
-pub const PROTOCOL_VERSION: u32 = 7;
+pub const PROTOCOL_VERSION: u32 = 8;
 /// Largest number of sections of a message.
 pub(crate) const MOST_SECTIONS: usize = 20;
 
@@ -42,12 +42,14 @@ pub enum MessageKind {
     Flow = 8,
     /// DEM to field: take in the state of the flow.
     Restore = 9,
+    /// Field to DEM: this was the last message, because the case or the scene is wrong; a text says how.
+    Refusal = 10,
 }
 
 impl MessageKind {
     fn of(number: u32) -> Result<Self, WireError> {
-        use MessageKind::{Charges, Checkpoint, End, Fields, Flow, Grains, Mesh, Restore, State};
-        [Mesh, Charges, Fields, Checkpoint, State, End, Grains, Flow, Restore]
+        use MessageKind::{Charges, Checkpoint, End, Fields, Flow, Grains, Mesh, Refusal, Restore, State};
+        [Mesh, Charges, Fields, Checkpoint, State, End, Grains, Flow, Restore, Refusal]
             .into_iter()
             .find(|kind| *kind as u32 == number)
             .ok_or(WireError::Kind(number))

@@ -14,11 +14,12 @@ use std::process::Command;
 /// Packages that are installed from Debian where they are missing; one of the examples is a test.
 const PACKAGES: [&str; 6] = ["openfoam", "openfoam-examples", "g++", "make", "cmake", "bzip2"];
 /// Folders of the headers that the solver includes.
-const HEADERS: [&str; 8] = [
+const HEADERS: [&str; 9] = [
     "finiteVolume",
     "meshTools",
     "OpenFOAM",
     "OSspecific/POSIX",
+    "fvOptions",
     "transportModels/incompressible",
     "TurbulenceModels/turbulenceModels",
     "TurbulenceModels/incompressible",
@@ -78,37 +79,44 @@ fn provide_headers(root: &Path) -> Result<PathBuf> {
     let folder = root.join("target/openfoam").join(&version);
     let source = folder.join("src");
     let complete = folder.join("complete");
-    let linked = |header: &&str| source.join(header).join("lnInclude").is_dir();
-    if complete.is_file() && HEADERS.iter().all(linked) {
-        return Ok(source);
+    if !complete.is_file() {
+        fetch_headers(&folder, &version)?;
     }
+    let wmake = folder.join("wmake");
+    let path = std::env::var("PATH").unwrap_or_default();
+    for header in HEADERS.iter().map(|header| source.join(header)) {
+        if header.join("lnInclude").is_dir() {
+            continue;
+        }
+        let mut link = Command::new(wmake.join("wmakeLnInclude"));
+        link.arg("-s").arg(header).env("WM_DIR", &wmake).env("WM_PROJECT_DIR", &folder);
+        execute(link.env("PATH", format!("{}:{path}", wmake.display())))?;
+    }
+    std::fs::write(complete, "")?;
+    Ok(source)
+}
+
+/// Fetches the source package of a version and unpacks what builds need of it into a folder.
+fn fetch_headers(folder: &Path, version: &str) -> Result<()> {
     println!("fetching OpenFOAM's headers (source package {version}) into target/openfoam");
-    let apt = private_apt(&folder)?;
+    let apt = private_apt(folder)?;
     let with_apt = |arguments: &[&str]| {
         let mut command = Command::new("apt-get");
-        command.env("APT_CONFIG", &apt).current_dir(&folder).args(arguments);
+        command.env("APT_CONFIG", &apt).current_dir(folder).args(arguments);
         execute(&mut command)
     };
     with_apt(&["update", "-q"])?;
     with_apt(&["source", "-q", "--download-only", &format!("openfoam={version}")])?;
-    let archive = std::fs::read_dir(&folder)?
+    let archive = std::fs::read_dir(folder)?
         .flatten()
         .map(|entry| entry.path())
         .find(|path| path.to_string_lossy().contains(".orig.tar"))
         .context("the source package has no archive")?;
     let mut unpack = Command::new("tar");
     unpack.arg("-xf").arg(&archive).args(["--strip-components=1", "--wildcards", "*/src/*", "*/wmake/*"]);
-    execute(unpack.current_dir(&folder))?;
+    execute(unpack.current_dir(folder))?;
     std::fs::remove_file(&archive)?;
-    let wmake = folder.join("wmake");
-    let path = std::env::var("PATH").unwrap_or_default();
-    for header in HEADERS {
-        let mut link = Command::new(wmake.join("wmakeLnInclude"));
-        link.arg("-s").arg(source.join(header)).env("WM_DIR", &wmake).env("WM_PROJECT_DIR", &folder);
-        execute(link.env("PATH", format!("{}:{path}", wmake.display())))?;
-    }
-    std::fs::write(complete, "")?;
-    Ok(source)
+    Ok(())
 }
 
 /// A configuration of apt with the system's package sources as source ones, and state of its own.

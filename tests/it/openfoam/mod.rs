@@ -3,6 +3,7 @@
 mod case_of_user;
 mod cells;
 mod charging;
+mod dictionaries;
 mod failures;
 mod fields;
 mod function_object;

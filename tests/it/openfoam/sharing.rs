@@ -13,6 +13,22 @@ const ROUND_OFF: f64 = 1e-24;
 const RESTING: f64 = 1e-6;
 
 #[test]
+fn two_runs_at_once_do_not_meet() {
+    let scenes = [FoamBox::grounded(), FoamBox::grounded()];
+    let start = |scene: &FoamBox| {
+        let run = ["run", "scene.toml", "--out", "out", "--no-progress", "--set", "solver.ranks=2"];
+        scene.bench.command(&run).stdout(Stdio::null()).stderr(Stdio::null()).spawn().unwrap()
+    };
+    let runs = scenes.each_ref().map(start);
+    for mut run in runs {
+        assert!(run.wait().unwrap().success());
+    }
+    let [one, other] =
+        scenes.each_ref().map(|scene| CsvTable::parse(&scene.bench.read("out/history.csv")).without_clocks());
+    assert_eq!(one, other);
+}
+
+#[test]
 fn what_a_run_shares_is_its_users_alone() {
     use std::os::unix::fs::MetadataExt as _;
     let scene = FoamBox::grounded();

@@ -148,7 +148,10 @@ impl FlowSolver for RemoteFlow {
 }
 
 fn of_gas(error: CouplingError) -> GasError {
-    GasError::Solver(error.to_string())
+    match error {
+        CouplingError::Refused(_) | CouplingError::Case(_) => GasError::Refused(error.to_string()),
+        error => GasError::Solver(error.to_string()),
+    }
 }
 
 /// Takes one rank's answer.

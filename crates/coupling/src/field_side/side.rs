@@ -212,7 +212,16 @@ impl FieldSide {
 
     /// Tells the DEM process why this one ends.
     pub fn fail(&mut self, reason: &str) {
-        let header = Header::new(MessageKind::End, self.link.run(), 0);
+        self.leave(MessageKind::End, reason);
+    }
+
+    /// Tells the DEM process what is wrong with the case or the scene, so that this one ends.
+    pub fn refuse(&mut self, reason: &str) {
+        self.leave(MessageKind::Refusal, reason);
+    }
+
+    fn leave(&mut self, kind: MessageKind, reason: &str) {
+        let header = Header::new(kind, self.link.run(), 0);
         let header = Header { rank: self.rank, ranks: self.ranks, ..header };
         // Whoever is not there to hear it needs no reason.
         if self.link.end(header, 1, reason).is_ok() {

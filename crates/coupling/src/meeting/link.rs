@@ -8,7 +8,7 @@ use super::run_root::{RunRoot, check_room, no_room};
 use crate::CouplingError;
 use amberfield_wire::{Block64, Header, Layout, MessageKind, Section, Sections, WireError};
 use iceoryx2::node::NodeView as _;
-use iceoryx2::port::listener::Listener;
+use iceoryx2::port::listener::{Listener, ListenerWaitError};
 use iceoryx2::port::notifier::Notifier;
 use iceoryx2::port::publisher::Publisher;
 use iceoryx2::port::subscriber::Subscriber;
@@ -193,7 +193,7 @@ impl Link {
         Ok(())
     }
 
-    /// Says that this was the last message, and why.
+    /// Says that this was the last message, and why; the header's kind is an end or a refusal.
     pub(crate) fn end(&mut self, header: Header, receivers: usize, why: &str) -> Result<(), CouplingError> {
         let layout = Layout::new(header).with::<u8>(Section::Text, why.len());
         self.send(&layout, receivers, |payload| {
@@ -229,16 +229,22 @@ impl Link {
                 let kind = sample.user_header().check(self.run);
                 let kind = kind.map_err(|error| CouplingError::Wire { peer, error })?;
                 let message = Message { sample };
-                if kind == MessageKind::End {
-                    return Err(CouplingError::Ended { peer, reason: message.sections().text() });
-                }
-                return Ok(message);
+                let reason = || message.sections().text();
+                return match kind {
+                    MessageKind::End => Err(CouplingError::Ended { peer, reason: reason() }),
+                    MessageKind::Refusal => Err(CouplingError::Refused(reason())),
+                    _ => Ok(message),
+                };
             }
             let waited = start.elapsed();
             if waited >= timeout {
                 return Err(CouplingError::TimedOut { peer, solve, waited });
             }
-            said(self.listener.timed_wait(|_| {}, SLICE.min(timeout - waited)))?;
+            match self.listener.timed_wait(|_| {}, SLICE.min(timeout - waited)) {
+                // A run that is asked to stop does so after this step, which needs its answer.
+                Ok(_) | Err(ListenerWaitError::InterruptSignal) => {}
+                Err(error) => return said(Err(error)),
+            }
             if let Err(how) = alive() {
                 // It may have answered with its last breath.
                 if said(self.subscriber.has_samples())? {

@@ -1,0 +1,104 @@
+/*---------------------------------------------------------------------------*\
+    amberfield: the electric field of charged grains
+    SPDX-License-Identifier: GPL-3.0-or-later
+\*---------------------------------------------------------------------------*/
+
+#include "caseFunctions.H"
+#include "DynamicList.H"
+
+Foam::caseFunctions::caseFunctions(runClock& time, fieldSide& demProcess)
+:
+    time_(time),
+    demProcess_(demProcess),
+    names_(names(time)),
+    begun_(false),
+    isTimeKnown_(false)
+{}
+
+
+Foam::wordList Foam::caseFunctions::names(const Time& time)
+{
+    DynamicList<word> names;
+    dictionary& control = const_cast<dictionary&>(static_cast<const dictionary&>(time.controlDict()));
+    if (!control.isDict("functions"))
+    {
+        return wordList();
+    }
+    for (entry& each : control.subDict("functions"))
+    {
+        if (!each.isDict() || !each.dict().getOrDefault("enabled", true))
+        {
+            continue;
+        }
+        if (each.dict().getOrDefault<word>("type", word::null) == "electricField")
+        {
+            Info<< "Function " << each.keyword() << " is left out: this program does its work"
+                << nl << endl;
+            each.dict().set("enabled", false);
+            continue;
+        }
+        names.append(each.keyword());
+    }
+    return wordList(names);
+}
+
+
+void Foam::caseFunctions::begin()
+{
+    if (begun_ || !any())
+    {
+        return;
+    }
+    begun_ = true;
+    const string before
+    (
+        demProcess_.doing("an entry below functions of system/controlDict cannot be used")
+    );
+    time_.functionObjects().start();
+    for (const word& name : names_)
+    {
+        if (time_.functionObjects().findObjectID(name) < 0)
+        {
+            demProcess_.refuse
+            (
+                "function " + name + " of system/controlDict cannot be made; the solver's log says"
+                " why: mend it, or give it \"enabled false;\""
+            );
+        }
+    }
+    demProcess_.doing(before);
+}
+
+
+void Foam::caseFunctions::execute()
+{
+    if (begun_)
+    {
+        time_.functionObjects().execute();
+    }
+}
+
+
+void Foam::caseFunctions::advanceTo(const scalar then)
+{
+    if (!isTimeKnown_)
+    {
+        isTimeKnown_ = true;
+        time_.begin(then);
+        begin();
+    }
+    else if (then > time_.value())
+    {
+        execute();
+        time_.advanceTo(then);
+    }
+}
+
+
+void Foam::caseFunctions::end()
+{
+    if (begun_)
+    {
+        time_.functionObjects().end();
+    }
+}
