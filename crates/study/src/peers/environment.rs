@@ -10,6 +10,8 @@ use std::process::{Command, Stdio};
 pub enum Script {
     /// Steps of LAMMPS' granular package.
     LammpsDem,
+    /// Beds that settle by LAMMPS' granular package. Every line has mean height [m], kinetic energy [J].
+    LammpsRest,
     /// E by LAMMPS' `pppm` or `msm`. Every line has cut-off [m], order, share of the tolerance asked for, 1
     /// for analytic differentiation, error, seconds with the neighbour list kept, seconds with it built
     /// anew.
@@ -22,6 +24,7 @@ impl Script {
     fn text(self) -> &'static str {
         match self {
             Self::LammpsDem => include_str!("../../peers/lammps_dem.py"),
+            Self::LammpsRest => include_str!("../../peers/lammps_rest.py"),
             Self::LammpsField => include_str!("../../peers/lammps_field.py"),
             Self::Fmm3d => include_str!("../../peers/fmm3d.py"),
         }
@@ -31,7 +34,7 @@ impl Script {
     #[must_use]
     pub fn module(self) -> &'static str {
         match self {
-            Self::LammpsDem | Self::LammpsField => "lammps",
+            Self::LammpsDem | Self::LammpsRest | Self::LammpsField => "lammps",
             Self::Fmm3d => "fmm3dpy",
         }
     }

@@ -43,6 +43,7 @@ struct Arguments {
 #[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
 enum Section {
     Dem,
+    Rest,
     Field,
     Open,
     Kernel,
@@ -97,6 +98,7 @@ fn run(arguments: &Arguments) -> Result<()> {
         println!("== {section:?}");
         match section {
             Section::Dem => sections::dem::measure(&context)?,
+            Section::Rest => sections::rest::measure(&context)?,
             Section::Field => sections::field::measure(&context)?,
             Section::Open => sections::open::measure(&context)?,
             Section::Kernel => sections::kernel::measure(&context)?,

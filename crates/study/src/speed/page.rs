@@ -1,6 +1,6 @@
 //! The page `docs/reports/speed.md`, made from rows only.
 
-use crate::sections::{charging, coupling, dem, field, gas, kernel, open, rates, scaling};
+use crate::sections::{charging, coupling, dem, field, gas, kernel, open, rates, rest, scaling};
 use amberfield_draw::{Plot, Scale, Series, write_plot};
 use amberfield_study::Store;
 use amberfield_study::machine::Machine;
@@ -52,6 +52,7 @@ pub(crate) fn write(store: &Store) -> Result<()> {
         open::report(store)?,
         kernel::report(store)?,
         dem::report(store)?,
+        rest::report(store)?,
         rates::report(store)?,
         scaling::report(store)?,
         coupling::report(store)?,

@@ -9,6 +9,7 @@ pub(crate) mod kernel;
 pub(crate) mod open;
 mod peak;
 pub(crate) mod rates;
+pub(crate) mod rest;
 pub(crate) mod scaling;
 
 use anyhow::{Context as _, Result, ensure};
