@@ -112,7 +112,7 @@ fn mesh_and_fields_cross_the_wire_and_the_run_leaves_nothing() {
 #[test]
 fn a_solver_that_never_comes_is_missed_in_time() {
     let error = Announced::new(settings(0.2)).expect("shared memory").connect().expect_err("nobody comes");
-    assert!(error.to_string().contains("no answer from the field solver"), "{error}");
+    assert!(error.to_string().contains("nobody started a field solver within"), "{error}");
 }
 
 #[test]
