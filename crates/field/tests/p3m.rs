@@ -142,6 +142,10 @@ fn every_supported_mix_of_faces_agrees_with_the_direct_sum() {
         mixes.push([open[i], x, closed[0]]);
         mixes.push([x, open[i], closed[0]]);
         mixes.push([open[i], open[(i + 1) % open.len()], open[(2 * i + 3) % open.len()]]);
+        // Two plates with open sides, the closed axis in every place.
+        mixes.push([open[i], open[(2 * i + 1) % open.len()], x]);
+        mixes.push([open[(i + 2) % open.len()], x, open[i]]);
+        mixes.push([x, open[i], open[(i + 3) % open.len()]]);
     }
     let extent = Vector3::new(1.0e-3, 1.3e-3, 0.8e-3);
     for faces in mixes {

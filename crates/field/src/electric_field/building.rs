@@ -44,7 +44,7 @@ impl ElectricField {
             Method::P3m => {
                 check_scene(domain, settings, positions, charges)?;
                 let tuner = Tuner::new(domain, settings, positions, charges);
-                if Geometry::of(domain)? == Geometry::Open
+                if Geometry::of(domain) == Geometry::Open
                     && tuner.all_pairs_are_cheaper(images_per_charge(domain))
                 {
                     Choice::AllPairs
@@ -160,15 +160,12 @@ impl ElectricField {
         let background = settings.neutralising_background;
         let method: Box<dyn FieldMethod> = match choice {
             Choice::Cutoff { cutoff_m } => Box::new(Cutoff::new(domain, permittivity, *cutoff_m)?),
-            Choice::Direct | Choice::AllPairs => Box::new(Direct::new(domain, permittivity, background)?),
+            Choice::Direct | Choice::AllPairs => Box::new(Direct::new(domain, permittivity, background)),
             Choice::Kolehmainen { cutoff_m } => {
                 let cells = settings.grid_cells;
                 Box::new(Kolehmainen::new(domain, permittivity, background, *cutoff_m, cells)?)
             }
-            Choice::P3m(parameters) => {
-                Geometry::of(domain)?;
-                Box::new(P3m::new(domain, settings, *parameters))
-            }
+            Choice::P3m(parameters) => Box::new(P3m::new(domain, settings, *parameters)),
         };
         Ok(Self {
             domain: domain.clone(),
@@ -205,7 +202,7 @@ impl ElectricField {
         }
         check_scene(domain, settings, positions, charges)?;
         let tuner = Tuner::new(domain, settings, positions, charges);
-        let open = Geometry::of(domain)? == Geometry::Open;
+        let open = Geometry::of(domain) == Geometry::Open;
         let mut candidates = tuner.table()?;
         if open && tuner.all_pairs_are_cheaper(images_per_charge(domain)) {
             let (choice, mut values) = (Choice::AllPairs, FieldValues::default());

@@ -4,7 +4,6 @@
 //! Along one axis the images of a coordinate x are ±x + offset + m·period with a sign for the charge: a
 //! conductor reverses it, an insulator keeps it. The images of a point are all products over the three axes.
 
-use crate::error::FieldError;
 use amberfield_core::{Axis, Boundary, Domain, Side};
 use nalgebra::Vector3;
 
@@ -61,7 +60,7 @@ pub(crate) fn axis_kinds(domain: &Domain) -> [AxisKind; 3] {
     Axis::ALL.map(|axis| AxisKind::of(domain, axis))
 }
 
-/// Open faces of the box; a mix that is not listed is refused.
+/// Open faces of the box.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) enum Geometry {
     /// No open face: infinitely many images along every axis.
@@ -70,25 +69,21 @@ pub(crate) enum Geometry {
     Open,
     /// Two closed axes and the given axis with an open face.
     Slab(Axis),
+    /// The given axis closed, between two axes with an open face: two plates with open sides.
+    Gap(Axis),
 }
 
 impl Geometry {
     /// The class of a domain.
-    ///
-    /// # Errors
-    /// One closed and two open axes.
-    pub(crate) fn of(domain: &Domain) -> Result<Self, FieldError> {
+    pub(crate) fn of(domain: &Domain) -> Self {
         let kinds = axis_kinds(domain);
-        let open: Vec<Axis> = Axis::ALL.into_iter().filter(|axis| kinds[axis.index()].is_open()).collect();
-        match open.as_slice() {
-            [] => Ok(Self::Closed),
-            [axis] => Ok(Self::Slab(*axis)),
-            [first, second] => Err(FieldError::Settings(format!(
-                "axes {first} and {second} have open faces and the third has none; one closed axis between \
-                 two open ones has no method here: open one face of the third axis, or close {first} or \
-                 {second}"
-            ))),
-            _ => Ok(Self::Open),
+        let (open, closed): (Vec<Axis>, Vec<Axis>) =
+            Axis::ALL.into_iter().partition(|axis| kinds[axis.index()].is_open());
+        match (open.as_slice(), closed.as_slice()) {
+            ([], _) => Self::Closed,
+            ([axis], _) => Self::Slab(*axis),
+            (_, [axis]) => Self::Gap(*axis),
+            _ => Self::Open,
         }
     }
 }
@@ -366,13 +361,5 @@ mod tests {
             + 4.0 / 3.0 * std::f64::consts::PI * 64.0)
             / 1.05;
         assert!((f64::from(count) / expected - 1.0).abs() < 0.1, "{count} of about {expected}");
-    }
-
-    #[test]
-    fn one_closed_axis_is_refused_by_name() {
-        let faces = [[Boundary::Open; 2], [Boundary::Periodic; 2], [Boundary::Grounded, Boundary::Open]];
-        let domain = Domain::new(Vector3::zeros(), Vector3::repeat(1.0), faces).unwrap();
-        let message = Geometry::of(&domain).unwrap_err().to_string();
-        assert!(message.contains("axes x and z"), "{message}");
     }
 }

@@ -1,5 +1,7 @@
-//! Tools that know nothing of fields: the processor's vectors, polynomials, memory of threads, a stopwatch.
+//! Tools that know nothing of fields: the processor's vectors, polynomials, Bessel functions, memory of
+//! threads, a stopwatch.
 
+pub(crate) mod bessel;
 pub(crate) mod chebyshev;
 pub(crate) mod processor;
 pub(crate) mod scratch;

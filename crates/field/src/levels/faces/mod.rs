@@ -21,6 +21,9 @@ const ROUND_OFF: f64 = 1e-12;
 /// Field and potential that solve Laplace's equation with the faces' values, to be added to the field of
 /// charges between grounded faces and faces without normal field.
 ///
+/// Faces of an axis without an open face are whole planes where the other axes are open: a domain that is
+/// open at its sides stands for plates without edges.
+///
 /// Where the values vary along one axis alone the field is linear in the coordinates and costs nothing; else
 /// every evaluation integrates heat kernels, some tens of microseconds a point.
 ///
@@ -73,10 +76,7 @@ impl BoundaryField {
             Carrier::Nowhere => Solution::Linear(without_conductor(domain)?),
             Carrier::Axis(axis) => Solution::Linear(along(domain, axis)),
             Carrier::Everywhere(potential) => Solution::Linear(Linear { potential, ..Linear::default() }),
-            Carrier::Several => {
-                Geometry::of(domain)?;
-                Solution::General(General::new(domain, tolerance)?)
-            }
+            Carrier::Several => Solution::General(General::new(domain, tolerance)?),
         };
         Ok(Some(Self { solution }))
     }
@@ -195,7 +195,7 @@ fn without_conductor(domain: &Domain) -> Result<Linear, FieldError> {
     if linear.slope.sum().abs() <= ROUND_OFF * linear.slope.abs().sum() {
         return Ok(linear);
     }
-    match Geometry::of(domain)? {
+    match Geometry::of(domain) {
         Geometry::Closed => Ok(linear),
         _ => Err(FieldError::Settings(
             "normal fields on opposite faces of a domain with open faces and no conductor do not cancel, \

@@ -12,10 +12,11 @@
 //! χ becomes χ + (T − 1) e^{−k²Σ²/2}, with T the transform of the truncated Green's function over that
 //! of the whole one (Vico, Greengard & Ferrando, J. Comput. Phys. 323, 191, 2016):
 //! T − 1 = −cos(kR) in free space; −e^{−k∥R}[cos κR − (κ/k∥) sin κR] between two closed axes, and
-//! −cos κR − κR sin κR for k∥ = 0.
+//! −cos κR − κR sin κR for k∥ = 0. Around a single closed axis it is that of `numerics::bessel`.
 
 use super::axis::{GridAxis, TAIL_WIDTHS, smooth_even};
 use super::window::Window;
+use crate::numerics::bessel::{self, CutLine};
 use amberfield_laws::kaiser_bessel_cloud::Cloud;
 use nalgebra::Vector3;
 use rayon::prelude::*;
@@ -70,12 +71,11 @@ impl Influence {
     /// Influence function of a cloud that a window spreads.
     pub(crate) fn new(axes: &[GridAxis; 3], window: &Window, cloud: Cloud) -> Self {
         let wide = singular_width(axes.each_ref().map(|axis| axis.spacing), cloud);
-        if axes.iter().all(|axis| axis.open) {
-            return free_space(axes, window, cloud, wide);
-        }
-        match axes.iter().position(|axis| axis.open) {
-            None => Self::closed(axes, window, 0.0, |_, wave_squared| cloud.spectrum(wave_squared)),
-            Some(open) => {
+        let mut open = (0..3).filter(|&axis| axes[axis].open);
+        match (open.next(), open.next()) {
+            (None, _) => Self::closed(axes, window, 0.0, |_, wave_squared| cloud.spectrum(wave_squared)),
+            (Some(_), Some(_)) => cut_in_space(axes, window, cloud, wide),
+            (Some(open), None) => {
                 let radius = axes[open].reach() + TAIL_WIDTHS * wide;
                 let at_origin = 0.5 * (wide * wide - cloud.mean_square() - radius * radius);
                 Self::closed(axes, window, at_origin, |wave, wave_squared| {
@@ -108,7 +108,7 @@ impl Influence {
         spectrum: impl Fn(Vector3<f64>, f64) -> f64 + Sync,
     ) -> Self {
         let waves = axes.each_ref().map(|axis| AxisWaves::of(axis, window));
-        let mut values = table(&waves, at_origin, spectrum);
+        let mut values = table(&waves, at_origin, |_, wave, squared| spectrum(wave, squared));
         let scale: f64 = axes.iter().map(|axis| axis.transform.scale() * axis.spacing).product();
         for value in &mut values {
             *value *= 4.0 * PI / scale;
@@ -132,12 +132,12 @@ impl Influence {
     }
 }
 
-/// `spectrum`/(k² W²) at every wave vector (which is handed over with its square), `at_origin` where k = 0;
-/// `[y][z][x]`.
+/// `spectrum`/(k² W²) at every wave vector (which is handed over with its indices and its square),
+/// `at_origin` where k = 0; `[y][z][x]`.
 fn table(
     waves: &[AxisWaves; 3],
     at_origin: f64,
-    spectrum: impl Fn(Vector3<f64>, f64) -> f64 + Sync,
+    spectrum: impl Fn([usize; 3], Vector3<f64>, f64) -> f64 + Sync,
 ) -> Vec<f64> {
     let [x_count, y_count, z_count] = waves.each_ref().map(|axis| axis.wave.len());
     let mut values = vec![0.0; x_count * y_count * z_count];
@@ -150,7 +150,7 @@ fn table(
             *value = if squared == 0.0 {
                 at_origin
             } else {
-                spectrum(wave, squared) * per_window * waves[0].per_window[x] / squared
+                spectrum([x, y, z], wave, squared) * per_window * waves[0].per_window[x] / squared
             };
         }
     });
@@ -174,29 +174,38 @@ fn slab_truncation(wave: Vector3<f64>, open_axis: usize, radius: f64) -> f64 {
     }
 }
 
-/// Kernel of a box without closed axes: cut at a sphere on a grid wide enough for it, then cropped in real
-/// space to the displacements that occur.
-fn free_space(axes: &[GridAxis; 3], window: &Window, cloud: Cloud, wide: f64) -> Influence {
-    let reach = Vector3::from_fn(|axis, _| axes[axis].reach());
+/// Kernel of a box with two or three axes with an open face: cut at a cylinder or a sphere on a grid wide
+/// enough for it, then cropped in real space to the displacements that occur.
+fn cut_in_space(axes: &[GridAxis; 3], window: &Window, cloud: Cloud, wide: f64) -> Influence {
+    let closed = axes.iter().position(|axis| !axis.open);
+    let reach = Vector3::from_fn(|axis, _| if closed == Some(axis) { 0.0 } else { axes[axis].reach() });
     let radius = reach.norm() + TAIL_WIDTHS * wide;
     let half = axes.each_ref().map(|axis| axis.half_period());
-    let wide_half: [usize; 3] = std::array::from_fn(|axis| {
-        let period = reach[axis] + radius + TAIL_WIDTHS * wide;
-        smooth_even((0.5 * period / axes[axis].spacing).ceil() as usize).max(half[axis])
-    });
     let waves: [AxisWaves; 3] = std::array::from_fn(|axis| {
-        let phases = (0..=wide_half[axis]).map(|index| PI * index as f64 / wide_half[axis] as f64);
+        if closed == Some(axis) {
+            return AxisWaves::of(&axes[axis], window);
+        }
+        let period = reach[axis] + radius + TAIL_WIDTHS * wide;
+        let wide_half = smooth_even((0.5 * period / axes[axis].spacing).ceil() as usize).max(half[axis]);
+        let phases = (0..=wide_half).map(|index| PI * index as f64 / wide_half as f64);
         AxisWaves::new(axes[axis].spacing, window, phases)
     });
-    let at_origin = 0.5 * (wide * wide - cloud.mean_square() + radius * radius);
-    let mut values = table(&waves, at_origin, |_, wave_squared| {
-        let truncation = -(wave_squared.sqrt() * radius).cos();
-        truncated(cloud, wide, truncation, wave_squared)
-    });
-    let mut dimensions = wide_half.map(|half| half + 1);
+    let mut values = match closed {
+        Some(closed) => around_axis(closed, &axes[closed], &waves, cloud, wide, radius),
+        None => {
+            let at_origin = 0.5 * (wide * wide - cloud.mean_square() + radius * radius);
+            table(&waves, at_origin, |_, _, wave_squared| {
+                let truncation = -(wave_squared.sqrt() * radius).cos();
+                truncated(cloud, wide, truncation, wave_squared)
+            })
+        }
+    };
+    let mut dimensions = waves.each_ref().map(|axis| axis.wave.len());
     // In the order of the table: y, z, x.
     for axis in [1, 2, 0] {
-        values = crop_axis(&values, &mut dimensions, axis, half[axis]);
+        if closed != Some(axis) {
+            values = crop_axis(&values, &mut dimensions, axis, half[axis]);
+        }
         let normalised = axes[axis].transform.scale();
         for value in &mut values {
             *value /= normalised;
@@ -207,8 +216,36 @@ fn free_space(axes: &[GridAxis; 3], window: &Window, cloud: Cloud, wide: f64) ->
         *value *= 4.0 * PI / volume;
     }
     // Odd lines have no constant coefficient: their first wave is the second of the even kernel.
-    let first = axes.each_ref().map(|axis| usize::from(axis.transform.wave_number(0) > 0.0));
+    let first: [usize; 3] = std::array::from_fn(|axis| {
+        usize::from(closed != Some(axis) && axes[axis].transform.wave_number(0) > 0.0)
+    });
     Influence { dimensions, first, values }
+}
+
+/// Spectrum over k² of the kernel around the only closed axis, cut at a radius; `[y][z][x]`.
+fn around_axis(
+    closed: usize,
+    axis: &GridAxis,
+    waves: &[AxisWaves; 3],
+    cloud: Cloud,
+    wide: f64,
+    radius: f64,
+) -> Vec<f64> {
+    let length = axis.nodes as f64 * axis.spacing;
+    let lines: Vec<CutLine> =
+        waves[closed].wave.iter().map(|&wave| CutLine::new(wave, radius, length)).collect();
+    let [a, b] = [(closed + 1) % 3, (closed + 2) % 3];
+    let of_b = &waves[b].wave;
+    let across: Vec<[f64; 2]> = waves[a]
+        .wave
+        .par_iter()
+        .flat_map_iter(|in_a| of_b.iter().map(move |in_b| bessel::waves(in_a.hypot(*in_b) * radius)))
+        .collect();
+    let at_origin = 0.5 * (wide * wide - cloud.mean_square()) + CutLine::new(0.0, radius, length).at_origin();
+    table(waves, at_origin, |at, _, wave_squared| {
+        let change = lines[at[closed]].change(across[at[a] * of_b.len() + at[b]]);
+        truncated(cloud, wide, change, wave_squared)
+    })
 }
 
 /// Real-space kernel along one axis, kept up to displacement `keep` nodes, transformed again.

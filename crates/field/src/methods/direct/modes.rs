@@ -3,7 +3,8 @@
 //! φ(x) = Σ_abc w_abc ψ_a(x) ψ_b(y) ψ_c(z) Σ_j q_j ψ_a(x_j) ψ_b(y_j) ψ_c(z_j): images come with the
 //! functions.
 
-use super::splitting::{AxisBasis, Splitting};
+use super::splitting::{AxisBasis, Cut, Splitting};
+use crate::numerics::bessel::CutLine;
 use crate::values::FieldAt;
 use nalgebra::Vector3;
 use rayon::prelude::*;
@@ -54,6 +55,7 @@ impl Modes {
         let bases = order.map(|axis| splitting.bases[axis]);
         let counts = bases.map(|basis| basis.count(limit));
         let mut modes = Self { order, bases, counts, rows: Vec::new(), weights: Vec::new() };
+        let green = modes.green_functions(splitting);
         for outer in 0..counts[0] {
             for middle in 0..counts[1] {
                 let rest = limit.powi(2)
@@ -66,7 +68,8 @@ impl Modes {
                     modes.rows.push(row);
                     for inner in 0..row.len {
                         let functions = [outer, middle, inner];
-                        let weight = if inner < len { modes.weight(splitting, functions) } else { 0.0 };
+                        let weight =
+                            if inner < len { modes.weight(splitting, functions, &green) } else { 0.0 };
                         modes.weights.push(weight);
                     }
                 }
@@ -76,7 +79,7 @@ impl Modes {
     }
 
     /// Weight of a mode: the smoothed Green function's transform over the functions' norms [1/m].
-    fn weight(&self, splitting: &Splitting, functions: [usize; 3]) -> f64 {
+    fn weight(&self, splitting: &Splitting, functions: [usize; 3], green: &[Green]) -> f64 {
         let mut squares = [0.0; 2];
         let mut weight = 4.0 * PI;
         for (basis, function) in self.bases.iter().zip(functions) {
@@ -85,7 +88,27 @@ impl Modes {
         }
         let total = squares[0] + squares[1];
         let smooth = (-total / (4.0 * splitting.alpha.powi(2))).exp();
-        weight * smooth * green(squares[0].sqrt(), squares[1].sqrt(), splitting.truncation)
+        let green = &green[self.closed().map_or(0, |closed| functions[closed])];
+        weight * smooth * green.at(squares[0].sqrt(), squares[1].sqrt())
+    }
+
+    /// Place in the order of the only closed axis, where two others are open.
+    fn closed(&self) -> Option<usize> {
+        let closed = self.bases.iter().position(|basis| !basis.is_open);
+        closed.filter(|_| self.bases.iter().filter(|basis| basis.is_open).count() == 2)
+    }
+
+    /// Green functions: one for each function of the only closed axis, else one.
+    fn green_functions(&self, splitting: &Splitting) -> Vec<Green> {
+        match (splitting.cut, self.closed()) {
+            (Cut::Cylinder { radius, unit }, Some(closed)) => (0..self.counts[closed])
+                .map(|function| {
+                    Green::Line(CutLine::new(self.bases[closed].wave_number(function), radius, unit))
+                })
+                .collect(),
+            (Cut::Layer(cut), _) => vec![Green::Layer(cut)],
+            _ => vec![Green::Whole],
+        }
     }
 
     /// Σ_j q_j ψ_abc(x_j) times the weight, for every mode.
@@ -207,20 +230,35 @@ fn dot(amplitude: &[f64], values: &[f64]) -> f64 {
     (lanes[0] + lanes[1]) + (lanes[2] + lanes[3])
 }
 
-/// Transform of the Green function of −∇² at wave number `k` along the closed axes and `kappa` along the open
-/// one [m²]. With an open axis it is that of e^{−k|z|}/(2k), or −|z|/2 for k = 0, cut at |z| = `truncation`;
-/// without one `kappa` and `truncation` are zero. The constant mode, whose potential is free, is zero.
-fn green(k: f64, kappa: f64, truncation: f64) -> f64 {
-    let total = k * k + kappa * kappa;
-    if truncation <= 0.0 {
-        return if total > 0.0 { 1.0 / total } else { 0.0 };
-    }
-    let (sine, cosine) = (kappa * truncation).sin_cos();
-    if k > 0.0 {
-        (1.0 - (-k * truncation).exp() * (cosine - kappa / k * sine)) / total
-    } else if kappa > 0.0 {
-        -(truncation * sine / kappa + (cosine - 1.0) / total)
-    } else {
-        -0.5 * truncation * truncation
+/// Green function of −∇², cut where an axis is open.
+enum Green {
+    /// All axes are closed.
+    Whole,
+    /// Cut at this distance along the open axis [m].
+    Layer(f64),
+    /// Cut at a cylinder about the only closed axis.
+    Line(CutLine),
+}
+
+impl Green {
+    /// Transform at wave number `k` along the closed axes and `kappa` along the open ones [m²]. The constant
+    /// mode of a closed box, whose potential is free, is zero. Along one open axis it is the transform of
+    /// e^{−k|z|}/(2k), or −|z|/2 for k = 0.
+    fn at(&self, k: f64, kappa: f64) -> f64 {
+        let total = k * k + kappa * kappa;
+        let cut = match self {
+            Self::Whole => return if total > 0.0 { 1.0 / total } else { 0.0 },
+            Self::Line(line) if total > 0.0 => return (1.0 + line.change(line.waves(kappa))) / total,
+            Self::Line(line) => return line.at_origin(),
+            Self::Layer(cut) => *cut,
+        };
+        let (sine, cosine) = (kappa * cut).sin_cos();
+        if k > 0.0 {
+            (1.0 - (-k * cut).exp() * (cosine - kappa / k * sine)) / total
+        } else if kappa > 0.0 {
+            -(cut * sine / kappa + (cosine - 1.0) / total)
+        } else {
+            -0.5 * cut * cut
+        }
     }
 }

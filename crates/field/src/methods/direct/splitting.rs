@@ -2,6 +2,7 @@
 
 use crate::geometry::images::{AxisKind, BoundingBox, FaceKind, Geometry, axis_kinds};
 use amberfield_core::{Axis, Domain};
+use nalgebra::Vector3;
 use std::f64::consts::PI;
 
 /// α r_c and k_max/(2α): terms left out are below e^{−s²} ≈ 2.5e-15 of those kept.
@@ -128,8 +129,19 @@ pub(crate) struct Splitting {
     pub(crate) wave_limit: f64,
     /// Functions of each axis.
     pub(crate) bases: [AxisBasis; 3],
-    /// Distance at which the Green function of the open axis is cut [m]; beyond all that the particles see.
-    pub(crate) truncation: f64,
+    /// Place at which the Green function is cut: beyond all that the particles see.
+    pub(crate) cut: Cut,
+}
+
+/// Place at which the Green function of the open axes is cut, about a charge.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(crate) enum Cut {
+    /// No axis is open.
+    Nowhere,
+    /// Distance of the cut along the one open axis [m].
+    Layer(f64),
+    /// Radius of the cut in the plane of the two open axes, and length of the closed axis [m].
+    Cylinder { radius: f64, unit: f64 },
 }
 
 impl Splitting {
@@ -151,29 +163,37 @@ impl Splitting {
     pub(crate) fn new(domain: &Domain, geometry: Geometry, particles: &BoundingBox, alpha: f64) -> Self {
         let kinds = axis_kinds(domain);
         let radius = REACH / alpha;
-        let mut truncation = 0.0;
-        let bases = Axis::ALL.map(|axis| {
+        // Greatest distance between a particle and a particle or mirror image along an open axis.
+        let farthest = Axis::ALL.map(|axis| {
             let index = axis.index();
-            let (low, high) = (domain.min()[index], domain.max()[index]);
-            if geometry != Geometry::Slab(axis) {
-                return AxisBasis::closed(kinds[index], low, high);
-            }
             let (bottom, top) = (particles.min[index], particles.max[index]);
-            // Greatest distance between a particle and a particle or mirror image.
-            let farthest = match kinds[index] {
-                AxisKind::Faces(FaceKind::Open, FaceKind::Open) | AxisKind::Periodic => top - bottom,
-                AxisKind::Faces(FaceKind::Open, _) => 2.0 * (high - bottom),
-                AxisKind::Faces(..) => 2.0 * (top - low),
-            };
-            truncation = farthest + radius;
-            let (low, high) = if kinds[index] == AxisKind::Faces(FaceKind::Open, FaceKind::Open) {
-                (bottom, top)
+            match kinds[index] {
+                kind if !kind.is_open() => 0.0,
+                AxisKind::Faces(FaceKind::Open, FaceKind::Open) => top - bottom,
+                AxisKind::Faces(FaceKind::Open, _) => 2.0 * (domain.max()[index] - bottom),
+                _ => 2.0 * (top - domain.min()[index]),
+            }
+        });
+        let reach = Vector3::from(farthest).norm() + radius;
+        let cut = match geometry {
+            Geometry::Slab(_) => Cut::Layer(reach),
+            Geometry::Gap(closed) => Cut::Cylinder { radius: reach, unit: domain.extent()[closed.index()] },
+            Geometry::Closed | Geometry::Open => Cut::Nowhere,
+        };
+        let bases = Axis::ALL.map(|axis| {
+            let (index, kind) = (axis.index(), kinds[axis.index()]);
+            let (low, high) = (domain.min()[index], domain.max()[index]);
+            if !kind.is_open() {
+                return AxisBasis::closed(kind, low, high);
+            }
+            let (low, high) = if kind == AxisKind::Faces(FaceKind::Open, FaceKind::Open) {
+                (particles.min[index], particles.max[index])
             } else {
                 (low, high)
             };
-            AxisBasis::open(kinds[index], low, high, farthest + truncation + radius)
+            AxisBasis::open(kind, low, high, farthest[index] + reach + radius)
         });
-        Self { alpha, radius, wave_limit: 2.0 * alpha * REACH, bases, truncation }
+        Self { alpha, radius, wave_limit: 2.0 * alpha * REACH, bases, cut }
     }
 
     fn cost(&self, domain: &Domain, count: usize) -> f64 {
@@ -183,12 +203,14 @@ impl Splitting {
         let closed = |axis: &usize| !self.bases[*axis].is_open;
         let density = count as f64 / (0..3).filter(closed).map(|axis| domain.extent()[axis]).product::<f64>();
         let ball = 4.0 / 3.0 * PI * self.radius.powi(3);
-        let pairs = if self.truncation > 0.0 {
+        let pairs = match self.cut {
+            Cut::Nowhere => density * ball,
             // Charges per area, in a layer that may be thinner than the ball.
-            let thickness = self.truncation - self.radius;
-            density * (ball / thickness).min(PI * self.radius * self.radius)
-        } else {
-            density * ball
+            Cut::Layer(cut) => density * (ball / (cut - self.radius)).min(PI * self.radius * self.radius),
+            // Charges per length, in a column that may be narrower than the ball.
+            Cut::Cylinder { radius: cut, .. } => {
+                density * (ball / (cut - self.radius).powi(2)).min(2.0 * self.radius)
+            }
         };
         PAIR_COST * pairs + modes
     }

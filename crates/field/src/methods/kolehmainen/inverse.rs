@@ -2,7 +2,6 @@
 
 use super::lattice::green_function;
 use super::mesh::MeshAxis;
-use crate::geometry::images::Geometry;
 use crate::levels::grid::transform::{LineTransform, Symmetry};
 use nalgebra::Vector3;
 use rayon::prelude::*;
@@ -24,15 +23,16 @@ pub(super) enum Inverse {
 }
 
 impl Inverse {
-    pub(super) fn new(axes: &[MeshAxis; 3], geometry: Geometry) -> Self {
+    pub(super) fn new(axes: &[MeshAxis; 3]) -> Self {
         let eigenvalues = || {
             axes.each_ref()
                 .map(|axis| (0..axis.transform.len()).map(|index| axis.eigenvalue(index)).collect())
         };
-        match geometry {
-            Geometry::Closed => Self::Closed(eigenvalues()),
-            Geometry::Slab(open) => Self::slab(axes, eigenvalues(), open.index()),
-            Geometry::Open => Self::open(axes),
+        let mut open = (0..3).filter(|&axis| axes[axis].period.is_some());
+        match (open.next(), open.next()) {
+            (None, _) => Self::Closed(eigenvalues()),
+            (Some(axis), None) => Self::slab(axes, eigenvalues(), axis),
+            _ => Self::open(axes),
         }
     }
 

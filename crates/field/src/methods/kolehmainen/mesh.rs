@@ -121,10 +121,16 @@ impl Mesh {
     /// # Errors
     /// Open faces on two axes and none on the third; face values beside open faces whose field is not linear.
     pub(super) fn new(domain: &Domain, cells: [usize; 3]) -> Result<Self, FieldError> {
-        let (geometry, kinds) = (Geometry::of(domain)?, axis_kinds(domain));
+        let (geometry, kinds) = (Geometry::of(domain), axis_kinds(domain));
         let mut axes =
             Axis::ALL.map(|axis| MeshAxis::new(domain, axis, kinds[axis.index()], cells[axis.index()]));
         let mut faces = None;
+        if let Geometry::Gap(closed) = geometry {
+            return Err(FieldError::Settings(format!(
+                "method kolehmainen has no mesh for a domain that is open along two axes and closed along \
+                 {closed}; choose method p3m, or close one of the two"
+            )));
+        }
         if geometry != Geometry::Closed {
             faces = BoundaryField::new(domain)?;
             if faces.as_ref().is_some_and(|field| !field.is_closed_form()) {
@@ -148,7 +154,7 @@ impl Mesh {
         let mut mesh = Self {
             origin: domain.min(),
             lengths,
-            inverse: Inverse::new(&axes, geometry),
+            inverse: Inverse::new(&axes),
             potential: vec![0.0; size],
             lines: vec![0.0; size],
             shares: (0..SHARES).map(|_| share()).collect(),
