@@ -125,6 +125,12 @@ impl fmt::Display for DomainError {
 
 impl std::error::Error for DomainError {}
 
+/// Distance below which two places are one, over the largest coordinate or length of the domain: coordinates
+/// in single precision, as binary STL files have, are round to 6e-8.
+const SAME_PLACE: f64 = 1e-6;
+/// Difference from 1 of the cosine of the angle below which two directions are one (0.26°).
+const SAME_DIRECTION: f64 = 1e-5;
+
 /// Axis-aligned box with a boundary condition per face.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Domain {
@@ -196,6 +202,32 @@ impl Domain {
     #[must_use]
     pub fn face(&self, axis: Axis, side: Side) -> Boundary {
         self.faces[axis.index()][side as usize]
+    }
+
+    /// Distance below which two places are one [m]: a wall so near to a face is the face.
+    #[must_use]
+    pub fn same_place_m(&self) -> f64 {
+        SAME_PLACE * self.min.amax().max(self.max.amax()).max(self.extent().amax())
+    }
+
+    /// The boundary condition of the face that a surface lies on, at a place of the surface [m] where this
+    /// unit vector points out of the domain; `None` where it lies on none.
+    #[must_use]
+    pub fn face_under(&self, place: &Vector3<f64>, outward: &Vector3<f64>) -> Option<Boundary> {
+        Axis::ALL.into_iter().flat_map(|axis| [Side::Min, Side::Max].map(|side| (axis, side))).find_map(
+            |(axis, side)| {
+                let (index, (corner, out)) = (
+                    axis.index(),
+                    match side {
+                        Side::Min => (self.min, -1.0),
+                        Side::Max => (self.max, 1.0),
+                    },
+                );
+                let is_it = out * outward[index] > 1.0 - SAME_DIRECTION
+                    && (place[index] - corner[index]).abs() <= self.same_place_m();
+                is_it.then(|| self.face(axis, side))
+            },
+        )
     }
 
     /// Boundary conditions `[axis][side]`.
@@ -290,6 +322,20 @@ mod tests {
         let open = [Boundary::Open; 2];
         let domain = unit([[Boundary::Periodic; 2], open, open]).unwrap();
         assert_eq!(domain.shortest(Vector3::new(0.75, 0.75, -2.0)), Vector3::new(-0.25, 0.75, -2.0));
+    }
+
+    #[test]
+    fn surfaces_in_single_precision_lie_on_their_face() {
+        let corner = Vector3::repeat(0.1);
+        let faces = [[Boundary::Open; 2], [Boundary::Open; 2], [Boundary::Grounded, Boundary::Open]];
+        let domain = Domain::new(corner, corner.add_scalar(0.02), faces).unwrap();
+        let under = |z: f64, tilt: f64| {
+            domain.face_under(&Vector3::new(0.11, 0.11, z), &Vector3::new(tilt.sin(), 0.0, -tilt.cos()))
+        };
+        assert_eq!(under(f64::from(0.1_f32), 0.0), Some(Boundary::Grounded));
+        assert_eq!(under(0.1 + 1e-10, 1e-3), Some(Boundary::Grounded));
+        assert_eq!(under(0.1 + 1e-6, 0.0), None);
+        assert_eq!(under(0.1, 0.1), None);
     }
 
     #[test]

@@ -14,7 +14,7 @@ mod setup;
 mod simulation;
 mod wall_cover;
 
-pub use charging::{Facet, Ledger};
+pub use charging::{ChargedSpot, Ledger};
 pub use contacts::walls::WallLoad;
 pub use error::DemError;
 pub use field_stage::{Intervals, Limited};

@@ -136,7 +136,7 @@ fn bounces(wall: Wall, domain: Domain, work: [f64; 2], count: usize) -> (Vec<f64
         touching = now;
     }
     let ledger = simulation.ledger().expect("a good scene");
-    let held: f64 = simulation.facets().iter().map(|facet| facet.charge).sum();
+    let held: f64 = simulation.charged_spots().map(|(spot, _)| spot.charge).sum();
     assert!((ledger.walls[0] + charges[charges.len() - 1]).abs() < ROUND_OFF * ledger.moved);
     assert!((ledger.walls[0] - held).abs() < ROUND_OFF * ledger.moved);
     // Gravity does not end at touch: the ball falls by the overlap too.
@@ -148,7 +148,7 @@ fn bounces(wall: Wall, domain: Domain, work: [f64; 2], count: usize) -> (Vec<f64
 }
 
 #[test]
-fn bounces_on_a_grounded_wall_approach_the_steady_charge() {
+fn bounces_on_one_spot_approach_the_steady_charge() {
     let grounded = |wall: Wall| Wall { charging: WallCharging::Grounded, ..wall };
     let plane = || grounded(floor());
     let mesh = || grounded(mesh_floor(1e-3, 7));
@@ -157,28 +157,33 @@ fn bounces_on_a_grounded_wall_approach_the_steady_charge() {
     let faces = [[Boundary::Open; 2], [Boundary::Open; 2], [Boundary::Grounded, Boundary::Open]];
     let face =
         || Domain::new(Vector3::new(-1.0, -1.0, 0.0), Vector3::repeat(1.0), faces).expect("a good scene");
-    for (name, wall, domain) in
-        [("plane", plane(), open()), ("mesh", mesh(), open()), ("face", plane(), face())]
-    {
+    let kept = |wall: Wall| Wall { charging: WallCharging::Insulating, ..wall };
+    let insulating = Boundary::Insulating { normal_field_v_m: 0.0 };
+    let faces = [[Boundary::Open; 2], [Boundary::Open; 2], [insulating, Boundary::Open]];
+    let insulator =
+        || Domain::new(Vector3::new(-1.0, -1.0, 0.0), Vector3::repeat(1.0), faces).expect("a good scene");
+    // What one grain leaves on an insulator acts on it as the image in a conductor does.
+    for (name, wall, domain) in [
+        ("plane", plane(), open()),
+        ("mesh", mesh(), open()),
+        ("face", plane(), face()),
+        ("insulating plane", kept(floor()), open()),
+        ("insulating mesh", kept(mesh_floor(1e-3, 7)), open()),
+        ("insulating fine mesh", kept(mesh_floor(1e-4, 40)), open()),
+        ("insulating face", kept(floor()), insulator()),
+    ] {
         let (charges, relaxation) = bounces(wall, domain, [5.0, 4.0], 20);
         let steady = -6.2587e-13;
         for (n, charge) in charges.iter().enumerate() {
             let expected = steady * (1.0 - (-(n as f64 + 1.0) * relaxation).exp());
+            // Until the first evaluation of a contact E_x is that of the centre, which has moved since.
+            let bound = if name.starts_with("insulating") { 5.0 * ONE_IMPACT } else { ONE_IMPACT };
             assert!(
-                (charge / expected - 1.0).abs() < ONE_IMPACT,
+                (charge / expected - 1.0).abs() < bound,
                 "{name}, bounce {n}: {charge:e} for {expected:e}"
             );
         }
     }
-}
-
-#[test]
-fn insulating_wall_keeps_what_it_gets_and_pushes_back() {
-    let wall = Wall { charging: WallCharging::Insulating, ..floor() };
-    let (charges, _) = bounces(wall, domain(1.0, Boundary::Open), [5.0, 4.0], 40);
-    assert!(charges.iter().all(|charge| *charge < 0.0));
-    let step = |n: usize| charges[n + 1] - charges[n];
-    assert!(step(30).abs() < step(0).abs(), "the facet's charge slows the charging down");
 }
 
 #[test]
@@ -189,8 +194,7 @@ fn own_image_in_an_insulating_face_moves_no_charge() {
     let face = Domain::new(Vector3::new(-1.0, -1.0, 0.0), Vector3::repeat(1.0), faces).expect("a good scene");
     let (alone, _) = bounces(wall(), domain(1.0, Boundary::Open), [5.0, 4.0], 1);
     let (before_face, _) = bounces(wall(), face, [5.0, 4.0], 1);
-    // Nothing has been charged yet but what this bounce moves: the facet's image counts a little.
-    assert!((before_face[0] / alone[0] - 1.0).abs() < 1e-2, "{before_face:?} {alone:?}");
+    assert!((before_face[0] / alone[0] - 1.0).abs() < ONE_IMPACT, "{before_face:?} {alone:?}");
 }
 
 #[test]

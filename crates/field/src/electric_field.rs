@@ -116,6 +116,14 @@ impl ElectricField {
         Ok(self.error_measured)
     }
 
+    /// E that is there without charges, external and from the faces' values, at a place of the domain [V/m].
+    ///
+    /// A field solver and `kolehmainen` have the faces' values on their cells: there it is the external field.
+    #[must_use]
+    pub fn without_charges(&self, place: &Vector3<f64>) -> Vector3<f64> {
+        self.external.at(place).e + self.faces.at(place).e
+    }
+
     /// The field solver of another process that has a part in it, and its state.
     #[must_use]
     pub fn far_solver(&self) -> Option<&FarSolver> {

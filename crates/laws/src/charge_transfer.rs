@@ -3,16 +3,17 @@
 //! T charge moved from i to j since first touch [C], so that q_i −= T and q_j += T; A contact area [m²]; ε
 //! permittivity [F/m]; W work functions [J]; δ cut-off distance of the transfer [m]; e elementary charge [C];
 //! E_c field at the contact [V/m], which includes that of the two colliding bodies; n_ij unit vector from i
-//! to j. With E_x the field of everything else [V/m], r the radii [m], A_f the area [m²] and Q_f the charge
-//! [C] of a facet,
+//! to j. With E_x the field of everything else [V/m], r the radii [m], E_Q·n the field of the charge that an
+//! insulator keeps around the contact [V/m], and A_f the area over which it keeps what this contact leaves
+//! [m²], both of [`crate::kept_charge`],
 //!
 //! ```text
 //! two grains               α = (1/r_i² + 1/r_j²)/(4π)
 //!                          β = ε(W_i − W_j)/(δe) + q_i/(4πr_i²) − q_j/(4πr_j²) + ε E_x·n_ij
 //! grain, grounded wall     α = 1/(2πr²)
 //!                          β = ε(W_p − W_w)/(δe) + q/(2πr²) + ε E_x·n_pw
-//! grain, insulating facet  α = 1/(4πr²) + 1/(2A_f)
-//!                          β = ε(W_p − W_w)/(δe) + q/(4πr²) − Q_f/(2A_f) + ε E_x·n_pw
+//! grain, insulating wall   α = 1/(4πr²) + 1/(2A_f)
+//!                          β = ε(W_p − W_w)/(δe) + q/(4πr²) + ε E_Q·n_pw + ε E_x·n_pw
 //! ```
 //!
 //! While the area grows by ΔA, T = (β/α)(1 − e^{−αΔA}). This is exact for a single contact and bounded for
@@ -42,13 +43,13 @@ pub struct ChargedSphere {
     pub radius: f64,
 }
 
-/// Charge and area of a facet of an insulating wall.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub struct ChargedFacet {
-    /// Charge Q_f [C].
-    pub charge: f64,
-    /// Area A_f [m²].
-    pub area: f64,
+/// Charge that an insulating wall keeps around a contact.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct ChargeOfInsulator {
+    /// Normal field of it at the contact, positive from the wall to the grain: −E_Q·n_pw [V/m].
+    pub normal_field: f64,
+    /// Growth of ε times that field per charge that the contact leaves, 1/(2A_f) [1/m²].
+    pub per_charge: f64,
 }
 
 /// Coefficients of the transfer through one contact: dT/dA = β − αT.
@@ -94,21 +95,19 @@ pub fn with_grounded_wall(permittivity: f64, work: f64, grain: ChargedSphere, fi
     Drive { decay: per_area, drive: work + grain.charge * per_area + permittivity * field }
 }
 
-/// Drive between a grain and a facet of an insulating wall: permittivity [F/m], `work` from [`work_term`]
-/// [C/m²], `field` = E_x·n_pw [V/m].
+/// Drive between a grain and an insulating wall: permittivity [F/m], `work` from [`work_term`] [C/m²],
+/// `field` = E_x·n_pw [V/m] without the kept charge's.
 #[must_use]
-pub fn with_insulating_facet(
+pub fn with_insulating_wall(
     permittivity: f64,
     work: f64,
     grain: ChargedSphere,
-    facet: ChargedFacet,
+    kept: ChargeOfInsulator,
     field: f64,
 ) -> Drive {
     let per_area = 1.0 / (4.0 * PI * grain.radius * grain.radius);
-    // A charged sheet has the field Q/(2Aε) on either side.
-    let per_facet_area = 1.0 / (2.0 * facet.area);
-    let own = grain.charge * per_area - facet.charge * per_facet_area;
-    Drive { decay: per_area + per_facet_area, drive: work + own + permittivity * field }
+    let own = grain.charge * per_area - permittivity * kept.normal_field;
+    Drive { decay: per_area + kept.per_charge, drive: work + own + permittivity * field }
 }
 
 #[cfg(test)]
@@ -175,15 +174,24 @@ mod tests {
     }
 
     #[test]
-    fn wide_facet_is_an_isolated_grain_and_its_charge_repels() {
+    fn bare_insulator_is_a_conductor_and_kept_charge_repels() {
         let grain = ChargedSphere { charge: 1e-13, radius: 75e-6 };
-        let with_facet = |area: f64, charge: f64| {
-            with_insulating_facet(PERMITTIVITY, 0.0, grain, ChargedFacet { charge, area }, 0.0)
+        let area = 2.0 * PI * 75e-6_f64.powi(2);
+        let with_charge = |charge: f64| {
+            let kept = ChargeOfInsulator {
+                normal_field: charge / (2.0 * area * PERMITTIVITY),
+                per_charge: 0.5 / area,
+            };
+            with_insulating_wall(PERMITTIVITY, 0.0, grain, kept, 0.0)
         };
-        let wide = with_facet(1.0, 0.0);
-        assert!((wide.decay * 4.0 * PI * 75e-6_f64.powi(2) - 1.0).abs() < 1e-7);
-        let charged = with_facet(1e-8, 1e-13);
-        let bare = with_facet(1e-8, 0.0);
-        assert!(charged.drive < bare.drive && charged.decay == bare.decay);
+        let neutral = ChargedSphere { charge: 0.0, ..grain };
+        let bare = ChargeOfInsulator { normal_field: 0.0, per_charge: 0.5 / area };
+        let insulator = with_insulating_wall(PERMITTIVITY, 1e-6, neutral, bare, 2e4);
+        let conductor = with_grounded_wall(PERMITTIVITY, 1e-6, neutral, 2e4);
+        assert!((insulator.decay / conductor.decay - 1.0).abs() < ROUND_OFF);
+        assert_eq!(insulator.drive, conductor.drive);
+        assert!(with_charge(1e-13).drive < with_charge(0.0).drive);
+        // The charge that was left drives back as much as the grain's own drives on.
+        assert!(with_charge(1e-13).drive.abs() < ROUND_OFF * with_charge(0.0).drive);
     }
 }

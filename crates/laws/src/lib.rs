@@ -17,6 +17,7 @@ pub mod gidaspow_drag;
 pub mod hertz_mindlin;
 pub mod image_in_plane;
 pub mod kaiser_bessel_cloud;
+pub mod kept_charge;
 pub mod magnus_lift;
 pub mod particle_reynolds;
 pub mod point_charge;

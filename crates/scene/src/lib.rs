@@ -14,6 +14,7 @@ mod scene;
 mod source;
 mod stl;
 mod tree;
+mod weld;
 mod write;
 
 pub use error::SceneError;
@@ -22,7 +23,7 @@ pub use scene::{
     SolverLoss, parse_scene, read_scene, read_scene_with_mesh,
 };
 pub use write::{
-    FacetCell, FieldColumns, FieldComponents, FieldReport, FieldReportSeconds, HistoryFile, HistoryValue,
-    PvdSeries, read_checkpoint, read_table, write_atomically, write_checkpoint, write_facets_vtu,
+    ChargedSquare, FieldColumns, FieldComponents, FieldReport, FieldReportSeconds, HistoryFile, HistoryValue,
+    PvdSeries, read_checkpoint, read_table, write_atomically, write_charge_vtu, write_checkpoint,
     write_field_csv, write_json, write_particles_csv, write_table, write_text, write_vtu,
 };

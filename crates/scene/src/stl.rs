@@ -6,10 +6,10 @@
 
 use crate::SceneError;
 use crate::error::shorten;
+use crate::weld::Weld;
 use amberfield_core::TriangleMesh;
 use nalgebra::Vector3;
 use std::cell::Cell;
-use std::collections::HashMap;
 use std::io::{self, Read, Seek, SeekFrom};
 
 /// Length of the text at the beginning of a binary file [bytes].
@@ -48,7 +48,8 @@ struct BadTriangle {
 
 /// Reads a surface and multiplies its coordinates by `scale` to have metres.
 ///
-/// Vertices are merged where they are bitwise equal, and triangles without area are left out.
+/// Numbers in text keep all their digits. Vertices are merged where they are one place, and triangles
+/// without area are left out.
 ///
 /// # Errors
 /// Files that are no STL, cut short, or hold values that are not finite; files without a triangle.
@@ -58,8 +59,8 @@ pub(crate) fn read_stl(file: &str, bytes: &[u8], scale: f64) -> Result<Surface, 
         return Err(SceneError::file(file, problem));
     }
     let corners = if is_binary(bytes) { read_binary(file, bytes)? } else { read_text(file, bytes)? };
-    let mut mesh = TriangleMesh::default();
-    let mut index_of: HashMap<[u64; 3], u32> = HashMap::new();
+    let largest = corners.iter().map(Vector3::amax).fold(0.0, f64::max);
+    let (mut weld, mut triangles) = (Weld::new(largest * scale), Vec::new());
     let mut dropped = 0;
     for (number, triangle) in corners.chunks_exact(3).enumerate() {
         let points = [triangle[0] * scale, triangle[1] * scale, triangle[2] * scale];
@@ -80,19 +81,14 @@ pub(crate) fn read_stl(file: &str, bytes: &[u8], scale: f64) -> Result<Surface, 
             dropped += 1;
             continue;
         }
-        let mut triangle = [0_u32; 3];
-        for (slot, point) in triangle.iter_mut().zip(&points) {
-            // −0 and 0 differ in their bits; adding zero makes them the same vertex.
-            let key = [point.x + 0.0, point.y + 0.0, point.z + 0.0].map(f64::to_bits);
-            let next = u32::try_from(mesh.vertices.len())
-                .map_err(|_| SceneError::file(file, "more than 2^32 vertices; coarsen the surface"))?;
-            *slot = *index_of.entry(key).or_insert_with(|| {
-                mesh.vertices.push(*point);
-                next
-            });
-        }
-        mesh.triangles.push(triangle);
+        triangles.push(points.map(|point| weld.number(point)));
     }
+    if weld.vertices.len() > u32::MAX as usize {
+        return Err(SceneError::file(file, "more than 2^32 vertices; coarsen the surface"));
+    }
+    let flat = |[a, b, c]: [u32; 3]| a == b || b == c || a == c;
+    dropped += triangles.extract_if(.., |triangle| flat(*triangle)).count();
+    let mesh = TriangleMesh { vertices: weld.vertices, triangles };
     if mesh.triangles.is_empty() {
         return Err(SceneError::file(
             file,
@@ -171,7 +167,7 @@ fn read_text(file: &str, bytes: &[u8]) -> Result<Vec<Vector3<f64>>, SceneError> 
     });
     let end = std::iter::once("endsolid\n").inspect(|_| number.set(0));
     let pieces = ["solid \n"].into_iter().chain(facets).chain(["\n"]).chain(end).map(str::as_bytes);
-    corners(Pieces::new(pieces)).map_err(|BadTriangle { number: triangle, reason }| {
+    let rounded = corners(Pieces::new(pieces)).map_err(|BadTriangle { number: triangle, reason }| {
         // Line 0 stands for the end that was added to the file.
         let Some(index) = number.get().checked_sub(1) else {
             return SceneError::file(
@@ -185,7 +181,14 @@ fn read_text(file: &str, bytes: &[u8]) -> Result<Vec<Vector3<f64>>, SceneError> 
             lines.get(index).copied().unwrap_or_default(),
             format!("\"{}\" in triangle {triangle}: {}; repair the file", shorten(line), shorten(&reason)),
         )
-    })
+    })?;
+    // The library has found every number good, and has rounded it.
+    let vertices = text.lines().filter_map(|line| line.strip_prefix("vertex "));
+    let exact = |line: &str| {
+        let mut numbers = line.split(' ').filter_map(|word| word.parse().ok());
+        Some(Vector3::new(numbers.next()?, numbers.next()?, numbers.next()?))
+    };
+    Ok(rounded.iter().zip(vertices).map(|(rounded, line)| exact(line).unwrap_or(*rounded)).collect())
 }
 
 /// Statements of a text file, one a line.
@@ -339,6 +342,14 @@ mod tests {
         assert_eq!((mesh.vertices.len(), mesh.triangles.len(), dropped), (4, 2, 0));
         let other = binary(&[[0., 0., 0., 1., 0., 0., 0., 1., 0.], [1., 0., 0., 1., 1., 0., 0., 1., 0.]]);
         assert_eq!(read_stl("w.stl", &other, 1e-3).unwrap().mesh, mesh);
+    }
+
+    #[test]
+    fn text_keeps_all_digits() {
+        let text = FACET.replace("0 0 0", "0.1 0.2 0.3").replace("1 0 0", "1 0.1000000001 0");
+        let vertices = read_stl("w.stl", text.as_bytes(), 1.0).unwrap().mesh.vertices;
+        assert_eq!(vertices[0], Vector3::new(0.1, 0.2, 0.3));
+        assert_eq!(vertices[1].y, 0.100_000_000_1);
     }
 
     #[test]

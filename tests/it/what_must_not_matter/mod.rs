@@ -3,10 +3,11 @@
 //! One line of a list is one change: another frame, other units, another order, a wall far away. Whoever adds
 //! a feature adds its line. [`field`] has the lines of the electric field over a mesh, by the stand-in for a
 //! field solver, which takes no other process; [`field_over_openfoam`] has those that OpenFOAM's files and
-//! processes make; [`flange`] has OpenFOAM's own example; [`walls`] has contacts, and [`runs`] whole runs by
-//! the binary.
+//! processes make; [`flange`] has OpenFOAM's own example; [`walls`] has contacts, [`charge_on_walls`] what
+//! they charge, and [`runs`] whole runs by the binary.
 
 mod boxes;
+mod charge_on_walls;
 mod field;
 mod field_over_openfoam;
 mod flange;

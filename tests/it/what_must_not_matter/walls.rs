@@ -1,7 +1,7 @@
 //! Changes of walls and scenes that physics does not see, after which grains move as before: a line each.
 
 #[path = "../../../crates/dem/tests/common/mod.rs"]
-mod common;
+pub(super) mod common;
 
 use amberfield_core::{Grain, Material, Matrix3, TriangleMesh, Vector3, Wall, WallShape};
 use amberfield_dem::{Setup, Simulation};
@@ -11,12 +11,12 @@ use common::{RADIUS, grain, material, run, setup, wall};
 const ROUND_OFF: f64 = 1e-6;
 
 /// Plane z = 0.
-fn plane() -> Wall {
+pub(super) fn plane() -> Wall {
     wall(WallShape::Plane { point: Vector3::zeros(), normal: Vector3::z() })
 }
 
 /// Rectangle of the plane z = 0 in cells of two triangles.
-fn sheet(x: [f64; 2], y: [f64; 2], cells: [u32; 2]) -> Wall {
+pub(super) fn sheet(x: [f64; 2], y: [f64; 2], cells: [u32; 2]) -> Wall {
     let at = |range: [f64; 2], k: u32, n: u32| range[0] + (range[1] - range[0]) * f64::from(k) / f64::from(n);
     let mut mesh = TriangleMesh::default();
     for i in 0..=cells[0] {
@@ -35,15 +35,15 @@ fn sheet(x: [f64; 2], y: [f64; 2], cells: [u32; 2]) -> Wall {
 }
 
 /// A change of the walls of a floor.
-struct Line {
-    name: &'static str,
-    walls: fn() -> Vec<Wall>,
+pub(super) struct Line {
+    pub(super) name: &'static str,
+    pub(super) walls: fn() -> Vec<Wall>,
 }
 
-const HALF: [f64; 2] = [-0.03, 0.03];
+pub(super) const HALF: [f64; 2] = [-0.03, 0.03];
 
 /// Floors that are all the same.
-const FLOORS: [Line; 9] = [
+pub(super) const FLOORS: [Line; 9] = [
     Line { name: "two planes in one place", walls: || vec![plane(), plane()] },
     Line { name: "one sheet", walls: || vec![sheet(HALF, HALF, [1, 1])] },
     Line { name: "fine triangles", walls: || vec![sheet(HALF, HALF, [97, 101])] },

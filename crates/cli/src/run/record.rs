@@ -7,9 +7,10 @@ use super::schedule::Schedule;
 use super::wall_forces::WallForces;
 use crate::failure::Failure;
 use amberfield_core::WallCharging;
-use amberfield_dem::{Energies, Facet, Simulation};
+use amberfield_dem::{ChargedSpot, Energies, Simulation};
 use amberfield_scene::{
-    FacetCell, HistoryFile, HistoryValue, PvdSeries, Scene, write_facets_vtu, write_particles_csv, write_vtu,
+    ChargedSquare, HistoryFile, HistoryValue, PvdSeries, Scene, write_charge_vtu, write_particles_csv,
+    write_vtu,
 };
 
 /// Open files of a run.
@@ -203,9 +204,15 @@ impl Record {
             write_vtu(&folder.file(&file), &particles, &vectors)?;
             self.series.append(simulation.time_s(), &file)?;
             if let Some(walls) = &mut self.walls {
-                let file = format!("walls/facets_{step:012}.vtu");
-                let facets: Vec<_> = simulation.facets().iter().map(facet_cell).collect();
-                write_facets_vtu(&folder.file(&file), &facets)?;
+                let file = format!("walls/charge_{step:012}.vtu");
+                let square = |(spot, density): (&ChargedSpot, f64)| ChargedSquare {
+                    wall: spot.wall,
+                    corners: spot.square(),
+                    charge_c: spot.charge,
+                    density_c_m2: density,
+                };
+                let squares: Vec<_> = simulation.charged_spots().map(square).collect();
+                write_charge_vtu(&folder.file(&file), &squares)?;
                 walls.append(simulation.time_s(), &file)?;
             }
         }
@@ -214,11 +221,6 @@ impl Record {
         }
         Ok(())
     }
-}
-
-fn facet_cell(facet: &Facet) -> FacetCell {
-    let Facet { wall, corners, area_m2, charge, .. } = *facet;
-    FacetCell { wall, corners, area_m2, charge_c: charge }
 }
 
 /// Step in the name of a file.

@@ -4,25 +4,25 @@
 //! touch before the next one. They are places without charge, at which every method gives the field of all
 //! charges with all images. E_x is that field less the colliders' own, and at a wall that bounds the field
 //! less the grain's own image. A grounded wall that the field does not know mirrors the others' charges in
-//! its tangent plane at the contact, which doubles their normal field there.
+//! its tangent plane at the contact, which doubles their normal field there. What is there without charges,
+//! an external field or that of electrodes, has no images and stays as it is.
 //!
 //! A contact that was not foreseen has a stand-in until the next evaluation: the mean of E at the two centres
 //! without the partner's field, or at a wall E at the centre without the grain's own image.
 
 use super::around::Toucher;
+use super::spots::Contact;
 use super::{Charging, Traders, inside};
 use crate::contacts::Contacts;
 use crate::contacts::neighbours::{Listed, Neighbours};
 use crate::contacts::walls::{ContactWalls, Touch, WallSlot};
 use crate::field_stage::Extras;
 use crate::motion::grains::Grains;
-use amberfield_core::{Axis, Domain, Side, Vector3, WallCharging};
+use amberfield_core::{Domain, Vector3, WallCharging};
 
 /// Distance before a wall at which its field is asked for, over the radius: a wall of facets may lie outside
 /// the field's curved domain.
 const BEFORE_WALL: f64 = 0.02;
-/// A wall this close to a face of the domain, over the radius, is the face.
-const SAME_FACE: f64 = 1e-6;
 
 /// A contact at which E is asked for.
 #[derive(Clone, Copy, Debug)]
@@ -31,7 +31,7 @@ pub(super) struct Probe {
     normal: Vector3<f64>,
     /// The colliders' own part of E·n [V/m].
     own: f64,
-    factor: f64,
+    mirror: Mirror,
 }
 
 #[derive(Clone, Copy, Debug)]
@@ -42,10 +42,17 @@ enum Slot {
 
 impl Charging {
     /// Adds the charges of walls to what an evaluation takes.
-    pub(crate) fn add_facets(&self, extras: &mut Extras) {
-        for facet in self.facets.all() {
-            if let Some(place) = facet.place {
-                extras.push(place, facet.charge);
+    pub(crate) fn add_spots(&self, domain: &Domain, extras: &mut Extras) {
+        self.spots.sources(domain).for_each(|(place, charge)| extras.push(place, charge));
+    }
+
+    /// Adds what E at grains gains by the law of kept charge.
+    fn soften(&self, traders: Traders<'_>, extras: &mut Extras) {
+        if !self.spots.all().is_empty() {
+            let grains = traders.grains;
+            for grain in (0..grains.len()).filter(|&grain| traders.member(grain).is_some()) {
+                let gained = self.spots.softened(traders.domain, grains.position(grain), self.coulomb);
+                extras.gained.extend(gained.map(|e| (grain as u32, e)));
             }
         }
     }
@@ -64,7 +71,8 @@ impl Charging {
         let Traders { domain, grains, .. } = traders;
         let Contacts { neighbours, walls, .. } = contacts;
         let walls = walls.as_ref();
-        self.add_facets(extras);
+        self.add_spots(domain, extras);
+        self.soften(traders, extras);
         let mut probes = std::mem::take(&mut self.probes);
         probes.clear();
         let k = self.coulomb;
@@ -79,7 +87,7 @@ impl Charging {
             let own = k * (of(pair.i) / (to_i * to_i) - of(pair.j) / (to_j * to_j));
             extras.push(inside(domain, grains.position(pair.i) + normal * to_i), 0.0);
             let slot = Slot::Pair { chunk: pair.chunk, entry: pair.entry };
-            probes.push(Probe { slot, normal, own, factor: 1.0 });
+            probes.push(Probe { slot, normal, own, mirror: Mirror::NONE });
         });
         for touch in walls.into_iter().flat_map(|walls| walls.touches(grains)) {
             if traders.member(touch.grain).is_none() {
@@ -90,28 +98,17 @@ impl Charging {
             let place = grains.position(grain) + normal * (distance - before);
             let charge = of(grain);
             // The image makes E·n of the same sign before a conductor, of the other before an insulator.
-            let Mirror { image, factor } = mirror(domain, grains, &touch);
-            let mut own =
-                k * charge / (distance - before).powi(2) + image * k * charge / (distance + before).powi(2);
-            if let Some((at, held)) = self.facet_of(traders, walls, &touch) {
-                let from = domain.shortest(place - at);
-                own += k * held * from.dot(&normal) / from.norm().powi(3);
+            let mirror = Mirror::of(traders, &touch, place);
+            let mut own = k * charge / (distance - before).powi(2)
+                + mirror.image * k * charge / (distance + before).powi(2);
+            if touch.charging == WallCharging::Insulating {
+                let contact = Contact::of(traders, &touch);
+                own += self.spots.evaluated(domain, &contact, [place, normal], mirror.image, false, k);
             }
             extras.push(inside(domain, place), 0.0);
-            probes.push(Probe { slot: Slot::Wall(touch.slot), normal, own, factor });
+            probes.push(Probe { slot: Slot::Wall(touch.slot), normal, own, mirror });
         }
         self.probes = probes;
-    }
-
-    /// Place and charge of the insulating facet that a contact touches, if it has been charged.
-    fn facet_of(
-        &self,
-        traders: Traders<'_>,
-        walls: Option<&ContactWalls>,
-        touch: &Touch,
-    ) -> Option<(Vector3<f64>, f64)> {
-        let facet = self.facets.known(touch.wall, walls?.surface(touch), touch.place(traders.grains))?;
-        Some((facet.place?, facet.charge))
     }
 
     /// Takes E [V/m] at what was asked for.
@@ -124,7 +121,7 @@ impl Charging {
     ) {
         let sources = e.len() - self.probes.len();
         for (probe, e) in self.probes.iter().zip(&e[sources..]) {
-            let field = probe.factor * (e.dot(&probe.normal) - probe.own);
+            let field = probe.mirror.of_others(e.dot(&probe.normal) - probe.own);
             match (probe.slot, walls.as_mut()) {
                 (Slot::Pair { chunk, entry }, _) => neighbours.lists[chunk].foreseen[entry] = Some(field),
                 (Slot::Wall(slot), Some(walls)) => walls.memory_mut(slot).foreseen = Some(field),
@@ -153,8 +150,16 @@ impl Charging {
     pub(super) fn unforeseen_at_wall(&self, traders: Traders<'_>, touch: &Touch, charge: &[f64]) -> f64 {
         let field = traders.field.at(touch.grain).dot(&touch.normal);
         let own = charge[traders.grains.original[touch.grain].index()];
-        let Mirror { image, factor } = mirror(traders.domain, traders.grains, touch);
-        factor * (field - image * self.coulomb * own / (4.0 * touch.distance * touch.distance))
+        let mirror = Mirror::of(traders, touch, traders.grains.position(touch.grain));
+        let image = mirror.image * self.coulomb * own / (4.0 * touch.distance * touch.distance);
+        let mut others = field - image;
+        if touch.charging == WallCharging::Insulating {
+            let (contact, centre) = (Contact::of(traders, touch), traders.grains.position(touch.grain));
+            let [at, out] = [centre, touch.normal];
+            others -=
+                self.spots.evaluated(traders.domain, &contact, [at, out], mirror.image, true, self.coulomb);
+        }
+        mirror.of_others(others)
     }
 
     /// Change of E·n since the last evaluation, at a distance `reach` [m] along `normal` from grain i, made
@@ -180,40 +185,44 @@ impl Charging {
 }
 
 /// Effect of a wall on the field of a grain and of the others at their contact.
-struct Mirror {
-    /// Sign of E·n of the grain's own image in the field, as of [`image_sign`].
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Mirror {
+    /// Sign of E·n of the grain's own image where the wall bounds the field: 1 for a conductor, −1 for an
+    /// insulator, 0 where the field does not know the wall.
     image: f64,
-    /// Factor of the others' E·n: a grounded wall that the field does not know doubles it.
-    factor: f64,
+    /// E·n that is there without charges [V/m] and has no images, where a grounded wall that the field does
+    /// not know doubles that of the others.
+    unmirrored: Option<f64>,
 }
 
-fn mirror(domain: &Domain, grains: &Grains, touch: &Touch) -> Mirror {
-    let image = image_sign(domain, grains, touch);
-    let unknown_conductor = touch.charging == WallCharging::Grounded && image == 0.0;
-    Mirror { image, factor: if unknown_conductor { 2.0 } else { 1.0 } }
-}
+impl Mirror {
+    /// No wall.
+    const NONE: Self = Self { image: 0.0, unmirrored: None };
 
-/// Sign of the E·n that the grain's own image makes where the touched wall bounds the field: 1 for a
-/// conductor, −1 for an insulator, 0 where the field does not know the wall.
-fn image_sign(domain: &Domain, grains: &Grains, touch: &Touch) -> f64 {
-    if touch.bounds_field {
-        return if touch.charging == WallCharging::Insulating { -1.0 } else { 1.0 };
+    /// Effect of a touched wall at a place where E is known [m].
+    fn of(traders: Traders<'_>, touch: &Touch, place: Vector3<f64>) -> Self {
+        let Traders { domain, grains, field } = traders;
+        let image = Self::image(domain, grains, touch);
+        let doubles = touch.charging == WallCharging::Grounded && image == 0.0;
+        let unmirrored =
+            doubles.then(|| field.source.field.without_charges(&inside(domain, place)).dot(&touch.normal));
+        Self { image, unmirrored }
     }
-    let place = touch.place(grains);
-    let slack = SAME_FACE * grains.centre[touch.grain][3];
-    let of_face = |axis: Axis, side: Side| {
-        let (corner, out) = match side {
-            Side::Min => (domain.min(), -1.0),
-            Side::Max => (domain.max(), 1.0),
-        };
-        let axis_index = axis.index();
-        let is_it = out * touch.normal[axis_index] > 1.0 - SAME_FACE
-            && (place[axis_index] - corner[axis_index]).abs() < slack;
-        match domain.face(axis, side) {
-            face if is_it && face.is_conductor() => 1.0,
-            face if is_it && face.is_insulating() => -1.0,
+
+    /// Sign of E·n of the grain's own image.
+    pub(super) fn image(domain: &Domain, grains: &Grains, touch: &Touch) -> f64 {
+        if touch.bounds_field {
+            return if touch.charging == WallCharging::Insulating { -1.0 } else { 1.0 };
+        }
+        match domain.face_under(&touch.place(grains), &touch.normal) {
+            Some(face) if face.is_conductor() => 1.0,
+            Some(face) if face.is_insulating() => -1.0,
             _ => 0.0,
         }
-    };
-    Axis::ALL.into_iter().flat_map(|axis| [Side::Min, Side::Max].map(|side| of_face(axis, side))).sum()
+    }
+
+    /// E_x·n from that of the field without the colliders [V/m].
+    fn of_others(self, field: f64) -> f64 {
+        field + self.unmirrored.map_or(0.0, |unmirrored| field - unmirrored)
+    }
 }

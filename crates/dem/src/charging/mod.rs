@@ -17,16 +17,15 @@
 
 mod around;
 mod contact_field;
-mod facets;
 mod materials;
 mod pairs;
 mod rounds;
+mod spots;
 mod state;
 mod walls;
 
-pub use facets::Facet;
-pub(crate) use facets::Facets;
 pub(crate) use rounds::Round;
+pub use spots::ChargedSpot;
 pub(crate) use state::ChargingState;
 
 use crate::contacts::memory::{Follow, Memory, PairGrowth};
@@ -42,6 +41,7 @@ use contact_field::Probe;
 use materials::ChargingTable;
 use pairs::MemberCharge;
 use serde::{Deserialize, Serialize};
+use spots::Spots;
 
 /// Steps whose growth moves charge together.
 const EVERY: u64 = 20;
@@ -89,7 +89,7 @@ pub(crate) struct Charging {
     coulomb: f64,
     tolerance: f64,
     table: ChargingTable,
-    facets: Facets,
+    spots: Spots,
     pub(crate) ledger: Ledger,
     backwards: bool,
     /// Σ of the largest αΔA of every update since the last evaluation.
@@ -122,7 +122,7 @@ impl Charging {
             coulomb: field.permittivity.coulomb(),
             tolerance: field.tolerance,
             table: ChargingTable::new(materials, &settings, permittivity),
-            facets: Facets::new(largest),
+            spots: Spots::new(largest),
             ledger: Ledger { walls: vec![0.0; walls], ..Ledger::default() },
             backwards: false,
             lag: 0.0,
@@ -150,7 +150,7 @@ impl Charging {
             charge: particles.charge.clone(),
             evaluated: self.evaluated.clone(),
             pairs,
-            facets: self.facets.clone(),
+            spots: self.spots.all().to_vec(),
             ledger: self.ledger.clone(),
             backwards: self.backwards,
             lag: self.lag,
@@ -160,6 +160,7 @@ impl Charging {
     /// Goes on from a state; `Err` says what does not fit.
     pub(crate) fn restore(
         &mut self,
+        domain: &Domain,
         state: &ChargingState,
         neighbours: &mut Neighbours,
     ) -> Result<(), String> {
@@ -177,7 +178,7 @@ impl Charging {
             return Err("charging of other walls or grains".to_owned());
         }
         self.evaluated.clone_from(&state.evaluated);
-        self.facets = state.facets.clone();
+        self.spots.restore(domain, &state.spots);
         self.ledger = state.ledger.clone();
         (self.backwards, self.lag) = (state.backwards, state.lag);
         Ok(())
@@ -204,9 +205,9 @@ impl Charging {
         self.lag > LAG_DUE || change2 > most * most * size2
     }
 
-    /// Charged facets of walls.
-    pub(crate) fn facets(&self) -> &[Facet] {
-        self.facets.all()
+    /// Charged spots of walls, and the charge per area at each with its neighbours' [C/m²].
+    pub(crate) fn spots(&self, domain: &Domain) -> impl Iterator<Item = (&ChargedSpot, f64)> {
+        self.spots.all().iter().map(|spot| (spot, self.spots.density(domain, spot)))
     }
 
     /// Part of a transfer that the breakdown field allows, if there is one; `work` as in `PairCharging`.

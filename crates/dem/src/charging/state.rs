@@ -1,6 +1,6 @@
 //! State of charge transfer, for checkpoints.
 
-use super::{Facets, Ledger};
+use super::{ChargedSpot, Ledger};
 use crate::contacts::memory::PairGrowth;
 use serde::{Deserialize, Serialize};
 
@@ -11,7 +11,7 @@ pub(crate) struct ChargingState {
     pub(crate) charge: Vec<f64>,
     pub(crate) evaluated: Vec<f64>,
     pub(crate) pairs: Vec<PairGrowth>,
-    pub(crate) facets: Facets,
+    pub(crate) spots: Vec<ChargedSpot>,
     pub(crate) ledger: Ledger,
     pub(crate) backwards: bool,
     pub(crate) lag: f64,

@@ -1,14 +1,13 @@
 //! Trade of a grain with a wall.
 
 use super::around::{Toucher, WALL};
-use super::facets::Spot;
+use super::contact_field::Mirror;
+use super::spots::Contact;
 use super::{Charging, LAG_SEEN, Traders};
 use crate::contacts::neighbours::Neighbours;
 use crate::contacts::walls::{ContactWalls, Touch};
 use amberfield_core::{Vector3, WallCharging};
-use amberfield_laws::charge_transfer::{
-    ChargedFacet, ChargedSphere, with_grounded_wall, with_insulating_facet,
-};
+use amberfield_laws::charge_transfer::{ChargedSphere, with_grounded_wall, with_insulating_wall};
 
 impl Charging {
     /// Moves what is due between grains and walls. `charge` is by the set-up's order [C].
@@ -32,31 +31,19 @@ impl Charging {
         let mut largest = 0.0_f64;
         for touch in &grown {
             walls.memory_mut(touch.slot).growth.settle();
-            largest = largest.max(self.trade_wall(traders, walls, touch, charge));
+            largest = largest.max(self.trade_wall(traders, touch, charge));
         }
         self.lag += largest;
         self.touches = grown;
     }
 
     /// Moves the charge that is due at one contact; returns αΔA, by how much the contact relaxed.
-    fn trade_wall(
-        &mut self,
-        traders: Traders<'_>,
-        walls: &ContactWalls,
-        touch: &Touch,
-        charge: &mut [f64],
-    ) -> f64 {
+    fn trade_wall(&mut self, traders: Traders<'_>, touch: &Touch, charge: &mut [f64]) -> f64 {
         let grains = traders.grains;
         let Some(a) = traders.member(touch.grain) else { return 0.0 };
         let materials = self.table.get(grains.material[touch.grain], touch.material);
-        let spot = Spot {
-            wall: touch.wall,
-            charging: touch.charging,
-            surface: walls.surface(touch),
-            place: touch.place(grains),
-            inward: -touch.normal,
-        };
-        let number = self.facets.at(traders.domain, spot);
+        let contact = Contact::of(traders, touch);
+        let number = self.spots.at(traders.domain, &contact);
         let mut field =
             touch.memory.foreseen.unwrap_or_else(|| self.unforeseen_at_wall(traders, touch, charge));
         if self.lag > LAG_SEEN {
@@ -68,12 +55,11 @@ impl Charging {
             field += gained * if touch.charging == WallCharging::Grounded { 2.0 } else { 1.0 };
         }
         let grain = ChargedSphere { charge: charge[a], radius: grains.centre[touch.grain][3] };
-        let facet = self.facets.get(number);
         let (permittivity, work) = (self.permittivity, materials.work);
         let drive = match touch.charging {
             WallCharging::Insulating => {
-                let facet = ChargedFacet { charge: facet.charge, area: facet.area_m2 };
-                with_insulating_facet(permittivity, work, grain, facet, field)
+                let kept = self.spots.felt(traders.domain, &contact, number, self.coulomb);
+                with_insulating_wall(permittivity, work, grain, kept, field)
             }
             _ => with_grounded_wall(permittivity, work, grain, field),
         };
@@ -81,10 +67,25 @@ impl Charging {
         let moved = self.allowed(drive, work, drive.transfer(growth));
         // Positive is from the grain to the wall.
         charge[a] -= moved;
-        self.facets.get_mut(number).charge += moved;
+        self.spots.leave(traders.domain, number, &contact, moved);
         self.ledger.walls[touch.wall as usize] += moved;
         self.ledger.moved += moved.abs();
         self.at_walls.push(touch.grain as u32);
         drive.decay * growth
+    }
+}
+
+impl Contact {
+    /// Contact of a grain with a wall.
+    pub(super) fn of(traders: Traders<'_>, touch: &Touch) -> Self {
+        let Traders { domain, grains, .. } = traders;
+        Self {
+            wall: touch.wall,
+            keeps: touch.charging == WallCharging::Insulating,
+            bounds_field: Mirror::image(domain, grains, touch) != 0.0,
+            place: touch.place(grains),
+            inward: -touch.normal,
+            radius: grains.centre[touch.grain][3],
+        }
     }
 }

@@ -40,12 +40,24 @@ pub(super) struct Charges<'a> {
 pub(crate) struct Extras {
     position: Vec<Vector3<f64>>,
     charge: Vec<f64>,
+    /// Gain of E at grains near charges of walls, which are no points [V/m]; sorted indices, ascending.
+    pub(crate) gained: Vec<(u32, Vector3<f64>)>,
 }
 
 impl Extras {
     pub(crate) fn clear(&mut self) {
         self.position.clear();
         self.charge.clear();
+        self.gained.clear();
+    }
+
+    /// Adds what E gains at grains to E [V/m] of the members with these sorted indices.
+    pub(super) fn add_gained(&self, members: &[u32], e: &mut [Vector3<f64>]) {
+        for (grain, gained) in &self.gained {
+            if let Ok(member) = members.binary_search(grain) {
+                e[member] += gained;
+            }
+        }
     }
 
     /// A place inside the domain [m] and its charge [C].

@@ -196,6 +196,7 @@ impl FieldStage {
         self.members.collect(&self.member, domain, grains, particles, extras);
         self.members.time_s = moment.time_s;
         self.source.evaluate(domain, &self.settings, &self.members, &mut self.values)?;
+        extras.add_gained(&self.members.index, &mut self.values.e);
         let far = self.source.field.far_solver();
         self.solver_iterations = far.map_or(0, FarSolver::iterations);
         let missed = far.map_or(0.0, FarSolver::missed);

@@ -4,7 +4,7 @@ use super::Simulation;
 use super::guards::{Stiffness, electric_stiffness, electric_stiffness_bound};
 use super::state::Progress;
 use super::timing::Stage;
-use crate::charging::{Charging, Facet, Ledger, Round};
+use crate::charging::{ChargedSpot, Charging, Ledger, Round};
 use crate::error::DemError;
 use crate::field_stage::Moment;
 
@@ -167,10 +167,9 @@ impl Simulation {
         self.charging.as_ref().map(|charging| &charging.ledger)
     }
 
-    /// Facets of walls that have been charged.
-    #[must_use]
-    pub fn facets(&self) -> &[Facet] {
-        self.charging.as_ref().map_or(&[], Charging::facets)
+    /// Spots of walls that have been charged, with the charge per area at each [C/m²].
+    pub fn charged_spots(&self) -> impl Iterator<Item = (&ChargedSpot, f64)> {
+        self.charging.iter().flat_map(|charging| charging.spots(&self.domain))
     }
 }
 

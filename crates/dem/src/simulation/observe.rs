@@ -99,7 +99,7 @@ impl Simulation {
             (Some(field), ElectricEnergy::Evaluated) => {
                 self.scratch.extras.clear();
                 if let Some(charging) = &self.charging {
-                    charging.add_facets(&mut self.scratch.extras);
+                    charging.add_spots(&self.domain, &mut self.scratch.extras);
                 }
                 Some(field.fresh_energy(&self.domain, &self.grains, &self.particles, &self.scratch.extras)?)
             }

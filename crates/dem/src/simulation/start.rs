@@ -61,7 +61,7 @@ impl Simulation {
         run.grains.place(&state.contacts.reference);
         run.contacts.restore(&run.domain, &run.grains, skin, &state.contacts).map_err(DemError::State)?;
         if let (Some(charging), Some(saved)) = (&mut run.charging, &state.charging) {
-            charging.restore(saved, &mut run.contacts.neighbours).map_err(DemError::State)?;
+            charging.restore(&run.domain, saved, &mut run.contacts.neighbours).map_err(DemError::State)?;
         }
         run.grains.restore(state.grains);
         run.progress = state.progress;

@@ -5,7 +5,7 @@ use super::unusual::unusual_values;
 use crate::SceneError;
 use crate::error::{Problems, shorten};
 use crate::tree::{SceneTable, nearest};
-use amberfield_core::{Axis, Boundary, Domain, Method, WallCharging, WallShape};
+use amberfield_core::{Axis, Boundary, Domain, Method, Vector3, WallCharging, WallShape};
 
 /// Number of grains beyond which the direct sum causes a warning.
 const MANY_FOR_DIRECT: usize = 100_000;
@@ -208,13 +208,30 @@ fn warn(scene: &mut Scene) {
     }
     if method.is_some() && scene.solver.is_none() {
         for wall in &scene.walls {
-            if matches!(wall.shape, WallShape::Mesh(_)) && wall.charging == WallCharging::Grounded {
+            let is_face = scene.domain.as_ref().is_some_and(|domain| is_conducting_face(domain, &wall.shape));
+            if wall.charging == WallCharging::Grounded && !is_face {
                 scene.warnings.push(format!(
                     "{}: the internal grid does not know this grounded surface; \
-                     it takes charge, but does not bound the field",
+                     it takes charge, but does not bound the field: at its contacts the field of charges \
+                     counts twice, for their images, and fields of electrodes and external ones as they are",
                     wall.name
                 ));
             }
         }
+    }
+}
+
+/// Whether a wall lies on conducting faces of the domain.
+fn is_conducting_face(domain: &Domain, shape: &WallShape) -> bool {
+    let is_face = |place: &Vector3<f64>, out: &Vector3<f64>| {
+        domain.face_under(place, out).is_some_and(Boundary::is_conductor)
+    };
+    match shape {
+        WallShape::Plane { point, normal } => is_face(point, &-normal),
+        WallShape::Mesh(mesh) => mesh.triangles.iter().all(|triangle| {
+            let [a, b, c] = triangle.map(|vertex| mesh.vertices[vertex as usize]);
+            let normal = (b - a).cross(&(c - a)).normalize();
+            [normal, -normal].iter().any(|out| [a, b, c].iter().all(|place| is_face(place, out)))
+        }),
     }
 }

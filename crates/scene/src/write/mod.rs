@@ -14,4 +14,4 @@ pub use field_csv::{FieldColumns, FieldComponents, FieldReport, FieldReportSecon
 pub use history::{HistoryFile, HistoryValue};
 pub use particles_csv::write_particles_csv;
 pub use pvd::PvdSeries;
-pub use vtu::{FacetCell, write_facets_vtu, write_vtu};
+pub use vtu::{ChargedSquare, write_charge_vtu, write_vtu};

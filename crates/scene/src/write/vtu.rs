@@ -85,8 +85,6 @@ impl Values<'_> {
 
 /// VTK's number of the cell type vertex.
 const VERTEX: u8 = 1;
-/// VTK's number of the cell type triangle.
-const TRIANGLE: u8 = 5;
 /// VTK's number of the cell type quadrangle.
 const QUAD: u8 = 9;
 
@@ -125,50 +123,44 @@ pub fn write_vtu(
     write_sections(path, &GridSize { points: count, cells: count }, &sections)
 }
 
-/// Charged facet of a wall.
+/// Square around a charged place of a wall.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct FacetCell {
+pub struct ChargedSquare {
     /// Number of the wall.
     pub wall: u32,
-    /// Corners in order [m]; in a triangle the fourth is equal to the third.
+    /// Corners in order [m].
     pub corners: [Vector3<f64>; 4],
-    /// Area [m²].
-    pub area_m2: f64,
-    /// Charge [C].
+    /// Charge of the place [C].
     pub charge_c: f64,
+    /// Charge per area there, with that of its neighbours [C/m²].
+    pub density_c_m2: f64,
 }
 
-/// Writes charged facets of walls: triangles and quadrangles with their wall, charge and charge per area.
+/// Writes the charged places of walls as squares, with their wall, charge and charge per area.
 ///
 /// # Errors
 /// Errors of the operating system.
-pub fn write_facets_vtu(path: &Path, facets: &[FacetCell]) -> Result<(), SceneError> {
-    let corners = |facet: &FacetCell| if facet.corners[2] == facet.corners[3] { 3 } else { 4 };
-    let points: Vec<_> =
-        facets.iter().flat_map(|facet| facet.corners.into_iter().take(corners(facet))).collect();
-    let ends = facets.iter().scan(0_i64, |end, facet| {
-        *end += corners(facet) as i64;
-        Some(*end)
-    });
-    let types = facets.iter().map(|facet| if corners(facet) == 3 { TRIANGLE } else { QUAD });
-    let charges: Vec<f64> = facets.iter().map(|facet| facet.charge_c).collect();
-    let densities: Vec<f64> = facets.iter().map(|facet| facet.charge_c / facet.area_m2).collect();
+pub fn write_charge_vtu(path: &Path, squares: &[ChargedSquare]) -> Result<(), SceneError> {
+    let points: Vec<_> = squares.iter().flat_map(|square| square.corners).collect();
+    let ends = (1..=squares.len()).map(|square| 4 * square as i64);
+    let charges: Vec<f64> = squares.iter().map(|square| square.charge_c).collect();
+    let densities: Vec<f64> = squares.iter().map(|square| square.density_c_m2).collect();
     let cell_data = [
-        ("wall", Values::Integers(facets.iter().map(|facet| i64::from(facet.wall)).collect())),
+        ("wall", Values::Integers(squares.iter().map(|square| i64::from(square.wall)).collect())),
         ("charge_C", Values::Numbers(&charges)),
         ("charge_density_C_m2", Values::Numbers(&densities)),
     ];
     let cells = [
         ("connectivity", Values::Count { from: 0, count: points.len() }),
         ("offsets", Values::Integers(ends.collect())),
-        ("types", Values::CellTypes(types.collect())),
+        ("types", Values::CellTypes(vec![QUAD; squares.len()])),
     ];
     let sections = [
         ("CellData", &cell_data[..]),
         ("Points", &[("points_m", Values::Vectors(&points))]),
         ("Cells", &cells),
     ];
-    write_sections(path, &GridSize { points: points.len(), cells: facets.len() }, &sections)
+    write_sections(path, &GridSize { points: points.len(), cells: squares.len() }, &sections)
 }
 
 /// Size of a grid.

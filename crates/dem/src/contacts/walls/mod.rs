@@ -8,7 +8,7 @@ pub(crate) mod surfaces;
 mod touches;
 
 pub use loads::WallLoad;
-pub(crate) use touches::{Surface, Touch, WallSlot};
+pub(crate) use touches::{Touch, WallSlot};
 
 use crate::contacts::material_pairs::{Features, PairTable};
 use crate::contacts::memory::{Memory, Spring, WallHistory};

@@ -149,12 +149,6 @@ impl Surfaces {
         found.extend(near.filter(|(_, plane)| plane.height(centre) < reach).map(|(number, _)| number));
     }
 
-    /// Corners of a triangle [m].
-    pub(crate) fn corners(&self, triangle: u32) -> [Vector3<f64>; 3] {
-        let Triangle { a, b, c } = self.triangles[triangle as usize];
-        [a, b, c].map(plain)
-    }
-
     /// Adds the number of every triangle within `reach` [m] of a point, in ascending order.
     pub(crate) fn within(&self, centre: Vector3<f64>, reach: f64, found: &mut Vec<u32>) {
         let first = found.len();

@@ -2,7 +2,7 @@
 
 use super::ContactWalls;
 use crate::contacts::memory::{Follow, Memory};
-use crate::contacts::walls::surfaces::{MOST_CONTACTS, Plane};
+use crate::contacts::walls::surfaces::MOST_CONTACTS;
 use crate::motion::chunks::CHUNK;
 use crate::motion::grains::Grains;
 use amberfield_core::{Vector3, WallCharging};
@@ -28,7 +28,6 @@ pub(crate) struct Touch {
     pub(crate) material: u16,
     pub(crate) charging: WallCharging,
     pub(crate) bounds_field: bool,
-    triangle: u32,
     /// Direction from the grain to the wall.
     pub(crate) normal: Vector3<f64>,
     /// Centre of the grain from the wall [m].
@@ -41,13 +40,6 @@ impl Touch {
     pub(crate) fn place(&self, grains: &Grains) -> Vector3<f64> {
         grains.position(self.grain) + self.normal * self.distance
     }
-}
-
-/// Surface that is touched.
-#[derive(Clone, Copy, Debug)]
-pub(crate) enum Surface {
-    Plane { point: Vector3<f64>, normal: Vector3<f64> },
-    Triangle { number: u32, corners: [Vector3<f64>; 3] },
 }
 
 impl ContactWalls {
@@ -85,7 +77,6 @@ impl ContactWalls {
                         material: part.material,
                         charging: part.charging,
                         bounds_field: part.bounds_field,
-                        triangle: contact.triangle,
                         normal: contact.normal,
                         distance: grains.centre[grain][3] - contact.overlap,
                         memory: chunk.charging[number as usize],
@@ -98,17 +89,6 @@ impl ContactWalls {
     /// Memory that a contact has of its charging.
     pub(crate) fn memory_mut(&mut self, WallSlot { chunk, contact }: WallSlot) -> &mut Memory {
         &mut self.chunks[chunk as usize].charging[contact as usize]
-    }
-
-    /// Surface that a contact touches.
-    pub(crate) fn surface(&self, touch: &Touch) -> Surface {
-        match self.surfaces.plane(touch.triangle) {
-            Some(&Plane { point, normal }) => Surface::Plane { point, normal },
-            None => {
-                let corners = self.surfaces.corners(touch.triangle);
-                Surface::Triangle { number: touch.triangle, corners }
-            }
-        }
     }
 }
 

@@ -32,6 +32,11 @@ impl FacesLevel {
         Ok(Self { field, values: Vec::new() })
     }
 
+    /// E [V/m] and potential [V] at a place [m].
+    pub(crate) fn at(&self, place: &Vector3<f64>) -> FieldAt {
+        self.field.as_ref().map_or_else(FieldAt::default, |field| field.evaluate(place))
+    }
+
     /// E [V/m] and potential [V] at positions [m]; empty where the faces add nothing.
     pub(crate) fn evaluate(&mut self, positions: &[Vector3<f64>]) -> &[FieldAt] {
         if let Some(field) = &self.field {
