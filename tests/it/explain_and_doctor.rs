@@ -45,6 +45,30 @@ fn the_printed_forms_are_scenes_of_the_same_field() {
 }
 
 #[test]
+fn explain_tells_which_limits_of_the_model_a_scene_runs_into() {
+    let bench = Workbench::new(CHARGED);
+    let plain = bench.run(&["explain", "scene.toml"]).stdout;
+    assert!(!plain.contains("limit of the model"), "{plain}");
+    let charging = CHARGED
+        .replace("[electric_field]", "[electric_field]\nenable_collision_charge_transfer = true")
+        .replace("young_Pa", "work_function_eV = 4.5\nyoung_Pa");
+    bench.write("scene.toml", &charging);
+    let answer = bench.run(&["explain", "scene.toml"]);
+    assert_eq!(answer.code, Some(0), "{}", answer.stderr);
+    for part in ["never at rest", "breakdown_field_V_m"] {
+        assert!(answer.stdout.contains(part), "{part}: {}", answer.stdout);
+    }
+    assert!(!answer.stdout.contains("3/π²"), "{}", answer.stdout);
+    bench.write("scene.toml", format!("{charging}\n[charge_transfer]\nbreakdown_field_V_m = 3e6\n"));
+    let in_field = ["--set", "electric_field.external_field_V_m=[0,0,1e5]"];
+    let grounded = ["--set", "walls.0.charging=grounded"];
+    let options = ["explain", "scene.toml", in_field[0], in_field[1], grounded[0], grounded[1]];
+    let answer = bench.run(&options);
+    assert!(answer.stdout.contains("3/π²"), "{} {}", answer.stdout, answer.stderr);
+    assert!(!answer.stdout.contains("no breakdown"), "{}", answer.stdout);
+}
+
+#[test]
 fn explain_and_log_tell_what_the_step_costs_how_long_it_takes_and_where_walls_are() {
     let bench = Workbench::new(&plain());
     let answer = bench.run(&["explain", "scene.toml", "--set", "time.end_s=3e4"]).stdout;

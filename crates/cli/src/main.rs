@@ -5,6 +5,7 @@ mod arguments;
 mod commands;
 mod failure;
 mod interrupt;
+mod limits;
 mod logging;
 mod machine;
 mod plan_text;

@@ -7,7 +7,7 @@ use crate::run::{
     Charges, SolverConnections, SolverFolder, charges_of, connect_solver, domain_of, field_of, read_scene,
     scene_name, setup_of,
 };
-use crate::{machine, plan_text};
+use crate::{limits, machine, plan_text};
 use amberfield_core::{Axis, Boundary, Domain, Side};
 use amberfield_dem::{Outlook, Simulation};
 use amberfield_field::ElectricField;
@@ -115,6 +115,9 @@ fn explain_run(scene: &mut Scene, solver: SolverConnections) -> Result<(), Failu
 fn print_outlook(scene: &Scene, outlook: &Outlook, field: Option<&ElectricField>) {
     for text in plan_text::lines(&outlook.plan) {
         line(format_args!("{text}"));
+    }
+    for limit in limits::lines(scene) {
+        line(format_args!("limit of the model: {limit}"));
     }
     if let Some(field) = field {
         print_error(scene, field);
