@@ -118,7 +118,7 @@ impl ElectricField {
 
     /// E that is there without charges, external and from the faces' values, at a place of the domain [V/m].
     ///
-    /// A field solver and `kolehmainen` have the faces' values on their cells: there it is the external field.
+    /// A field solver and `kolehmainen` have the faces' values on cells: there it is the external field.
     #[must_use]
     pub fn without_charges(&self, place: &Vector3<f64>) -> Vector3<f64> {
         self.external.at(place).e + self.faces.at(place).e
