@@ -6,10 +6,16 @@
 #include "caseFunctions.H"
 #include "DynamicList.H"
 
-Foam::caseFunctions::caseFunctions(runClock& time, fieldSide& demProcess)
+Foam::caseFunctions::caseFunctions
+(
+    runClock& time,
+    fieldSide& demProcess,
+    const bool withoutFlow
+)
 :
     time_(time),
     demProcess_(demProcess),
+    withoutFlow_(withoutFlow),
     names_(names(time)),
     begun_(false),
     isTimeKnown_(false)
@@ -72,9 +78,34 @@ void Foam::caseFunctions::begin()
 
 void Foam::caseFunctions::execute()
 {
-    if (begun_)
+    if (!begun_)
+    {
+        return;
+    }
+    if (!withoutFlow_)
     {
         time_.functionObjects().execute();
+        return;
+    }
+    functionObjectList& functions = time_.functionObjects();
+    for (const word& name : names_)
+    {
+        const label place = leftOut_.found(name) ? -1 : functions.findObjectID(name);
+        if (place < 0)
+        {
+            continue;
+        }
+        try
+        {
+            functions[place].execute();
+            functions[place].write();
+        }
+        catch (const error& error)
+        {
+            leftOut_.insert(name);
+            Info<< "Function " << name << " of system/controlDict is left out, no gas flows here: "
+                << error.message().c_str() << nl << endl;
+        }
     }
 }
 

@@ -30,7 +30,7 @@ void answerAll(const Foam::argList& args, Foam::fieldSide& demProcess)
     #include "createMesh.H"
 
     electricField field(mesh, demProcess);
-    caseFunctions functions(runTime, demProcess);
+    caseFunctions functions(runTime, demProcess, true);
     if (functions.any())
     {
         field.show("electricField");

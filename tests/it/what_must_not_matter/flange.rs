@@ -51,7 +51,7 @@ fn solver(bench: &Workbench, ranks: u32) -> RemoteSolver {
         ranks,
         timeout: Duration::from_secs(120),
         far_tolerance: 1e-7,
-        ..SolverSettings::started(bench.path("foam"), bench.path("solver"))
+        ..SolverSettings::started(bench.path("foam"), bench.path(&format!("solver-{ranks}")))
     };
     Announced::new(settings).and_then(Announced::connect).expect("the solver answers")
 }

@@ -40,7 +40,10 @@ struct Geometry {
 /// Mesh of a case; what is not asked for is not read.
 #[derive(Debug)]
 pub(crate) struct PolyMesh {
+    /// Folder of the case, for messages.
     case: PathBuf,
+    /// Folder in which the mesh is.
+    place: PathBuf,
     patches: Option<Vec<Patch>>,
     geometry: Option<Geometry>,
 }
@@ -64,8 +67,8 @@ impl PolyMesh {
     pub(crate) fn of(case: &Path, other: Option<&Path>) -> Self {
         let has_one =
             ["", COMPRESSED].iter().any(|end| case.join(FOLDER).join(format!("points{end}")).exists());
-        let mesh = other.filter(|_| !has_one).unwrap_or(case);
-        Self { case: mesh.to_path_buf(), patches: None, geometry: None }
+        let place = other.filter(|_| !has_one).unwrap_or(case);
+        Self { case: case.to_path_buf(), place: place.to_path_buf(), patches: None, geometry: None }
     }
 
     /// Refuses the name of a patch that the mesh does not have. A mesh that is not there yet has any.
@@ -157,8 +160,8 @@ impl PolyMesh {
 
     /// Reads a file of the mesh.
     fn read(&self, file: &str) -> Result<Content, SceneError> {
-        let path = self.case.join(FOLDER).join(file);
-        let packed = self.case.join(FOLDER).join(format!("{file}{COMPRESSED}"));
+        let path = self.place.join(FOLDER).join(file);
+        let packed = self.place.join(FOLDER).join(format!("{file}{COMPRESSED}"));
         if !path.exists() && !packed.exists() {
             return Err(SceneError::NoMesh { case: self.case.clone() });
         }
