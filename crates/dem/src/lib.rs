@@ -20,7 +20,7 @@ pub use error::DemError;
 pub use field_stage::{Intervals, Limited};
 pub use setup::{FieldStageSetup, GasSetup, Setup};
 pub use simulation::energy::{ElectricEnergy, Energies};
-pub use simulation::exits::Left;
+pub use simulation::exits::{Exit, Left};
 pub use simulation::guards::{Guard, StepRestitution};
 pub use simulation::outlook::Outlook;
 pub use simulation::state::State;

@@ -57,8 +57,8 @@ pub(crate) fn run(options: &RunOptions, common: &Common, log: &Log) -> Result<()
     let setup = setup_of(&mut scene, None, solver)?;
 
     let (simulation, earlier) = match saved {
-        Some(Saved { state, history, wall_s, stage_s, .. }) => {
-            let earlier = EarlierPart { history, clock: Clock { wall_s, stages: stage_s } };
+        Some(Saved { state, history, wall_s, stage_s, health, .. }) => {
+            let earlier = EarlierPart { history, clock: Clock { wall_s, stages: stage_s }, health };
             (Simulation::resume(setup, state), Some(earlier))
         }
         None => (Simulation::new(setup), None),

@@ -1,6 +1,6 @@
 //! Run folder.
 
-use super::histogram;
+use super::{exits, histogram, wall_forces};
 use crate::failure::Failure;
 use crate::machine;
 use std::fs;
@@ -8,10 +8,12 @@ use std::io::Write as _;
 use std::path::{Path, PathBuf};
 
 /// Files and folders that a run may write.
-const OUTPUTS: [&str; 14] = [
+const OUTPUTS: [&str; 16] = [
     "scene.toml",
     "log.jsonl",
     "history.csv",
+    wall_forces::FILE,
+    exits::FILE,
     "particles",
     "particles.pvd",
     "walls",

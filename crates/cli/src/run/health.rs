@@ -4,17 +4,16 @@ use crate::failure::Failure;
 use amberfield_core::{Axis, Vector3};
 use amberfield_dem::{ElectricEnergy, Energies, Simulation};
 use amberfield_scene::Scene;
+use serde::{Deserialize, Serialize};
 
-/// Largest allowed ratio of the kinetic energy to all energy that could have been released. It is wide
-/// because the energy in the field of electrodes is counted by half.
+/// Largest allowed ratio of the kinetic energy to the most energy that has been released at a time. It is
+/// wide because the energy in the field of electrodes is counted by half.
 const ENERGY: f64 = 10.0;
-/// Ratio of the kinetic energy to the sizes of all energies, up to which it may be round-off.
-const ROUND_OFF: f64 = 1e-9;
 /// Largest allowed change of the charge of grains and walls, over the sizes of all charges.
 const CHARGE: f64 = 1e-9;
 
 /// Quantities of a run to which later ones are compared.
-#[derive(Clone, Copy, Debug)]
+#[derive(Clone, Copy, Debug, Serialize, Deserialize)]
 pub(crate) struct Health {
     /// Number of grains that had left at the last check.
     left: usize,
@@ -24,13 +23,15 @@ pub(crate) struct Health {
     kinetic: f64,
     /// Highest potential energy so far: gravity, contacts, field [J].
     highest: f64,
+    /// Most energy so far that the grains had from the start or from a fall of the potential energy [J].
+    released: f64,
     /// Charge of grains and walls at the start [C].
     charge: f64,
     allowed: Allowed,
 }
 
 /// Facts that a scene permits, so that they are no sign of an unsound run.
-#[derive(Clone, Copy, Debug)]
+#[derive(Clone, Copy, Debug, Serialize, Deserialize)]
 pub(crate) struct Allowed {
     /// Switch for energy from outside: charging contacts, limited forces, a gas, or a force along a periodic
     /// axis, which does work in each period.
@@ -56,13 +57,14 @@ impl Allowed {
 }
 
 impl Health {
-    /// Quantities of a run that begins or continues now.
+    /// Quantities of a run that begins now.
     pub(crate) fn new(simulation: &Simulation, energies: &Energies, allowed: Allowed) -> Self {
         Self {
             left: simulation.left().grains,
             electric: energies.electric.unwrap_or(0.0),
             kinetic: energies.kinetic,
             highest: potential(simulation, energies),
+            released: energies.kinetic,
             charge: charge(simulation).net,
             allowed,
         }
@@ -83,7 +85,6 @@ impl Health {
         if let Some(id) = simulation.not_finite() {
             return Err(unsound(format!("the position or velocity of grain {id} is not a number"), time_s));
         }
-        self.highest = self.highest.max(potential(simulation, energies));
         if self.is_too_fast(simulation, energies) {
             let exact = simulation
                 .energies(ElectricEnergy::Evaluated)
@@ -93,9 +94,11 @@ impl Health {
                 return Err(unsound(
                     format!(
                         "the grains have {:.3e} J of kinetic energy, more than {ENERGY} times the {:.3e} J \
-                         that could have been released; the fastest is grain {id} {}",
+                         that were ever released, and more than the error of {:.1e} J of the energies; the \
+                         fastest is grain {id} {}",
                         exact.kinetic,
-                        self.released(simulation, &exact),
+                        self.released,
+                        exact.error,
                         whereabouts(simulation, id)
                     ),
                     time_s,
@@ -115,16 +118,14 @@ impl Health {
         Ok(())
     }
 
-    /// Energy that the grains had at the start or could have gained since then [J].
-    fn released(&self, simulation: &Simulation, energies: &Energies) -> f64 {
-        (self.kinetic + self.highest - potential(simulation, energies)).max(0.0)
-    }
-
-    /// Tells whether the kinetic energy is larger than the energy that could have been released.
-    fn is_too_fast(&self, simulation: &Simulation, energies: &Energies) -> bool {
-        let sizes = energies.gravity.abs() + energies.contact.abs() + energies.electric.unwrap_or(0.0).abs();
-        let most = ENERGY * self.released(simulation, energies) + ROUND_OFF * sizes;
-        !self.allowed.work && energies.kinetic > most
+    /// Takes energies; tells whether the kinetic energy is larger than what was ever released, and than the
+    /// error of the energies. Where grains turn, little is released at the moment, and what is left of the
+    /// kinetic energy is the error of all that was turned over before.
+    fn is_too_fast(&mut self, simulation: &Simulation, energies: &Energies) -> bool {
+        let potential = potential(simulation, energies);
+        self.highest = self.highest.max(potential);
+        self.released = self.released.max(self.kinetic + self.highest - potential);
+        !self.allowed.work && energies.kinetic > ENERGY * self.released + energies.error
     }
 }
 

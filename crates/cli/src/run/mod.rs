@@ -2,6 +2,7 @@
 
 #[cfg(feature = "coupling")]
 mod bare_patches;
+mod exits;
 mod folder;
 mod health;
 pub(crate) mod histogram;

@@ -1,5 +1,6 @@
 //! Records of a run: rows of the history and files of the grains.
 
+use super::exits::Exits;
 use super::folder::RunFolder;
 use super::histogram::Histogram;
 use super::picture::draw;
@@ -24,6 +25,8 @@ pub(crate) struct Record {
     walls: Option<PvdSeries>,
     /// Forces on walls; `None` where there are no walls.
     wall_forces: Option<WallForces>,
+    /// Grains that left; `None` where that ends the run.
+    exits: Option<Exits>,
     /// Histograms of the charges; `None` where charges do not change.
     histogram: Option<Histogram>,
     /// Step of the last row.
@@ -103,7 +106,9 @@ impl Record {
         }
         let histogram = columns.transfer.then(|| Histogram::create(folder)).transpose()?;
         let wall_forces = WallForces::create(folder, simulation)?;
-        Ok(Self { history, columns, series, walls, wall_forces, histogram, last_row: None, last_frame: None })
+        let exits = Exits::create(folder, scene)?;
+        let (last_row, last_frame) = (None, None);
+        Ok(Self { history, columns, series, walls, wall_forces, exits, histogram, last_row, last_frame })
     }
 
     /// Opens the records of a run that is continued.
@@ -134,7 +139,14 @@ impl Record {
             // A file that cannot be removed does no harm, since the series does not name it.
             let _ = std::fs::remove_file(file.path());
         }
-        Ok(Self { history, columns, series, walls, wall_forces, histogram, last_row: None, last_frame: None })
+        let exits = Exits::resume(folder, scene, simulation)?;
+        let (last_row, last_frame) = (None, None);
+        Ok(Self { history, columns, series, walls, wall_forces, exits, histogram, last_row, last_frame })
+    }
+
+    /// Writes down the grains that left in a step.
+    pub(crate) fn exits(&mut self, simulation: &mut Simulation) -> Result<(), Failure> {
+        self.exits.as_mut().map_or(Ok(()), |exits| exits.append(&simulation.take_exits()))
     }
 
     /// Appends a row to the history, at most once for each step.
@@ -171,6 +183,9 @@ impl Record {
         row.extend(self.columns.solver.then(|| HistoryValue::Count(simulation.solver_iterations())));
         row.push(HistoryValue::Number(clock.wall_s));
         row.extend(clock.stages.iter().map(|seconds| HistoryValue::Number(*seconds)));
+        if let Some(exits) = &mut self.exits {
+            exits.tell(simulation.time_s());
+        }
         if let Some(forces) = &mut self.wall_forces {
             forces.append(simulation)?;
         }

@@ -28,6 +28,8 @@ pub(crate) struct Saved {
     pub(crate) stage_s: Vec<f64>,
     /// Contents of the field solver's case; `None` without one.
     pub(crate) case: Option<CaseContents>,
+    /// Energies and charges to which later ones are compared.
+    pub(crate) health: Health,
 }
 
 /// Earlier part of a run that is continued.
@@ -36,6 +38,8 @@ pub(crate) struct EarlierPart {
     pub(crate) history: Every,
     /// Times that it took.
     pub(crate) clock: Clock,
+    /// Energies and charges to which later ones are compared.
+    pub(crate) health: Health,
 }
 
 /// Run in progress.
@@ -65,7 +69,8 @@ impl<'a> Session<'a> {
         case: Option<CaseContents>,
     ) -> Result<Self, Failure> {
         let schedule = schedule(scene, &simulation, None)?;
-        let health = health(scene, &mut simulation)?;
+        let energies = forecast_energies(&mut simulation)?;
+        let health = Health::new(&simulation, &energies, Allowed::new(scene));
         let record = Record::create(folder, scene, &simulation)?;
         let earlier = Clock { wall_s: 0.0, stages: Vec::new() };
         let at_resume = None;
@@ -82,12 +87,11 @@ impl<'a> Session<'a> {
         case: Option<CaseContents>,
     ) -> Result<Self, Failure> {
         let schedule = schedule(scene, &simulation, Some(earlier.history))?;
-        let health = health(scene, &mut simulation)?;
         // Only a run that goes on may take later rows away.
         let energies = simulation.energies(ElectricEnergy::Evaluated);
         let at_resume = Some(energies.map_err(|error| Failure::while_running(&error))?);
         let record = Record::resume(folder, scene, &simulation, &schedule)?;
-        let earlier = earlier.clock;
+        let EarlierPart { clock: earlier, health, .. } = earlier;
         let begun = Instant::now();
         Ok(Self { folder, scene, simulation, schedule, record, health, case, at_resume, earlier, begun })
     }
@@ -154,6 +158,7 @@ impl<'a> Session<'a> {
 
     /// Writes the outputs that are due after a step, and checks that the run is sound.
     fn write_what_is_due(&mut self) -> Result<(), Failure> {
+        self.record.exits(&mut self.simulation)?;
         let step = self.simulation.step_index();
         let row = self.schedule.history.is_due(step);
         let checkpoint = self.schedule.checkpoint_is_due(step);
@@ -209,6 +214,7 @@ impl<'a> Session<'a> {
             wall_s: clock.wall_s,
             stage_s: clock.stages,
             case: self.case.clone(),
+            health: self.health,
         };
         let path = self.checkpoint_of(step);
         write_checkpoint(&path, self.scene.physics(), &saved)?;
@@ -235,11 +241,6 @@ impl<'a> Session<'a> {
 /// Energies [J] with a forecast of the field, which costs no evaluation.
 fn forecast_energies(simulation: &mut Simulation) -> Result<Energies, Failure> {
     simulation.energies(ElectricEnergy::Forecast).map_err(|error| Failure::while_running(&error))
-}
-
-fn health(scene: &Scene, simulation: &mut Simulation) -> Result<Health, Failure> {
-    let energies = forecast_energies(simulation)?;
-    Ok(Health::new(simulation, &energies, Allowed::new(scene)))
 }
 
 fn schedule(scene: &Scene, simulation: &Simulation, history: Option<Every>) -> Result<Schedule, Failure> {

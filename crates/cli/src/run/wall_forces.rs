@@ -6,7 +6,7 @@ use amberfield_dem::Simulation;
 use amberfield_scene::{HistoryFile, HistoryValue};
 
 /// Name of the file.
-const FILE: &str = "wall_forces.csv";
+pub(crate) const FILE: &str = "wall_forces.csv";
 /// Columns of the file; `wall` counts the scene's walls from 0, torques are about the origin.
 const COLUMNS: [&str; 12] = [
     "step",

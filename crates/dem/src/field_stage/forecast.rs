@@ -92,26 +92,35 @@ impl Forecast {
     }
 }
 
+/// Electric energy, and the error that it may have.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
+pub(crate) struct FieldEnergy {
+    /// Energy [J].
+    pub(crate) energy: f64,
+    /// Error that rounding and the field's tolerance may make [J].
+    pub(crate) error: f64,
+}
+
 /// The electric energy between two evaluations, on the line through the last two.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
 pub(crate) struct EnergyForecast {
-    /// Energy at the last evaluation [J].
-    last: f64,
+    /// Energy at the last evaluation.
+    last: FieldEnergy,
     /// Change of the energy per step [J].
     slope: f64,
     evaluated: bool,
 }
 
 impl EnergyForecast {
-    /// Energy [J] `age` steps after the last evaluation.
-    pub(crate) fn at(&self, age: u64) -> f64 {
-        self.last + self.slope * age as f64
+    /// Energy `age` steps after the last evaluation.
+    pub(crate) fn at(&self, age: u64) -> FieldEnergy {
+        FieldEnergy { energy: self.last.energy + self.slope * age as f64, ..self.last }
     }
 
-    /// Takes a fresh energy [J], `age` steps after the last evaluation.
-    pub(crate) fn renew(&mut self, fresh: f64, age: u64) {
+    /// Takes a fresh energy, `age` steps after the last evaluation.
+    pub(crate) fn renew(&mut self, fresh: FieldEnergy, age: u64) {
         let known = self.evaluated && age > 0;
-        let slope = if known { (fresh - self.last) / age as f64 } else { 0.0 };
+        let slope = if known { (fresh.energy - self.last.energy) / age as f64 } else { 0.0 };
         *self = Self { last: fresh, slope, evaluated: true };
     }
 }
@@ -173,9 +182,10 @@ mod tests {
     #[test]
     fn energy_follows_its_line() {
         let mut energy = EnergyForecast::default();
-        energy.renew(3.0, 0);
-        assert_eq!(energy.at(5), 3.0);
-        energy.renew(5.0, 4);
-        assert_eq!(energy.at(2), 6.0);
+        let of = |energy: f64| FieldEnergy { energy, error: 0.1 * energy };
+        energy.renew(of(3.0), 0);
+        assert_eq!(energy.at(5), of(3.0));
+        energy.renew(of(5.0), 4);
+        assert_eq!(energy.at(2), FieldEnergy { energy: 6.0, error: 0.5 });
     }
 }

@@ -25,11 +25,11 @@ use crate::error::DemError;
 use crate::motion::chunks::{CHUNK, chunk_count, for_each_chunk, is_parallel};
 use crate::motion::grains::Grains;
 use crate::setup::FieldStageSetup;
-use amberfield_core::{CouplingInterval, Domain, FieldSettings, ForceLimit, Particles, Vector3};
+use amberfield_core::{CouplingInterval, Domain, FieldSettings, ForceLimit, Method, Particles, Vector3};
 use amberfield_field::far::FarSolver;
 use amberfield_field::{FieldValues, Wanted};
 use amberfield_laws::{force_limit, time_step_limits};
-use forecast::{EnergyForecast, Forecast};
+use forecast::{EnergyForecast, FieldEnergy, Forecast};
 use interval::IntervalControl;
 use members::{Charges, Members};
 use serde::{Deserialize, Serialize};
@@ -42,6 +42,11 @@ const MOST_TRAVEL: f64 = 0.5;
 const FASTER: f64 = 4.0;
 /// The potential costs little on top of E, and spares the energy an evaluation of its own.
 const WANTED: Wanted = Wanted { potential: true, components: false };
+
+/// Error of potentials, over their size, that near pairs summed in single precision leave.
+const SINGLE_PRECISION: f64 = 1e-6;
+/// Error of potentials, over their size, that sums in double precision and of Ewald leave.
+const DOUBLE_PRECISION: f64 = 1e-9;
 
 /// Account of the force limit.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
@@ -312,7 +317,7 @@ impl FieldStage {
         grains: &Grains,
         particles: &Particles,
         extras: &Extras,
-    ) -> Result<f64, DemError> {
+    ) -> Result<FieldEnergy, DemError> {
         self.onlookers.collect(&self.member, domain, grains, particles, extras);
         // A field solver in step with a gas answers no question beyond the gas's time.
         self.onlookers.time_s = self.members.time_s;
@@ -324,17 +329,29 @@ impl FieldStage {
     }
 
     /// ½ Σ q (V + V_external) [J], extrapolated from the last two evaluations.
-    pub(crate) fn forecast_energy(&self) -> f64 {
+    pub(crate) fn forecast_energy(&self) -> FieldEnergy {
         self.energy.at(self.control.age)
     }
 
-    /// ½ Σ q (V + V_external) [J] of the field's last values. The potential of the field contains the
-    /// external field's once, whose energy has no factor ½.
-    fn energy_of(&self, members: &Members, domain: &Domain) -> f64 {
+    /// ½ Σ q (V + V_external) of the field's last values. The potential of the field contains the external
+    /// field's once, whose energy has no factor ½.
+    fn energy_of(&self, members: &Members, domain: &Domain) -> FieldEnergy {
         let Members { position, charge, .. } = members;
         let (external, centre) = (self.settings.external_field_v_m, domain.centre());
-        let terms = position.iter().zip(charge).zip(&self.values.potential);
-        0.5 * terms.map(|((x, q), v)| q * (v - external.dot(&(x - centre)))).sum::<f64>()
+        let (mut energy, mut sizes) = (0.0, 0.0);
+        for ((x, q), v) in position.iter().zip(charge).zip(&self.values.potential) {
+            let outer = -external.dot(&(x - centre));
+            energy += 0.5 * q * (v + outer);
+            // The external field is exact.
+            sizes += 0.5 * (q * (v - outer)).abs();
+        }
+        let relative = match self.settings.method {
+            Method::P3m => self.settings.tolerance.max(SINGLE_PRECISION),
+            Method::Direct => DOUBLE_PRECISION,
+            // They state no error, and their forces have no potential.
+            _ => 1.0,
+        };
+        FieldEnergy { energy, error: relative * sizes }
     }
 }
 

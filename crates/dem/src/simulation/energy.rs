@@ -19,7 +19,12 @@ pub struct Energies {
     pub gravity: f64,
     /// ½ Σ q (V + V_external) [J]; `None` when not asked for or without a field.
     pub electric: Option<f64>,
+    /// Error of their sum that rounding, and the field within its tolerance, may make [J].
+    pub error: f64,
 }
+
+/// Error of mechanical energies by rounding, over the sum of the sizes of their terms.
+pub(crate) const ROUND_OFF: f64 = 1e-9;
 
 /// Way to find the electric energy.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -44,9 +49,10 @@ pub(crate) fn kinetic(grains: &Grains) -> f64 {
         .sum()
 }
 
-/// −Σ m g·x.
-pub(crate) fn gravity(grains: &Grains, gravity: Vector3<f64>) -> f64 {
-    (0..grains.len()).map(|i| -grains.position(i).dot(&gravity) / grains.inverse_mass[i]).sum()
+/// −Σ m g·x, and the sum of the sizes of its terms.
+pub(crate) fn gravity(grains: &Grains, gravity: Vector3<f64>) -> (f64, f64) {
+    let terms = (0..grains.len()).map(|i| -grains.position(i).dot(&gravity) / grains.inverse_mass[i]);
+    terms.fold((0.0, 0.0), |(sum, sizes), term| (sum + term, sizes + term.abs()))
 }
 
 /// Elastic energy of all touching contacts.

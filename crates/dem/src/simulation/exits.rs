@@ -1,12 +1,45 @@
 //! Grains that leave the box.
+//!
+//! A grain leaves through an open face with its centre, and through a face that mirrors charges, a conductor
+//! or an insulator, as soon as it touches it: its own image would pull its centre into the face without
+//! bound. Where a wall stands on such a face, grains bounce off the wall and stay.
 
 use super::Simulation;
 use crate::error::DemError;
-use crate::motion::verlet::Beyond;
-use amberfield_core::{OnExit, Side};
+use crate::motion::verlet::{Beyond, Bounds};
+use crate::setup::Setup;
+use amberfield_core::{OnExit, Side, Vector3};
+use serde::{Deserialize, Serialize};
 
-/// Sums over the grains that have left since a run began or went on.
-#[derive(Clone, Copy, Debug, Default, PartialEq)]
+/// A wall this close to a face, over the skin of the lists, stands on it.
+const ON_FACE: f64 = 0.25;
+
+/// Names of the faces, by axis and side.
+const FACES: [[&str; 2]; 3] = [["x_min", "x_max"], ["y_min", "y_max"], ["z_min", "z_max"]];
+
+/// A grain that has left.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Exit {
+    /// Step in which it left.
+    pub step: u64,
+    /// Simulated time [s].
+    pub time_s: f64,
+    /// Id of the grain.
+    pub id: u64,
+    /// Name of the face, such as `z_min`.
+    pub face: &'static str,
+    /// Position of the centre [m].
+    pub position: Vector3<f64>,
+    /// Velocity in the middle of the step [m/s].
+    pub velocity: Vector3<f64>,
+    /// Radius [m].
+    pub radius: f64,
+    /// Charge [C].
+    pub charge: f64,
+}
+
+/// Sums over the grains that have left since the run began.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
 pub struct Left {
     /// Number of grains.
     pub grains: usize,
@@ -16,56 +49,136 @@ pub struct Left {
     pub gravity: f64,
 }
 
-impl Simulation {
-    /// Sums over the grains that have left since the run began or went on.
-    #[must_use]
-    pub fn left(&self) -> Left {
-        self.left
+/// Ways out of the box.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
+pub(crate) struct WaysOut {
+    /// Faces, by axis and side, through which a grain leaves when it touches them; `None` without any.
+    at_touch: Option<[[bool; 2]; 3]>,
+    left: Left,
+}
+
+impl WaysOut {
+    /// Ways out of the box of a set-up. A field solver has other faces than the box.
+    pub(crate) fn new(setup: &Setup) -> Self {
+        let mirrors = setup.field.as_ref().is_some_and(|field| field.solver.is_none());
+        let at_touch = setup
+            .domain
+            .faces()
+            .map(|sides| sides.map(|face| mirrors && (face.is_conductor() || face.is_insulating())));
+        Self {
+            at_touch: at_touch.iter().flatten().any(|face| *face).then_some(at_touch),
+            left: Left::default(),
+        }
     }
 
-    /// Ends the run or removes the grains outside the box, as the scene says; whether any was removed.
-    pub(super) fn handle_exits(&mut self) -> Result<bool, DemError> {
-        let outside: Vec<usize> = (0..self.grains.len())
-            .filter(|&i| self.bounds.beyond(&self.grains.centre[i]).is_some())
-            .collect();
-        let id = |i: usize| self.particles.id[self.grains.original[i].index()];
-        let time_s = self.progress.time_s();
-        // The smallest id is named: which grain comes first in the sorted order means nothing to a reader.
-        let first = |those: &dyn Fn(usize) -> bool| {
-            outside.iter().copied().filter(|&i| those(i)).min_by_key(|&i| id(i))
+    /// First of the faces left at touch that a grain touches.
+    fn touched(&self, bounds: &Bounds, centre: &[f64; 4]) -> Option<Beyond> {
+        let faces = self.at_touch.as_ref()?;
+        let [.., radius] = *centre;
+        (0..3).find_map(|axis| {
+            let [low, high] = faces[axis];
+            let side = if low && centre[axis] - radius < bounds.min[axis] {
+                Side::Min
+            } else if high && centre[axis] + radius > bounds.max[axis] {
+                Side::Max
+            } else {
+                return None;
+            };
+            Some(Beyond { axis, side: Some(side) })
+        })
+    }
+}
+
+impl Simulation {
+    /// Sums over the grains that have left since the run began.
+    #[must_use]
+    pub fn left(&self) -> Left {
+        self.ways_out.left
+    }
+
+    /// Grains that have left since this was asked last.
+    pub fn take_exits(&mut self) -> Vec<Exit> {
+        std::mem::take(&mut self.exits)
+    }
+
+    /// Whether any grain touches a face through which grains leave at touch.
+    pub(super) fn touches_face(&self) -> bool {
+        self.ways_out.at_touch.is_some() && (0..self.grains.len()).any(|i| self.face_touched_by(i).is_some())
+    }
+
+    /// Face through which a grain leaves by touching it; `None` where a wall holds the grain off.
+    fn face_touched_by(&self, i: usize) -> Option<Beyond> {
+        let touched = self.ways_out.touched(&self.bounds, &self.grains.centre[i])?;
+        let mut foot = self.grains.position(i);
+        foot[touched.axis] = match touched.side? {
+            Side::Min => self.bounds.min[touched.axis],
+            Side::Max => self.bounds.max[touched.axis],
         };
-        if let Some(i) = first(&|i| !self.grains.is_finite(i)) {
-            return Err(DemError::NotFinite { id: id(i), time_s });
+        let walls = self.contacts.walls.as_ref();
+        let held = walls.is_some_and(|walls| walls.stand_at(i, foot, ON_FACE * self.progress.skin_m));
+        (!held).then_some(touched)
+    }
+
+    /// Face through which a grain leaves.
+    fn way_out_of(&self, i: usize) -> Option<Beyond> {
+        self.bounds.beyond(&self.grains.centre[i]).or_else(|| self.face_touched_by(i))
+    }
+
+    /// Ends the run or removes the grains that leave, as the scene says; whether any was removed.
+    pub(super) fn handle_exits(&mut self) -> Result<bool, DemError> {
+        let mut exits: Vec<(usize, Exit)> = Vec::new();
+        let mut lost: Option<u64> = None;
+        let time_s = self.progress.time_s();
+        for i in 0..self.grains.len() {
+            let Some(Beyond { axis, side }) = self.way_out_of(i) else { continue };
+            let original = self.grains.original[i].index();
+            let id = self.particles.id[original];
+            if !self.grains.is_finite(i) {
+                lost = Some(lost.map_or(id, |other| other.min(id)));
+                continue;
+            }
+            let exit = Exit {
+                step: self.progress.step_index,
+                time_s,
+                id,
+                face: FACES[axis][usize::from(side == Some(Side::Max))],
+                position: self.grains.position(i),
+                velocity: self.grains.velocity[i],
+                radius: self.grains.centre[i][3],
+                charge: self.particles.charge[original],
+            };
+            exits.push((i, exit));
+        }
+        // The smallest id is named: which grain comes first in the sorted order means nothing to a reader.
+        if let Some(id) = lost {
+            return Err(DemError::NotFinite { id, time_s });
         }
         if self.time.on_exit == OnExit::Stop
-            && let Some(i) = first(&|_| true)
+            && let Some((_, Exit { id, position, face, .. })) = exits.iter().min_by_key(|(_, exit)| exit.id)
         {
-            let Beyond { axis, side } =
-                self.bounds.beyond(&self.grains.centre[i]).expect("listed as outside");
-            let side = if side == Some(Side::Max) { "max" } else { "min" };
-            let face = format!("{}_{side}", ["x", "y", "z"][axis]);
-            return Err(DemError::Left { id: id(i), position_m: self.grains.position(i), face, time_s });
+            return Err(DemError::Left { id: *id, position_m: *position, face: (*face).to_owned(), time_s });
         }
-        for &i in &outside {
-            tracing::warn!(id = id(i), time_s, "grain left the domain and was removed");
+        if exits.is_empty() {
+            return Ok(false);
         }
-        self.remove(&outside);
-        Ok(!outside.is_empty())
+        let gone: Vec<usize> = exits.iter().map(|(i, _)| *i).collect();
+        // Charge that contacts have yet to trade goes before the grains do.
+        self.trade_between_grains();
+        for (i, mut exit) in exits {
+            exit.charge = self.particles.charge[self.grains.original[i].index()];
+            let left = &mut self.ways_out.left;
+            left.grains += 1;
+            left.charge += exit.charge;
+            left.gravity -= exit.position.dot(&self.time.gravity_m_s2) / self.grains.inverse_mass[i];
+            self.exits.push(exit);
+        }
+        self.remove(&gone);
+        Ok(true)
     }
 
     /// Removes grains (ascending sorted indices). The lists still have the old numbers: the rebuild that must
     /// follow needs the order from them.
     fn remove(&mut self, gone: &[usize]) {
-        if gone.is_empty() {
-            return;
-        }
-        self.trade_between_grains();
-        for &i in gone {
-            self.left.grains += 1;
-            self.left.charge += self.particles.charge[self.grains.original[i].index()];
-            self.left.gravity -=
-                self.grains.position(i).dot(&self.time.gravity_m_s2) / self.grains.inverse_mass[i];
-        }
         let mut keep: Vec<u32> = (0..self.grains.len() as u32).collect();
         keep.retain(|&i| gone.binary_search(&(i as usize)).is_err());
         self.list(&keep);

@@ -24,6 +24,7 @@ use crate::motion::chunks::{Loads, chunk_count};
 use crate::motion::grains::{Grains, SortKey};
 use crate::motion::verlet::{Bounds, ChunkMotion, drift, kick};
 use amberfield_core::{Domain, Particles, Plan, TimeSettings};
+use exits::{Exit, WaysOut};
 use guards::Limits;
 use state::{Progress, State};
 use timing::{Stage, StageClock};
@@ -38,7 +39,7 @@ const HALF_SKIN: f64 = 0.499_999;
 ///
 /// 1. *Begin*: count the step; keep the state where another process may be lost in it.
 /// 2. *Drift*: first half of velocity Verlet ("Motion").
-/// 3. *Exits*: grains beyond an open face end the run or are removed.
+/// 3. *Exits*: grains beyond an open face, or at a face that mirrors charges, end the run or are removed.
 /// 4. *Lists*: wrap periodic axes, sort grains in space, list neighbours anew, where a grain may have used
 ///    up half the skin; look at the guards ("Time step").
 /// 5. *Grains*: contact forces of grains on each other, F_n and F_t ("Motion").
@@ -71,8 +72,9 @@ pub struct Simulation {
     /// Largest overlaps that the run may have at present.
     allowed: Depths,
     scratch: Scratch,
-    /// Sums over the grains that have left.
-    left: exits::Left,
+    ways_out: WaysOut,
+    /// Grains that have left since somebody asked.
+    exits: Vec<Exit>,
     /// State before a step in which another process may be lost.
     rescued: Option<State>,
     watch: StageClock,
@@ -135,14 +137,14 @@ impl Simulation {
         self.progress.step_index += 1;
     }
 
-    /// Moves the grains; whether one of them is outside the box now.
+    /// Moves the grains; whether one of them may leave now.
     fn drift(&mut self) -> bool {
         let gravity = self.time.gravity_m_s2;
         let step_s = self.progress.step_s;
         let motion = drift(&mut self.grains, gravity, step_s, &self.bounds, &mut self.scratch.motion);
         self.progress.speed = motion.speed;
         self.progress.pace = self.limits.pace(&self.grains, step_s, motion.speed);
-        motion.outside
+        motion.outside || self.touches_face()
     }
 
     /// Lists anew who is near whom where that may have changed: grains have been removed, or one may have

@@ -104,11 +104,15 @@ impl Simulation {
                 Some(field.fresh_energy(&self.domain, &self.grains, &self.particles, &self.scratch.extras)?)
             }
         };
+        let contact = energy::contact(&self.grains, &self.contacts);
+        let (gravity, sizes) = energy::gravity(&self.grains, self.time.gravity_m_s2);
+        let of_field = electric.map_or(0.0, |electric| electric.error);
         Ok(Energies {
             kinetic: energy::kinetic(&self.grains),
-            contact: energy::contact(&self.grains, &self.contacts),
-            gravity: energy::gravity(&self.grains, self.time.gravity_m_s2),
-            electric,
+            contact,
+            gravity,
+            electric: electric.map(|electric| electric.energy),
+            error: energy::ROUND_OFF * (contact + sizes) + of_field,
         })
     }
 

@@ -1,6 +1,6 @@
 //! Starting a run, afresh or from a checkpoint.
 
-use super::exits::Left;
+use super::exits::WaysOut;
 use super::guards::Limits;
 use super::state::{Progress, State};
 use super::timing::StageClock;
@@ -92,11 +92,13 @@ impl Simulation {
             field: self.field.as_ref().map(FieldStage::state),
             charging: self.charging.as_ref().map(|c| c.state(&self.particles, &self.contacts.neighbours)),
             gas: None,
+            ways_out: self.ways_out,
         }
     }
 
     /// Builds the stages that a scene needs; grains are in the set-up's order, nothing is listed yet.
     fn assemble(setup: Setup, skin_m: f64, state: Option<&State>) -> Result<Self, DemError> {
+        let ways_out = state.map_or_else(|| WaysOut::new(&setup), |state| state.ways_out);
         let Setup { domain, materials, rolling_model, particles, walls, time, gas, field } = setup;
         let table = PairTable::new(&materials);
         let transfer = field.as_ref().and_then(|field| field.transfer);
@@ -150,7 +152,8 @@ impl Simulation {
             field,
             allowed: Depths { grains: f64::INFINITY, walls: f64::INFINITY },
             scratch: Scratch::default(),
-            left: Left::default(),
+            ways_out,
+            exits: Vec::new(),
             rescued: None,
             watch: StageClock::default(),
         };

@@ -1,5 +1,6 @@
 //! The complete state of a run, for checkpoints: every stage's own, one after another.
 
+use super::exits::WaysOut;
 use crate::charging::ChargingState;
 use crate::contacts::memory::ContactsState;
 use crate::field_stage::FieldState;
@@ -43,6 +44,7 @@ pub struct State {
     pub(crate) charging: Option<ChargingState>,
     /// State of a gas that flows; not in a [`crate::Simulation::state`].
     pub(crate) gas: Option<ExchangeState>,
+    pub(crate) ways_out: WaysOut,
 }
 
 impl State {

@@ -14,6 +14,8 @@ pub enum HistoryValue {
     Count(u64),
     /// Quantity, written with 17 significant digits.
     Number(f64),
+    /// Name.
+    Text(&'static str),
 }
 
 /// Open history; a row is given to the operating system as soon as it is appended.
@@ -91,6 +93,7 @@ impl HistoryFile {
             let _ = match cell {
                 HistoryValue::Count(count) => write!(line, "{comma}{count}"),
                 HistoryValue::Number(number) => write!(line, "{comma}{number:.16e}"),
+                HistoryValue::Text(text) => write!(line, "{comma}{text}"),
             };
         }
         line.push('\n');

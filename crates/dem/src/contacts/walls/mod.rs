@@ -228,6 +228,19 @@ impl ContactWalls {
         !near.is_empty()
     }
 
+    /// Whether a wall stands within a distance [m] of a place [m] beside a grain, or a plane before the
+    /// place. The lists know walls up to half the skin from the grain's surface.
+    pub(crate) fn stand_at(&self, grain: usize, place: Vector3<f64>, distance: f64) -> bool {
+        let chunk = &self.chunks[grain / CHUNK];
+        let local = (grain % CHUNK) as u32;
+        let Ok(entry) = chunk.entries.binary_search_by_key(&local, |entry| entry.local) else { return false };
+        let Range { start, end } = chunk.entries[entry].triangles;
+        chunk.triangles[start as usize..end as usize].iter().any(|near| {
+            let image = place + Vector3::from(self.shifts[near.shift as usize]);
+            self.surfaces.closest(near.triangle, image, distance).distance <= distance
+        })
+    }
+
     /// Wall that a triangle or plane belongs to.
     fn part(&self, number: u32) -> &Part {
         &self.parts[self.surfaces.surface_of(number)]

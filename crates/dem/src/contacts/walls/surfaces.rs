@@ -57,7 +57,7 @@ pub(crate) struct Found {
 /// A closest point.
 #[derive(Clone, Copy, Debug, Default)]
 pub(crate) struct ClosestPoint {
-    distance: f64,
+    pub(super) distance: f64,
     triangle: u32,
     direction: Vector3<f64>,
     /// Place of the point among the triangles [m].
@@ -163,7 +163,7 @@ impl Surfaces {
     }
 
     /// Closest point of a triangle or plane to the centre of a sphere with a radius [m].
-    fn closest(&self, triangle: u32, centre: Vector3<f64>, radius: f64) -> ClosestPoint {
+    pub(crate) fn closest(&self, triangle: u32, centre: Vector3<f64>, radius: f64) -> ClosestPoint {
         if let Some(plane) = self.plane(triangle) {
             let distance = plane.height(centre);
             let (direction, place) = (-plane.normal, centre - plane.normal * distance);
