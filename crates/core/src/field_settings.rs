@@ -59,10 +59,11 @@ impl FromStr for Method {
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(rename_all = "snake_case")]
 pub enum Tuning {
-    /// Candidates are timed once; the choice is recorded and reused on resume.
-    #[default]
+    /// Candidates are timed once; the choice is recorded and reused on resume. Two fresh runs may choose
+    /// differently, and then differ within the tolerance.
     Timed,
-    /// The cost model decides alone: the same choice on every machine.
+    /// The cost model decides alone: the same choice in every run and on every machine.
+    #[default]
     Model,
 }
 
@@ -123,7 +124,7 @@ impl Default for FieldSettings {
             external_field_v_m: Vector3::zeros(),
             neutralising_background: false,
             grid_cells: None,
-            tuning: Tuning::Timed,
+            tuning: Tuning::default(),
             coupling_interval: CouplingInterval::Auto,
             overlap: false,
             force_limit: None,

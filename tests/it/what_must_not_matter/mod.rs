@@ -4,7 +4,8 @@
 //! a feature adds its line. [`field`] has the lines of the electric field over a mesh, by the stand-in for a
 //! field solver, which takes no other process; [`field_over_openfoam`] has those that OpenFOAM's files and
 //! processes make; [`flange`] has OpenFOAM's own example; [`walls`] has contacts, [`charge_on_walls`] what
-//! they charge, and [`runs`] whole runs by the binary.
+//! they charge, [`runs`] whole runs by the binary, [`rest`] charges that start from rest, and [`leaving`]
+//! grains that leave through faces.
 
 mod boxes;
 mod charge_on_walls;
@@ -12,7 +13,9 @@ mod field;
 mod field_over_openfoam;
 mod flange;
 mod foam_boxes;
+mod leaving;
 mod lines;
+mod rest;
 mod runs;
 mod scene;
 mod walls;

@@ -10,6 +10,7 @@ use crate::run::{
     read_scene, scene_name, setup_of,
 };
 use crate::{interrupt, plan_text, print};
+use amberfield_core::Tuning;
 use amberfield_dem::Simulation;
 use amberfield_scene::{Physics, Purpose, Scene, read_checkpoint, write_json, write_text};
 use std::path::{Path, PathBuf};
@@ -172,6 +173,12 @@ fn announce(scene: &Scene, simulation: &Simulation) {
             // The method is exact or states no error, or the parameters come from a checkpoint.
             _ => tracing::info!("electric field: {:?}", field.choice()),
         }
+        if scene.electric_field.as_ref().is_some_and(|settings| settings.field.tuning == Tuning::Timed) {
+            tracing::info!(
+                "electric field: its parameters were timed, so that another fresh run may choose others and \
+                 differ within the tolerance; tuning = \"model\" repeats"
+            );
+        }
     }
 }
 
@@ -179,7 +186,6 @@ fn announce(scene: &Scene, simulation: &Simulation) {
 fn finish(session: &Session<'_>, scene_path: &Path, first: u64, ending: Ending) -> Result<(), Failure> {
     let simulation = &session.simulation;
     warn_about_limits(session, first);
-    tell_intervals(simulation);
     draw(&session.folder.file("picture.png"), session.scene, simulation);
     if simulation.ledger().is_some() {
         histogram::plot(session.folder);
@@ -205,21 +211,36 @@ fn finish(session: &Session<'_>, scene_path: &Path, first: u64, ending: Ending) 
             session.checkpoint_path().display()
         ));
     }
-    Ok(())
+    tell_intervals(session)
 }
 
-/// Logs how often the field was evaluated, and the error of the forecasts between evaluations.
-fn tell_intervals(simulation: &Simulation) {
-    if let Some(intervals) = simulation.intervals().filter(|intervals| intervals.checked_steps > 0) {
-        tracing::info!(
-            "electric field: evaluated {} times in {} steps; relative error of the forecasts between, \
-             measured {:.2e}, over the worst interval {:.2e}",
-            intervals.evaluations,
-            simulation.step_index(),
-            intervals.error(),
-            intervals.largest_error,
-        );
+/// Logs how often the field was evaluated, and the error of the forces between evaluations: as a warning
+/// where an interval exceeds the tolerance, as a failure where the whole run does.
+fn tell_intervals(session: &Session<'_>) -> Result<(), Failure> {
+    let intervals = session.simulation.intervals().filter(|intervals| intervals.checked_steps > 0);
+    let Some((intervals, field)) = intervals.zip(session.scene.electric_field.as_ref()) else {
+        return Ok(());
+    };
+    let (error, worst, tolerance) = (intervals.error(), intervals.largest_error, field.field.tolerance);
+    let text = format!(
+        "electric field: evaluated {} times in {} steps; relative error of the forces by the forecasts \
+         between {error:.2e}, over the worst interval {worst:.2e}",
+        intervals.evaluations,
+        session.simulation.step_index(),
+    );
+    if worst <= tolerance {
+        tracing::info!("{text}");
+        return Ok(());
     }
+    tracing::warn!("{text}, above the tolerance {tolerance:e}");
+    if error <= tolerance {
+        return Ok(());
+    }
+    Err(Failure::outside_tolerance(format!(
+        "the forecasts of the electric field made an error of {error:.2e} of the forces, above the tolerance \
+         {tolerance:e}; the results are written; set electric_field.coupling_interval to \"auto\" or to \
+         fewer steps, or allow for it with electric_field.tolerance"
+    )))
 }
 
 /// Logs the momentum that gas and grains have exchanged, and the time of the exchanges.

@@ -12,8 +12,8 @@
 //!
 //! The field of everything else at a contact, E_x, comes from the last evaluation of the field, see
 //! `contact_field`. Between two evaluations charges change. As long as no contact has relaxed by a few per
-//! cent since, that is left to the next evaluation, which is asked for when charges have changed by more than
-//! the tolerance allows. After that contacts see the present charges of the grains that touch theirs.
+//! cent since, that is left to the next evaluation, which the field asks for when charges have changed by its
+//! tolerance. After that contacts see the present charges of the grains that touch theirs.
 
 mod around;
 mod contact_field;
@@ -50,10 +50,6 @@ const EVERY: u64 = 20;
 const LAG_SEEN: f64 = 0.02;
 /// Lag at which the field is due.
 const LAG_DUE: f64 = 0.1;
-/// Relative RMS change of the charges since the last evaluation at which the field is due, over the
-/// tolerance.
-const CHANGE_DUE: f64 = 2.0;
-
 /// Account of the charge that has moved.
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
 pub struct Ledger {
@@ -87,7 +83,6 @@ pub(crate) struct Charging {
     settings: ChargeTransfer,
     permittivity: f64,
     coulomb: f64,
-    tolerance: f64,
     table: ChargingTable,
     spots: Spots,
     pub(crate) ledger: Ledger,
@@ -120,7 +115,6 @@ impl Charging {
             settings,
             permittivity,
             coulomb: field.permittivity.coulomb(),
-            tolerance: field.tolerance,
             table: ChargingTable::new(materials, &settings, permittivity),
             spots: Spots::new(largest),
             ledger: Ledger { walls: vec![0.0; walls], ..Ledger::default() },
@@ -194,15 +188,9 @@ impl Charging {
         Follow { moves: step > 0, beyond: self.settings.beyond_previous_maximum }
     }
 
-    /// Whether charges have changed so much that the field is due.
-    pub(crate) fn wants_field(&self, charge: &[f64]) -> bool {
-        let (mut change2, mut size2) = (0.0, 0.0);
-        for (now, before) in charge.iter().zip(&self.evaluated) {
-            change2 += (now - before) * (now - before);
-            size2 += before * before;
-        }
-        let most = CHANGE_DUE * self.tolerance;
-        self.lag > LAG_DUE || change2 > most * most * size2
+    /// Whether contacts have relaxed so much that the field is due.
+    pub(crate) fn wants_field(&self) -> bool {
+        self.lag > LAG_DUE
     }
 
     /// Charged spots of walls, and the charge per area at each with its neighbours' [C/m²].

@@ -11,6 +11,10 @@ use crate::motion::grains::pick;
 use amberfield_core::Vector3;
 use serde::{Deserialize, Serialize};
 
+/// Factor of the jump of E at a grain whose charge jumps: contacts overlap, and a jump that is taken for too
+/// small leaves a rest that looks like drift.
+const SPARE: f64 = 1.2;
+
 /// E, its change and the charge of every grain, in sorted order; zero for grains that are no members.
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
 pub(crate) struct Forecast {
@@ -20,6 +24,14 @@ pub(crate) struct Forecast {
     slope: Vec<Vector3<f64>>,
     /// Charge [C].
     charge: Vec<f64>,
+    /// Charge at the last evaluation [C].
+    evaluated: Vec<f64>,
+    /// Charges of the grains that have left since.
+    left: Change,
+    /// Scales of E at the last evaluation.
+    scale: Scale,
+    /// Jumps since the last evaluation; `None`: to be summed anew.
+    jumps: Option<Jumps>,
     /// Memory of the next reordering.
     #[serde(skip)]
     spare: (Vec<Vector3<f64>>, Vec<f64>),
@@ -40,55 +52,231 @@ impl Forecast {
 
     /// Takes a grain's new charge [C]; nothing is known before the first evaluation.
     pub(crate) fn recharge(&mut self, grain: usize, charge: f64) {
-        if let Some(known) = self.charge.get_mut(grain) {
+        if let Some(known) = self.charge.get_mut(grain).filter(|known| **known != charge) {
             *known = charge;
+            self.jumps = None;
         }
+    }
+
+    /// Jumps of E since the last evaluation, for grains with centres and radii [m] in a medium of 1/(4πε)
+    /// [m/F].
+    ///
+    /// A jump of a grain's own charge by Δq goes with one of its partner's, or of its image, by −Δq, two
+    /// radii away, so that its E jumps by about kΔq/(2r)². Jumps of the others' charges make that of charges
+    /// at random, kΔq_rms n^{2/3}, and, where their sum changes, its share of E.
+    pub(crate) fn jumps(&mut self, centre: &[[f64; 4]], coulomb: f64) -> Jumps {
+        *self.jumps.get_or_insert_with(|| {
+            let (mut change, mut sizes, mut weights, mut near) = (self.left, 0.0, 0.0, 0.0);
+            for ((now, before), centre) in self.charge.iter().zip(&self.evaluated).zip(centre) {
+                change.add(now - before);
+                (sizes, weights) = (sizes + now.abs(), weights + now * now);
+                near += (now * near_jump(now - before, centre, coulomb)).powi(2);
+            }
+            if change.squares == 0.0 {
+                return Jumps::default();
+            }
+            let weights = weights.max(f64::MIN_POSITIVE);
+            let share2 = (change.squares / weights).min(1.0);
+            let of_sum2 = (change.sum / sizes.max(f64::MIN_POSITIVE)).powi(2).min(1.0);
+            let jumps = Jumps { share2, of_sum2, e2: near / weights };
+            Jumps { e2: jumps.e2 + jumps.far2(&self.scale), ..jumps }
+        })
+    }
+
+    /// Whether E has jumped by more than a share of its scale, or charges by as large a share.
+    pub(crate) fn has_jumped_by(&mut self, share: f64, centre: &[[f64; 4]], coulomb: f64) -> bool {
+        let Jumps { share2, e2, .. } = self.jumps(centre, coulomb);
+        share2 > share * share || e2 > (share * self.scale.of_forces).powi(2)
     }
 
     /// Whether it is one of `count` grains.
     pub(crate) fn fits(&self, count: usize) -> bool {
-        [self.e.len(), self.slope.len(), self.charge.len()] == [count; 3]
+        [self.e.len(), self.slope.len(), self.charge.len(), self.evaluated.len()] == [count; 4]
     }
 
     /// Follows grains that are reordered to `order[new] = old`.
     pub(crate) fn reorder(&mut self, order: &[u32]) {
         // Nothing is known before the first evaluation.
         if !self.e.is_empty() {
+            let all = Change::of(&self.charge);
             pick(&mut self.e, order, &mut self.spare.0);
             pick(&mut self.slope, order, &mut self.spare.0);
             pick(&mut self.charge, order, &mut self.spare.1);
+            pick(&mut self.evaluated, order, &mut self.spare.1);
+            if order.len() < self.spare.1.len() {
+                let kept = Change::of(&self.charge);
+                self.left.sum += kept.sum - all.sum;
+                self.left.squares += (all.squares - kept.squares).max(0.0);
+                self.jumps = None;
+            }
         }
     }
 
-    /// Takes a fresh E of the members, whose sorted indices among `count` grains are `index`, `age` steps
-    /// after the last evaluation. The difference from what was forecast, over `scale` [V/m]; `None` the first
-    /// time and when no step was taken.
+    /// Takes a fresh E of the members, `age` steps after the last evaluation. What it differs by from the
+    /// forecast; `None` the first time and when no step was taken.
+    ///
+    /// As much of the difference as charges may have made ([`Self::jumps`]) counts as jump, the rest as
+    /// drift. The slope takes the drift alone: a jump does not go on.
     pub(crate) fn renew(
         &mut self,
         members: &Members,
         fresh: &[Vector3<f64>],
         age: u64,
-        scale: f64,
+        medium: &Medium<'_>,
     ) -> Option<Check> {
         let Members { index, charge, count, .. } = members;
         let known = !self.e.is_empty() && age > 0;
         self.e.resize(*count, Vector3::zeros());
         self.slope.resize(*count, Vector3::zeros());
         self.charge.resize(*count, 0.0);
+        self.evaluated.resize(*count, 0.0);
+        let &Medium { centre, coulomb, .. } = medium;
+        let jumps = if known { self.jumps(centre, coulomb) } else { Jumps::default() };
+        let scale = Scale::of(fresh, charge, medium);
+        let far2 = jumps.far2(&scale);
         let age = age as f64;
-        let (mut squares, mut largest2) = (0.0, 0.0_f64);
+        let mut sums = Sums::default();
         for ((&i, fresh), charge) in index.iter().zip(fresh).zip(charge) {
             let i = i as usize;
-            let error2 = (fresh - self.at(i, age)).norm_squared();
-            squares += error2;
-            largest2 = largest2.max(error2);
-            self.slope[i] = if known { (fresh - self.e[i]) / age } else { Vector3::zeros() };
+            let difference = fresh - self.at(i, age);
+            let difference2 = difference.norm_squared();
+            let near = near_jump(charge - self.evaluated[i], &centre[i], coulomb);
+            let jump2 = difference2.min(near * near + far2);
+            let drift2 = difference2 - jump2;
+            sums.add(charge * charge, drift2, jump2);
+            if known && difference2 > 0.0 {
+                self.slope[i] += difference * ((drift2 / difference2).sqrt() / age);
+            } else if !known {
+                self.slope[i] = Vector3::zeros();
+            }
             self.e[i] = *fresh;
             self.charge[i] = *charge;
+            self.evaluated[i] = *charge;
         }
-        let over = |value: f64| if value == 0.0 { 0.0 } else { value / scale };
-        let mean2 = squares / index.len().max(1) as f64;
-        known.then(|| Check { rms: over(mean2.sqrt()), largest: over(largest2.sqrt()) })
+        let check = known.then(|| sums.check(index.len(), &scale, jumps));
+        (self.left, self.scale, self.jumps) = (Change::default(), scale, Some(Jumps::default()));
+        check
+    }
+}
+
+/// Sums over changes of charges.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
+struct Change {
+    /// Sum [C].
+    sum: f64,
+    /// Sum of the squares [C²].
+    squares: f64,
+}
+
+impl Change {
+    fn of(charges: &[f64]) -> Self {
+        let mut sums = Self::default();
+        charges.iter().for_each(|charge| sums.add(*charge));
+        sums
+    }
+
+    fn add(&mut self, change: f64) {
+        self.sum += change;
+        self.squares += change * change;
+    }
+}
+
+/// Jumps since the last evaluation, because charges have changed and grains have left.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
+pub(crate) struct Jumps {
+    /// Σ(q − q₀)² over Σq², at most 1.
+    pub(crate) share2: f64,
+    /// Squared change of the sum of the charges, over that of their sizes, at most 1.
+    of_sum2: f64,
+    /// Squared jump of E in the forces, in the mean [V²/m²].
+    pub(crate) e2: f64,
+}
+
+impl Jumps {
+    /// Squared jump of E that the charges of others make [V²/m²].
+    fn far2(&self, scale: &Scale) -> f64 {
+        self.share2 * scale.least.powi(2) + self.of_sum2 * scale.of_all.powi(2)
+    }
+}
+
+/// Jump of E at a grain whose charge jumps [V/m].
+fn near_jump(change: f64, centre: &[f64; 4], coulomb: f64) -> f64 {
+    let diameter = 2.0 * centre[3];
+    SPARE * coulomb * change / (diameter * diameter)
+}
+
+/// Quantities that a check needs beside E.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Medium<'a> {
+    /// Centres and radii of all grains, sorted order [m].
+    pub(crate) centre: &'a [[f64; 4]],
+    /// External field, which forecasts know [V/m].
+    pub(crate) external: Vector3<f64>,
+    /// Scale of E where symmetry makes it vanish [V/m].
+    pub(crate) least: f64,
+    /// 1/(4πε) [m/F].
+    pub(crate) coulomb: f64,
+}
+
+/// Scales to which errors of E are relative [V/m]: the RMS of E less the external field, but not less than
+/// where symmetry makes it vanish.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
+struct Scale {
+    /// Scale where symmetry makes E vanish.
+    least: f64,
+    of_all: f64,
+    /// Scale with the charges squared as weights: the forces'.
+    of_forces: f64,
+}
+
+impl Scale {
+    fn of(fresh: &[Vector3<f64>], charge: &[f64], medium: &Medium<'_>) -> Self {
+        let (mut all, mut forces, mut weights, mut count) = (0.0, 0.0, 0.0, 0.0_f64);
+        for (e, q) in fresh.iter().zip(charge) {
+            let e2 = (e - medium.external).norm_squared();
+            (all, forces) = (all + e2, forces + q * q * e2);
+            (weights, count) = (weights + q * q, count + 1.0);
+        }
+        let root = |sum: f64, over: f64| if over > 0.0 { (sum / over).sqrt() } else { 0.0 };
+        Self {
+            least: medium.least,
+            of_all: root(all, count).max(medium.least),
+            of_forces: root(forces, weights).max(medium.least),
+        }
+    }
+}
+
+/// Sums over the members.
+#[derive(Default)]
+struct Sums {
+    weights: f64,
+    drift: f64,
+    jump: f64,
+    drift_of_all: f64,
+    largest: f64,
+}
+
+impl Sums {
+    fn add(&mut self, weight: f64, drift2: f64, jump2: f64) {
+        self.weights += weight;
+        self.drift += weight * drift2;
+        self.jump += weight * jump2;
+        self.drift_of_all += drift2;
+        self.largest = self.largest.max(drift2);
+    }
+
+    fn check(&self, count: usize, scale: &Scale, jumps: Jumps) -> Check {
+        let over = |sum: f64, weights: f64, scale: f64| {
+            if sum == 0.0 { 0.0 } else { (sum / weights).sqrt() / scale }
+        };
+        Check {
+            drift: over(self.drift, self.weights, scale.of_forces),
+            jump: over(self.jump, self.weights, scale.of_forces),
+            drift_of_all: over(self.drift_of_all, count as f64, scale.of_all),
+            largest: over(self.largest, 1.0, scale.of_all),
+            jumped: jumps.e2,
+            missed: 0.0,
+        }
     }
 }
 
@@ -141,6 +329,13 @@ mod tests {
         grains.iter().map(|&g| parabola(g, time)).collect()
     }
 
+    /// Grains of unit radius at one place.
+    const CENTRE: [[f64; 4]; 4] = [[0.0, 0.0, 0.0, 1.0]; 4];
+
+    fn medium(least: f64) -> Medium<'static> {
+        Medium { centre: &CENTRE, external: Vector3::zeros(), least, coulomb: 1.0 }
+    }
+
     fn members(index: &[u32], count: usize) -> Members {
         let (position, charge) = (vec![Vector3::zeros(); index.len()], vec![2.0; index.len()]);
         Members { index: index.to_vec(), position, charge, count, time_s: 0.0 }
@@ -151,12 +346,13 @@ mod tests {
         let mut forecast = Forecast::default();
         // Grain 1 of 0…3 is no member.
         let inside = [0_u32, 2, 3];
-        assert_eq!(forecast.renew(&members(&inside, 4), &fresh(&inside, 0.0), 0, 1.0), None);
+        assert_eq!(forecast.renew(&members(&inside, 4), &fresh(&inside, 0.0), 0, &medium(1.0)), None);
         assert_eq!(forecast.at(2, 5.0), parabola(2, 0.0));
         assert_eq!(forecast.force(2, 5.0), 2.0 * parabola(2, 0.0));
-        let check =
-            forecast.renew(&members(&inside, 4), &fresh(&inside, 2.0), 2, 10.0).expect("steps were taken");
-        let largest = (parabola(3, 2.0) - parabola(3, 0.0)).norm() / 10.0;
+        let check = forecast
+            .renew(&members(&inside, 4), &fresh(&inside, 2.0), 2, &medium(1e3))
+            .expect("steps were taken");
+        let largest = (parabola(3, 2.0) - parabola(3, 0.0)).norm() / 1e3;
         assert!((check.largest - largest).abs() < 1e-15);
         // The line through times 0 and 2, three steps on, misses the parabola by g·3·5.
         assert!((forecast.at(3, 3.0) - parabola(3, 5.0) + Vector3::x() * 45.0).norm() < 1e-12);
@@ -165,17 +361,50 @@ mod tests {
         forecast.reorder(&[3, 2, 1, 0]);
         forecast.reorder(&[0, 1, 2]);
         assert!(forecast.fits(3) && forecast.force(2, 3.0) == Vector3::zeros());
-        let check =
-            forecast.renew(&members(&[0, 1], 3), &fresh(&[3, 2], 5.0), 3, 1.0).expect("steps were taken");
-        assert!((check.rms - f64::sqrt((45.0 * 45.0 + 30.0 * 30.0) / 2.0)).abs() < 1e-12);
-        assert!((forecast.at(0, 0.0) - parabola(3, 5.0)).norm() < 1e-12);
+        assert_eq!(forecast.jumps(&CENTRE, 1.0).share2, 0.5);
+    }
+
+    #[test]
+    fn forecast_errs_by_what_the_parabola_bends() {
+        let mut forecast = Forecast::default();
+        for (time, age) in [(0.0, 0), (2.0, 2)] {
+            forecast.renew(&members(&[0, 1], 2), &fresh(&[3, 2], time), age, &medium(1e3));
+        }
+        let check = forecast
+            .renew(&members(&[0, 1], 2), &fresh(&[3, 2], 5.0), 3, &medium(1e3))
+            .expect("steps were taken");
+        let rms = f64::sqrt((45.0 * 45.0 + 30.0 * 30.0) / 2.0) / 1e3;
+        assert!((check.drift - rms).abs() < 1e-15 && (check.drift_of_all - rms).abs() < 1e-15);
+        assert_eq!((check.jump, check.jumped), (0.0, 0.0));
+    }
+
+    #[test]
+    fn jump_of_charges_is_no_drift_and_does_not_go_on() {
+        let mut forecast = Forecast::default();
+        let e = |z: f64| [Vector3::new(0.0, 0.0, z), Vector3::new(0.0, 0.0, -z)];
+        let with = |charge: f64| {
+            let mut members = members(&[0, 1], 2);
+            members.charge = vec![charge; 2];
+            members
+        };
+        forecast.renew(&with(1.0), &e(1.0), 0, &medium(1e-3));
+        forecast.renew(&with(1.0), &e(1.1), 1, &medium(1e-3));
+        (0..2).for_each(|grain| forecast.recharge(grain, 1.2));
+        assert!(forecast.has_jumped_by(0.16, &CENTRE, 0.0) && !forecast.has_jumped_by(0.17, &CENTRE, 0.0));
+        // All charges grow by a sixth of what they are, and so does E, which was 1.1.
+        assert!((forecast.jumps(&CENTRE, 0.0).e2.sqrt() - 1.1 / 6.0).abs() < 1e-6);
+        // A step of 0.1 as before, and a jump by the share of the charges that is new.
+        let check = forecast.renew(&with(1.2), &e(1.4), 1, &medium(1e-3)).expect("a step was taken");
+        assert!(check.drift < 1e-9 && (check.jump - 0.2 / 1.4).abs() < 1e-9, "{check:?}");
+        assert!((forecast.at(0, 1.0).z - 1.5).abs() < 1e-9);
+        assert!(!forecast.has_jumped_by(0.0, &CENTRE, 1.0));
     }
 
     #[test]
     fn second_evaluation_at_the_same_time_starts_afresh() {
         let mut forecast = Forecast::default();
-        forecast.renew(&members(&[0], 1), &fresh(&[0], 0.0), 0, 1.0);
-        assert_eq!(forecast.renew(&members(&[0], 1), &fresh(&[1], 0.0), 0, 1.0), None);
+        forecast.renew(&members(&[0], 1), &fresh(&[0], 0.0), 0, &medium(1.0));
+        assert_eq!(forecast.renew(&members(&[0], 1), &fresh(&[1], 0.0), 0, &medium(1.0)), None);
         assert_eq!(forecast.at(0, 9.0), parabola(1, 0.0));
     }
 

@@ -6,6 +6,8 @@
 //!   share of the tolerance ([`interval`]);
 //! * as soon as any grain may have moved by half the smallest member's radius since: what was measured says
 //!   little about grains that are elsewhere by now;
+//! * as soon as charges, or E by what their changes do to it, have changed by the tolerance in RMS, at
+//!   contacts or because grains have left;
 //! * at the latest after 0.2/ω_p.
 //!
 //! A number of steps is kept as it is. All depends on the grains only.
@@ -29,7 +31,7 @@ use amberfield_core::{CouplingInterval, Domain, FieldSettings, ForceLimit, Metho
 use amberfield_field::far::FarSolver;
 use amberfield_field::{FieldValues, Wanted};
 use amberfield_laws::{force_limit, time_step_limits};
-use forecast::{EnergyForecast, FieldEnergy, Forecast};
+use forecast::{EnergyForecast, FieldEnergy, Forecast, Medium};
 use interval::IntervalControl;
 use members::{Charges, Members};
 use serde::{Deserialize, Serialize};
@@ -184,9 +186,20 @@ impl FieldStage {
     /// Books a step of length `step` [s] at largest speed `speed` [m/s]; whether E is due.
     pub(crate) fn is_due(&mut self, step: f64, speed: f64) -> bool {
         self.travel += step * speed;
-        let far = self.settings.coupling_interval == CouplingInterval::Auto
-            && self.travel > MOST_TRAVEL * self.smallest_radius;
+        let far = self.is_automatic() && self.travel > MOST_TRAVEL * self.smallest_radius;
         self.control.is_due() || far
+    }
+
+    /// Whether charges have changed so much that E is due.
+    pub(crate) fn charges_have_changed(&mut self, grains: &Grains) -> bool {
+        let coulomb = self.settings.permittivity.coulomb();
+        self.is_automatic() && self.forecast.has_jumped_by(self.settings.tolerance, &grains.centre, coulomb)
+    }
+
+    /// Books a step whose forces are forecast.
+    pub(crate) fn book_forecast(&mut self, grains: &Grains) {
+        let jumps = self.forecast.jumps(&grains.centre, self.settings.permittivity.coulomb());
+        self.control.forecasts(jumps.e2);
     }
 
     /// Evaluates E.
@@ -205,12 +218,18 @@ impl FieldStage {
         let far = self.source.field.far_solver();
         self.solver_iterations = far.map_or(0, FarSolver::iterations);
         let missed = far.map_or(0.0, FarSolver::missed);
-        let (scale, age) = (self.scale(domain), self.control.age);
+        let age = self.control.age;
         self.energy.renew(self.energy_of(&self.members, domain), age);
-        let mut check = self.forecast.renew(&self.members, &self.values.e, age, scale);
+        let medium = Medium {
+            centre: &grains.centre,
+            external: self.settings.external_field_v_m,
+            least: self.least_scale(domain),
+            coulomb: self.settings.permittivity.coulomb(),
+        };
+        let mut check = self.forecast.renew(&self.members, &self.values.e, age, &medium);
         if let Some(check) = check.as_mut().filter(|_| missed > 0.0) {
             // A solver that works beside the steps has its own forecast.
-            check.rms = check.rms.hypot(missed / scale);
+            check.missed = missed / self.rms().max(medium.least);
         }
         self.watch_plasma(grains, moment.step_s);
         let FieldSettings { coupling_interval, tolerance, .. } = self.settings;
@@ -220,18 +239,20 @@ impl FieldStage {
         Ok(())
     }
 
-    /// Scale to which errors of E are relative [V/m]: the RMS of E less the external field, or q_rms
-    /// n^{2/3}/(4πε) where symmetry makes E vanish.
-    fn scale(&self, domain: &Domain) -> f64 {
+    /// RMS of E less the external field [V/m].
+    fn rms(&self) -> f64 {
+        let e = &self.values.e[..self.members.index.len()];
+        let external = self.settings.external_field_v_m;
+        (e.iter().map(|e| (e - external).norm_squared()).sum::<f64>() / e.len().max(1) as f64).sqrt()
+    }
+
+    /// Scale of E where symmetry makes it vanish [V/m]: q_rms n^{2/3}/(4πε).
+    fn least_scale(&self, domain: &Domain) -> f64 {
         let Members { index, charge, .. } = &self.members;
         let count = index.len().max(1) as f64;
-        let external = self.settings.external_field_v_m;
-        let e2 =
-            self.values.e[..index.len()].iter().map(|e| (e - external).norm_squared()).sum::<f64>() / count;
         let q2 = charge[..index.len()].iter().map(|q| q * q).sum::<f64>() / count;
         let density = count / domain.volume();
-        let floor = self.settings.permittivity.coulomb() * q2.sqrt() * density.powf(2.0 / 3.0);
-        e2.sqrt().max(floor)
+        self.settings.permittivity.coulomb() * q2.sqrt() * density.powf(2.0 / 3.0)
     }
 
     /// Adds the electric force of this step to `total` [N], for the list's `skin` [m] and the `step` [s].

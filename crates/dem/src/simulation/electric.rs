@@ -38,16 +38,18 @@ impl Simulation {
         let due = interval_ended || self.charges_have_changed();
         if due {
             self.evaluate_field()?;
+        } else if let Some(field) = &mut self.field {
+            field.book_forecast(&self.grains);
         }
         Ok(due)
     }
 
-    /// Whether the charges have changed so much that the field is due before its interval ends.
-    fn charges_have_changed(&self) -> bool {
-        let (Some(charging), Some(field)) = (&self.charging, &self.field) else { return false };
-        Charging::is_due(self.progress.step_index)
-            && field.is_automatic()
-            && charging.wants_field(&self.particles.charge)
+    /// Whether charges have changed, or contacts have relaxed, so much that the field is due before its
+    /// interval ends.
+    fn charges_have_changed(&mut self) -> bool {
+        let Some(field) = &mut self.field else { return false };
+        let relaxed = self.charging.as_ref().is_some_and(Charging::wants_field);
+        field.charges_have_changed(&self.grains) || (relaxed && field.is_automatic())
     }
 
     /// Evaluates the field at the present positions and charges, and at the contacts that trade.
