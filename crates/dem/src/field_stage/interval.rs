@@ -137,9 +137,17 @@ impl IntervalControl {
         self.intervals.largest_error = self.intervals.largest_error.max(error);
         self.intervals.steps_now = match wanted {
             CouplingInterval::Steps(steps) => u64::from(steps.max(1)),
-            CouplingInterval::Auto => self.next(steps, check, AIM * tolerance).min(most).max(1),
+            CouplingInterval::Auto => self.next(steps, check, self.aim(tolerance)).min(most).max(1),
         };
         self.before = steps;
+    }
+
+    /// RMS error over an interval that is aimed at. An interval follows what has been seen, and grains that
+    /// meet come as a surprise: the more the run has erred so far, the lower the aim.
+    fn aim(&self, tolerance: f64) -> f64 {
+        let aim = AIM * tolerance;
+        let error = self.intervals.error();
+        if error > aim { aim * (aim / error).powi(2) } else { aim }
     }
 
     /// Steps of the next interval, after one of `steps`, for an RMS error over it that is aimed at.
