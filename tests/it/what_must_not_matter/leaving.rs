@@ -21,8 +21,15 @@ poisson = 0.3
 restitution = 1.0
 friction = 0.0
 [particles]
-generate = { material = "m", count = 150, radius_m = 2e-4, seed = 1, velocity_m_s = [0, 0, -2], charge_C = 1e-12, region = { box = { min_m = [0.02, 0.02, 0.005], max_m = [0.08, 0.08, 0.02] } } }
 on_exit = "delete"
+[particles.generate]
+material = "m"
+count = 150
+radius_m = 2e-4
+seed = 1
+velocity_m_s = [0, 0, -2]
+charge_C = 1e-12
+region = { box = { min_m = [0.02, 0.02, 0.005], max_m = [0.08, 0.08, 0.02] } }
 [time]
 step_s = "auto"
 end_s = 0.012

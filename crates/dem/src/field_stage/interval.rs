@@ -166,7 +166,7 @@ impl IntervalControl {
     }
 }
 
-/// Sum over the steps s = 1 … S − 1 of an interval of S steps of the squared drift over that at its end, which
+/// Sum over the steps s = 1 … S − 1 of an interval of S steps of the squared drift over that at its end. It
 /// grows as s(s + S₀) after an interval of S₀ steps, or as s where S₀ is 0.
 fn drift_squares(steps: u64, before: u64) -> f64 {
     let (length, before) = (steps as f64, before as f64);
