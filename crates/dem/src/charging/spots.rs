@@ -292,3 +292,62 @@ impl Spots {
             .sum()
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use amberfield_core::Boundary;
+    use std::f64::consts::PI;
+
+    const LARGE: f64 = 1e-3;
+
+    fn contact(x: f64, inward: f64, radius: f64) -> Contact {
+        let (place, inward) = (Vector3::new(x, 0.0, 0.0), Vector3::z() * inward);
+        Contact { wall: 0, keeps: true, bounds_field: false, place, inward, radius }
+    }
+
+    fn charged(contacts: &[(Contact, f64)]) -> (Domain, Spots) {
+        let domain =
+            Domain::new(Vector3::repeat(-1.0), Vector3::repeat(1.0), [[Boundary::Open; 2]; 3]).unwrap();
+        let mut spots = Spots::new(LARGE);
+        for (contact, charge) in contacts {
+            let number = spots.at(&domain, contact);
+            spots.leave(&domain, number, contact, *charge);
+        }
+        (domain, spots)
+    }
+
+    #[test]
+    fn small_grain_feels_what_a_large_one_left_as_from_the_large_one_s_radius() {
+        let small = contact(0.0, 1.0, 0.2 * LARGE);
+        let (domain, mut spots) = charged(&[(contact(0.0, 1.0, LARGE), 1.0)]);
+        let own = spots.at(&domain, &small);
+        let felt = spots.felt(&domain, &small, own, 1.0);
+        assert_eq!((own, spots.all().len()), (1, 2));
+        assert!((felt.normal_field * LARGE * LARGE - 1.0).abs() < 1e-12, "{felt:?}");
+        assert!((felt.per_charge * 4.0 * PI * small.radius.powi(2) - 1.0).abs() < 1e-12, "{felt:?}");
+        // And the large one what the small one leaves, from its own radius.
+        spots.leave(&domain, own, &small, 1.0);
+        let felt = spots.felt(&domain, &contact(0.0, 1.0, LARGE), 0, 1.0);
+        assert!((felt.normal_field * LARGE * LARGE - 2.0).abs() < 1e-12, "{felt:?}");
+    }
+
+    #[test]
+    fn sides_of_a_sheet_are_two_spots_and_places_close_by_are_one() {
+        let at = |x: f64, side: f64| (contact(x, side, LARGE), 1.0);
+        let (_, spots) = charged(&[at(0.0, 1.0), at(0.4e-3, 1.0), at(0.0, -1.0), at(1.6e-3, 1.0)]);
+        let charges: Vec<f64> = spots.all().iter().map(|spot| spot.charge).collect();
+        assert_eq!(charges, [2.0, 1.0, 1.0]);
+        assert!((spots.all()[0].place.x - 0.2e-3).abs() < 1e-15);
+    }
+
+    #[test]
+    fn grain_that_touches_feels_its_charge_from_a_radius_away() {
+        let (domain, spots) = charged(&[(contact(0.0, 1.0, LARGE), 1.0)]);
+        let centre = Vector3::new(0.0, 0.0, LARGE);
+        let (point, _) = spots.sources(&domain).next().unwrap();
+        let evaluated = point_charge::field(1.0, 1.0, centre - point);
+        let e = evaluated + spots.softened(&domain, centre, 1.0).unwrap();
+        assert!((e.z * LARGE * LARGE - 1.0).abs() < 1e-12, "{e}");
+    }
+}
