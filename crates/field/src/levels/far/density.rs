@@ -9,8 +9,8 @@ use amberfield_laws::kaiser_bessel_cloud::Cloud;
 use nalgebra::Vector3;
 
 /// Order of the window and node spacings per cloud radius: an error near 1e-4 of a cloud's largest density.
-const ORDER: usize = 5;
-const NODES_PER_RADIUS: f64 = 5.0;
+const ORDER: usize = 4;
+const NODES_PER_RADIUS: f64 = 7.0;
 /// Extents that differ by less, relatively, are one period.
 const SAME: f64 = 1e-9;
 

@@ -30,6 +30,8 @@ const FRACTION: f64 = 0.4;
 const GOALS: [f64; 2] = [0.01, 0.03];
 /// Grains per second that a core maps to cells.
 const MAPPED: f64 = 5e6;
+/// Radius of the clouds over the cell size, as p3m over a mesh has it.
+const RADIUS: f64 = 9.0;
 /// Far-field step over the bare linear solve.
 const STEP: f64 = 1.3;
 
@@ -113,7 +115,8 @@ fn exchange(domain: &Domain, cells_along: usize, cloud: &ChargedBed) -> Result<(
     let mut time = |positions: &[Vector3<f64>], charges: &[f64]| {
         let request = FarRequest {
             question: FarQuestion {
-                cloud: SourceCloud::nearest_cell(),
+                // Clouds belong to no cell: nobody maps the charges for them.
+                cloud: SourceCloud { radius_m: RADIUS * domain.extent().x / cells_along as f64, shape: 10.0 },
                 permittivity_f_m: 1.0,
                 neutralising_background: 0,
                 time_s: 0.0,
