@@ -59,6 +59,8 @@ pub(crate) enum Command {
     /// Measures error against run time: sweeps methods and parameters over problems
     #[cfg(feature = "plots")]
     Study(StudyOptions),
+    /// Shows the keys of a scene: values, units, defaults, examples
+    Keys(KeysOptions),
     /// Tells what this machine offers and which stale runs it holds
     Doctor(DoctorOptions),
 }
@@ -112,6 +114,13 @@ pub(crate) struct FieldOptions {
     /// Overrides a key of the scene, for example electric_field.tolerance=1e-3
     #[arg(long, value_name = "KEY=VALUE")]
     pub(crate) set: Vec<String>,
+}
+
+/// Options of `keys`.
+#[derive(Debug, Args)]
+pub(crate) struct KeysOptions {
+    /// Key or section, for example domain.boundary.x [default: all]
+    pub(crate) path: Option<String>,
 }
 
 /// Options of `explain`.

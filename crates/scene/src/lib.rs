@@ -6,6 +6,7 @@
 
 mod error;
 mod generate;
+pub mod keys;
 mod limits;
 mod materials;
 mod particles;

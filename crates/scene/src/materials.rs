@@ -2,36 +2,18 @@
 
 use crate::SceneError;
 use crate::error::Problems;
-use crate::limits::{DENSITY, FRICTION, YOUNG};
-use crate::tree::{Range, SceneTable, nearest};
+use crate::tree::{SceneTable, nearest};
 use amberfield_core::{Material, MaterialId};
-
-/// Keys of a material.
-const KEYS: [&str; 9] = [
-    "name",
-    "density_kg_m3",
-    "young_Pa",
-    "young_real_Pa",
-    "poisson",
-    "restitution",
-    "friction",
-    "rolling_friction",
-    "work_function_eV",
-];
 
 /// Reads `[[materials]]`.
 pub(super) fn read_materials(document: &SceneTable<'_>) -> Result<Vec<Material>, SceneError> {
     let mut materials: Vec<Material> = Vec::new();
     let mut problems = Problems::default();
-    let items = document.items("materials")?;
-    if items.is_some_and(<[_]>::is_empty) {
-        return Err(document.bad("materials", "the list is empty; add a material or remove the key"));
-    }
-    for (index, node) in items.unwrap_or_default().iter().enumerate() {
-        if index > usize::from(u16::MAX) {
+    for table in document.tables("materials")?.into_iter().flatten() {
+        if materials.len() > usize::from(u16::MAX) {
             return Err(document.bad("materials", "more than 65536 materials; merge some"));
         }
-        let read = SceneTable::new(node, format!("materials[{index}]"), &KEYS).and_then(|table| {
+        let read = table.and_then(|table| {
             let material = read_material(&table)?;
             if materials.iter().any(|other| other.name == material.name) {
                 return Err(table.bad("name", "another material has this name; rename one"));
@@ -47,15 +29,14 @@ fn read_material(table: &SceneTable<'_>) -> Result<Material, SceneError> {
     let name = table.text("name")?;
     Ok(Material {
         name: table.need(name, "name", "give the material a name")?.to_owned(),
-        density_kg_m3: table.need_number("density_kg_m3", DENSITY)?,
-        young_pa: table.need_number("young_Pa", YOUNG)?,
-        young_real_pa: table.number("young_real_Pa", YOUNG)?,
-        // Isotropic solids allow −1 to 1/2; the contact laws divide by 1 − ν², 1 + ν and 2 − ν.
-        poisson: table.need_number("poisson", Range::closed(-0.99, 0.5))?,
-        restitution: table.need_number("restitution", Range::positive(1.0))?,
-        friction: table.need_number("friction", FRICTION)?,
-        rolling_friction: table.number("rolling_friction", FRICTION)?.unwrap_or(0.0),
-        work_function_ev: table.number("work_function_eV", Range::closed(0.0, 100.0))?,
+        density_kg_m3: table.need_number("density_kg_m3")?,
+        young_pa: table.need_number("young_Pa")?,
+        young_real_pa: table.number("young_real_Pa")?,
+        poisson: table.need_number("poisson")?,
+        restitution: table.need_number("restitution")?,
+        friction: table.need_number("friction")?,
+        rolling_friction: table.number("rolling_friction")?.unwrap_or(0.0),
+        work_function_ev: table.number("work_function_eV")?,
     })
 }
 

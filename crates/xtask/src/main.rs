@@ -1,5 +1,5 @@
 //! Developer commands: `cargo xtask check`, `tidy`, `test`, `deny`, `bench`, `leaving-out`, `openfoam`,
-//! `images`, `fuzz`, `sanitize`, `header`.
+//! `images`, `fuzz`, `sanitize`, `header`, `keys`.
 #![expect(clippy::print_stdout, reason = "a program for developers that reports to the terminal")]
 
 mod bench;
@@ -46,6 +46,8 @@ cargo xtask sanitize
     runs the address sanitizer over the crates with unsafe code and over the field solver
 cargo xtask header
     writes the C library's header
+cargo xtask keys
+    writes docs/scene.md and docs/amberfield.schema.json from the table of keys
 cargo xtask leaving-out
     counts what a plain scene pays for all that it does not use: instructions of a run over those of a
     program of motion and contacts alone, under callgrind; installs valgrind where it is missing";
@@ -81,6 +83,10 @@ fn run() -> Result<()> {
         ["header"] => execute(
             cargo(root, &["test", "-p", "amberfield-capi", "--test", "header"])
                 .env("AMBERFIELD_WRITE_HEADER", "1"),
+        ),
+        ["keys"] => execute(
+            cargo(root, &["test", "-q", "-p", "amberfield-scene", "--test", "it", "keys::pages"])
+                .env("AMBERFIELD_WRITE_KEYS", "1"),
         ),
         ["bench", rest @ ..] => bench::run(root, rest),
         [] | ["help" | "--help" | "-h"] => {

@@ -3,6 +3,7 @@
 mod doctor;
 mod explain;
 mod field;
+mod keys;
 mod run;
 #[cfg(feature = "plots")]
 mod study;
@@ -11,6 +12,7 @@ mod tune;
 pub(crate) use doctor::doctor;
 pub(crate) use explain::explain;
 pub(crate) use field::field;
+pub(crate) use keys::keys;
 pub(crate) use run::run;
 #[cfg(feature = "plots")]
 pub(crate) use study::study;

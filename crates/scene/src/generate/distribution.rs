@@ -4,7 +4,7 @@ use super::spec::GenerateContext;
 use crate::SceneError;
 use crate::limits::{CHARGE, RADIUS, RADIUS_OR_POINT};
 use crate::particles::read_charges;
-use crate::tree::{Node, Range, SceneTable, Value};
+use crate::tree::{Range, SceneTable};
 use rand::RngExt;
 use rand::seq::SliceRandom;
 use rand_chacha::ChaCha8Rng;
@@ -47,16 +47,22 @@ pub(super) enum ChargeDistribution {
 }
 
 /// Only key of a distribution's table.
-fn single<'a>(table: &SceneTable<'_>, node: &'a Node, forms: &str) -> Result<&'a str, SceneError> {
-    match &node.value {
-        Value::Table(entries) if entries.len() == 1 => Ok(&entries[0].0),
-        _ => Err(table.missing("constant", format!("give exactly one of {forms}"))),
+fn single<'a>(table: &SceneTable<'a>) -> Result<&'a str, SceneError> {
+    let given: Vec<&str> = table.keys().collect();
+    match given[..] {
+        [one] => Ok(one),
+        _ => Err(table.missing("constant", format!("give exactly one of {}", table.known().join(", ")))),
     }
+}
+
+/// Number in a range, which may be narrower than the key's, under a key that is required.
+fn need_in(table: &SceneTable<'_>, key: &str, range: Range) -> Result<f64, SceneError> {
+    table.number_in(key, range)?.map_or_else(|| table.need_number(key), Ok)
 }
 
 /// Reads the numbers `min` and `max`, which must be in order.
 fn min_max(table: &SceneTable<'_>, range: Range) -> Result<Limits, SceneError> {
-    let (min, max) = (table.need_number("min", range)?, table.need_number("max", range)?);
+    let (min, max) = (need_in(table, "min", range)?, need_in(table, "max", range)?);
     if max < min {
         Err(table.bad("max", format!("below min = {min}; exchange them")))
     } else {
@@ -71,40 +77,34 @@ pub(super) fn read_radii(
 ) -> Result<RadiusDistribution, SceneError> {
     let key = "radius_m";
     let range = if allow_points { RADIUS_OR_POINT } else { RADIUS };
-    let Some(node) = parent.get(key) else {
-        return Err(parent.missing(key, "give a radius in metres or a distribution"));
+    let Some(table) = parent.table(key)? else {
+        return need_in(parent, key, range).map(RadiusDistribution::Constant);
     };
-    if !matches!(node.value, Value::Table(_)) {
-        return parent.need_number(key, range).map(RadiusDistribution::Constant);
-    }
-    let forms = ["constant", "uniform", "normal", "log_normal", "sizes"];
-    let table = SceneTable::new(node, parent.key(key), &forms)?;
-    match single(&table, node, &forms.join(", "))? {
-        "constant" => table.need_number("constant", range).map(RadiusDistribution::Constant),
+    match single(&table)? {
+        "constant" => need_in(&table, "constant", range).map(RadiusDistribution::Constant),
         "uniform" => {
-            let inner = table.table("uniform", &["min", "max"])?.expect("the key is there");
+            let inner = table.table("uniform")?.expect("the key is there");
             Ok(RadiusDistribution::Uniform(min_max(&inner, range)?))
         }
         "normal" => {
-            let inner = table.table("normal", &["mean", "std", "min", "max"])?.expect("the key is there");
-            let mean = inner.need_number("mean", RADIUS)?;
-            let std = inner.need_number("std", RADIUS_OR_POINT)?;
+            let inner = table.table("normal")?.expect("the key is there");
+            let mean = inner.need_number("mean")?;
+            let std = inner.need_number("std")?;
             // A wide spread must not lead to radii near or below zero.
             let usual_min = (mean - CLIP_DEVIATIONS * std).max(mean / 10.0);
-            let min = inner.number("min", RADIUS)?.unwrap_or(usual_min);
-            let max = inner.number("max", RADIUS)?.unwrap_or(mean + CLIP_DEVIATIONS * std);
+            let min = inner.number("min")?.unwrap_or(usual_min);
+            let max = inner.number("max")?.unwrap_or(mean + CLIP_DEVIATIONS * std);
             let limits = Limits { min, max };
             check_limits(&inner, mean, limits)?;
             Ok(RadiusDistribution::Normal { mean, std, limits })
         }
         "log_normal" => {
-            let inner =
-                table.table("log_normal", &["median", "sigma", "min", "max"])?.expect("the key is there");
-            let median = inner.need_number("median", RADIUS)?;
-            let sigma = inner.need_number("sigma", Range::closed(0.0, 5.0))?;
+            let inner = table.table("log_normal")?.expect("the key is there");
+            let median = inner.need_number("median")?;
+            let sigma = inner.need_number("sigma")?;
             let spread = (CLIP_DEVIATIONS * sigma).exp();
-            let min = inner.number("min", RADIUS)?.unwrap_or(median / spread);
-            let max = inner.number("max", RADIUS)?.unwrap_or(median * spread);
+            let min = inner.number("min")?.unwrap_or(median / spread);
+            let max = inner.number("max")?.unwrap_or(median * spread);
             let limits = Limits { min, max };
             check_limits(&inner, median, limits)?;
             Ok(RadiusDistribution::LogNormal { median, sigma, limits })
@@ -125,12 +125,11 @@ fn check_limits(table: &SceneTable<'_>, middle: f64, limits: Limits) -> Result<(
 
 /// Reads radii that are given one by one, with their shares by number.
 fn read_sizes(table: &SceneTable<'_>, range: Range) -> Result<RadiusDistribution, SceneError> {
-    let inner = table.table("sizes", &["radius_m", "fraction"])?.expect("the key is there");
-    let radii = inner.numbers("radius_m", range)?;
-    let radii = inner.need(radii, "radius_m", "give the radii, as [1e-4, 2e-4]")?;
-    let fractions = inner.numbers("fraction", Range::positive(1e12))?;
-    let fractions =
-        inner.need(fractions, "fraction", "give the share of each radius by number, as [0.7, 0.3]")?;
+    let inner = table.table("sizes")?.expect("the key is there");
+    let (radii, fractions) = (inner.need_numbers("radius_m")?, inner.need_numbers("fraction")?);
+    if radii.iter().any(|radius| !range.contains(*radius)) {
+        return Err(inner.bad("radius_m", format!("out of range; give numbers {range}")));
+    }
     if radii.is_empty() || radii.len() != fractions.len() {
         let problem = format!("{} fractions for {} radii; give one for each", fractions.len(), radii.len());
         return Err(inner.bad("fraction", problem));
@@ -145,32 +144,23 @@ pub(super) fn read_charges_spec(
     context: &mut GenerateContext<'_>,
 ) -> Result<Option<ChargeDistribution>, SceneError> {
     let key = "charge_C";
-    let Some(node) = parent.get(key) else { return Ok(None) };
-    if !matches!(node.value, Value::Table(_)) {
-        return parent.need_number(key, CHARGE).map(|charge| Some(ChargeDistribution::Constant(charge)));
-    }
-    let forms = ["constant", "uniform", "normal", "bipolar", "from_file"];
-    let table = SceneTable::new(node, parent.key(key), &forms)?;
-    let charges = match single(&table, node, &forms.join(", "))? {
-        "constant" => ChargeDistribution::Constant(table.need_number("constant", CHARGE)?),
+    let Some(table) = parent.table(key)? else {
+        return Ok(parent.number(key)?.map(ChargeDistribution::Constant));
+    };
+    let charges = match single(&table)? {
+        "constant" => ChargeDistribution::Constant(table.need_number("constant")?),
         "uniform" => {
-            let inner = table.table("uniform", &["min", "max"])?.expect("the key is there");
+            let inner = table.table("uniform")?.expect("the key is there");
             ChargeDistribution::Uniform(min_max(&inner, CHARGE)?)
         }
         "normal" => {
-            let inner = table.table("normal", &["mean", "std"])?.expect("the key is there");
-            ChargeDistribution::Normal {
-                mean: inner.need_number("mean", CHARGE)?,
-                std: inner.need_number("std", Range::closed(0.0, 1e6))?,
-            }
+            let inner = table.table("normal")?.expect("the key is there");
+            ChargeDistribution::Normal { mean: inner.need_number("mean")?, std: inner.need_number("std")? }
         }
-        "bipolar" => match table.get("bipolar").map(|node| &node.value) {
-            Some(Value::Table(_)) => {
-                let inner = table.table("bipolar", &["magnitude"])?.expect("the key is there");
-                ChargeDistribution::Bipolar(inner.need_number("magnitude", CHARGE)?)
-            }
-            _ => ChargeDistribution::Bipolar(table.need_number("bipolar", CHARGE)?),
-        },
+        "bipolar" => ChargeDistribution::Bipolar(match table.table("bipolar")? {
+            Some(inner) => inner.need_number("magnitude")?,
+            None => table.need_number("bipolar")?,
+        }),
         _ => {
             let file = table.text("from_file")?;
             let file = table.need(file, "from_file", "name a CSV with the column charge_C")?;

@@ -3,8 +3,7 @@
 use super::spec::GenerateContext;
 use super::surfaces::Surfaces;
 use crate::SceneError;
-use crate::limits::{COORDINATE, LENGTH};
-use crate::tree::{Range, SceneTable, Value};
+use crate::tree::{SceneTable, Value};
 use amberfield_core::{Axis, Domain, Wall, WallShape};
 use nalgebra::Vector3;
 use rand::{RngExt, SeedableRng};
@@ -61,26 +60,20 @@ pub(super) fn read_region(
     let whole = || RegionShape::Box { min: domain.min(), max: domain.max() };
     let forms = "\"box\" (the domain), { box = { min_m, max_m } } or \
                  { cylinder = { base_m, axis, radius_m, length_m } }";
-    let shape = match parent.get("region").map(|node| (&node.value, node)) {
+    let table = parent.table("region")?;
+    let shape = match table {
         None => whole(),
-        Some((Value::Text(word), _)) if word == "box" => whole(),
-        Some((Value::Table(_), node)) => {
-            let table = SceneTable::new(node, parent.key("region"), &["box", "cylinder"])?;
-            let block = table.table("box", &["min_m", "max_m"])?;
-            let cylinder = table.table("cylinder", &["base_m", "axis", "radius_m", "length_m", "top_m"])?;
-            match (block, cylinder) {
-                (Some(block), None) => read_box(&block)?,
-                (None, Some(cylinder)) => read_cylinder(&cylinder)?,
-                _ => return Err(parent.bad("region", format!("give {forms}"))),
-            }
-        }
-        Some(_) => return Err(parent.bad("region", format!("give {forms}"))),
+        Some(table) => match (table.table("box")?, table.table("cylinder")?) {
+            (Some(block), None) => read_box(&block)?,
+            (None, Some(cylinder)) => read_cylinder(&cylinder)?,
+            _ => return Err(parent.bad("region", format!("give {forms}"))),
+        },
     };
     Region::new(shape, domain, context.walls).map_err(|problem| parent.bad("region", problem))
 }
 
 fn read_box(table: &SceneTable<'_>) -> Result<RegionShape, SceneError> {
-    let (min, max) = (table.need_vector("min_m", COORDINATE)?, table.need_vector("max_m", COORDINATE)?);
+    let (min, max) = (table.need_vector("min_m")?, table.need_vector("max_m")?);
     if (0..3).all(|axis| max[axis] > min[axis]) {
         Ok(RegionShape::Box { min, max })
     } else {
@@ -89,9 +82,9 @@ fn read_box(table: &SceneTable<'_>) -> Result<RegionShape, SceneError> {
 }
 
 fn read_cylinder(table: &SceneTable<'_>) -> Result<RegionShape, SceneError> {
-    let base = table.need_vector("base_m", COORDINATE)?;
-    let radius = table.need_number("radius_m", LENGTH)?;
-    let along = match table.vector("top_m", COORDINATE)? {
+    let base = table.need_vector("base_m")?;
+    let radius = table.need_number("radius_m")?;
+    let along = match table.vector("top_m")? {
         Some(_) if table.has("axis") || table.has("length_m") => {
             return Err(
                 table.bad("top_m", "axis or length_m is given too; give either top_m or axis and length_m")
@@ -104,9 +97,9 @@ fn read_cylinder(table: &SceneTable<'_>) -> Result<RegionShape, SceneError> {
                     let words = [("x", Vector3::x()), ("y", Vector3::y()), ("z", Vector3::z())];
                     table.word("axis", &words)?.unwrap_or_else(Vector3::z)
                 }
-                Some(_) => table.need_vector("axis", Range::closed(-1e100, 1e100))?,
+                Some(_) => table.need_vector("axis")?,
             };
-            let length = table.need_number("length_m", LENGTH)?;
+            let length = table.need_number("length_m")?;
             if axis.norm() < 1e-100 {
                 return Err(table.bad("axis", "the axis has no direction; give \"z\" or a vector"));
             }

@@ -4,19 +4,15 @@ use super::distribution::{read_charges_spec, read_radii};
 use super::fill::fill;
 use super::region::read_region;
 use crate::SceneError;
-use crate::limits::{GRAINS, SPEED};
 use crate::materials::Materials;
 use crate::particles::ReadParticles;
 use crate::source::SceneSource;
-use crate::tree::{Node, SceneTable};
+use crate::tree::SceneTable;
 use amberfield_core::{Domain, Grain, GroupId, Particles, Wall};
 use nalgebra::Vector3;
 use rand::SeedableRng;
 use rand_chacha::ChaCha8Rng;
 
-/// Keys of the section.
-const KEYS: [&str; 8] =
-    ["material", "count", "radius_m", "region", "seed", "charge_C", "velocity_m_s", "group"];
 /// Stream of random numbers for places. Each quantity has its own stream of the one seed, so that another
 /// charge distribution leaves the places as they are.
 const PLACES: u64 = 0;
@@ -42,20 +38,18 @@ pub(crate) struct GenerateContext<'a> {
 /// # Errors
 /// Bad keys, and fills that cannot be reached.
 pub(crate) fn generate(
-    node: &Node,
-    path: &str,
+    table: &SceneTable<'_>,
     context: &mut GenerateContext<'_>,
 ) -> Result<ReadParticles, SceneError> {
-    let table = SceneTable::new(node, path, &KEYS)?;
-    let material = context.materials.named_by(&table, "material")?;
-    let count = table.integer("count", 1, GRAINS)?;
+    let material = context.materials.named_by(table, "material")?;
+    let count = table.integer("count")?;
     let count = table.need(count, "count", "give the number of grains")?;
     let count = usize::try_from(count).expect("the range is positive");
-    let seed = table.integer("seed", 0, i64::MAX)?.unwrap_or(0).unsigned_abs();
-    let radii = read_radii(&table, context.materials.ignored)?;
-    let charges = read_charges_spec(&table, count, context)?;
-    let region = read_region(&table, context)?;
-    let velocity = table.vector("velocity_m_s", SPEED)?.unwrap_or_else(Vector3::zeros);
+    let seed = table.integer("seed")?.unwrap_or(0).unsigned_abs();
+    let radii = read_radii(table, context.materials.ignored)?;
+    let charges = read_charges_spec(table, count, context)?;
+    let region = read_region(table, context)?;
+    let velocity = table.vector("velocity_m_s")?.unwrap_or_else(Vector3::zeros);
     let group = table.text("group")?;
 
     let stream = |stream: u64| {

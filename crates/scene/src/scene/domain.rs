@@ -1,24 +1,19 @@
 //! Section `[domain]`.
 
 use crate::SceneError;
-use crate::limits::{COORDINATE, ELECTRIC};
 use crate::tree::{SceneTable, Value};
 use amberfield_core::{Axis, Boundary, Domain, DomainError, Side};
 
-/// Keys of `[domain]`.
-const KEYS: [&str; 3] = ["min_m", "max_m", "boundary"];
-/// Keys of `[domain.boundary]`.
-const FACES: [&str; 9] = ["x", "x_min", "x_max", "y", "y_min", "y_max", "z", "z_min", "z_max"];
 /// Forms that the value of a face may have, for messages.
 const FACE_FORMS: &str = "one of \"grounded\", \"insulating\", \"periodic\", \"open\", \
                           { potential_V = 1000.0 }, { normal_field_V_m = 0.0 }";
 
 /// Reads `[domain]`.
 pub(super) fn read_domain(document: &SceneTable<'_>) -> Result<Option<Domain>, SceneError> {
-    let Some(table) = document.table("domain", &KEYS)? else { return Ok(None) };
-    let min = table.need_vector("min_m", COORDINATE)?;
-    let max = table.need_vector("max_m", COORDINATE)?;
-    let boundary = table.table("boundary", &FACES)?;
+    let Some(table) = document.table("domain")? else { return Ok(None) };
+    let min = table.need_vector("min_m")?;
+    let max = table.need_vector("max_m")?;
+    let boundary = table.table("boundary")?;
     let boundary =
         table.need(boundary, "boundary", "add [domain.boundary] with x, y and z (or x_min, x_max, …)")?;
     let mut faces = [[Boundary::Open; 2]; 3];
@@ -77,7 +72,15 @@ fn read_face(boundary: &SceneTable<'_>, key: &str) -> Result<Boundary, SceneErro
         return Err(boundary.missing(key, format!("give {FACE_FORMS}")));
     };
     match &node.value {
-        Value::Text(_) => {
+        Value::Table(_) => {
+            let table = boundary.table(key)?.expect("it is a table");
+            match (table.number("potential_V")?, table.number("normal_field_V_m")?) {
+                (Some(volts), None) => Ok(Boundary::Potential(volts)),
+                (None, Some(normal_field_v_m)) => Ok(Boundary::Insulating { normal_field_v_m }),
+                _ => Err(boundary.bad(key, format!("give exactly one key; {FACE_FORMS}"))),
+            }
+        }
+        _ => {
             let words = [
                 ("grounded", Boundary::Grounded),
                 ("insulating", Boundary::Insulating { normal_field_v_m: 0.0 }),
@@ -87,16 +90,5 @@ fn read_face(boundary: &SceneTable<'_>, key: &str) -> Result<Boundary, SceneErro
             let face = boundary.word(key, &words)?;
             boundary.need(face, key, FACE_FORMS)
         }
-        Value::Table(_) => {
-            let table = SceneTable::new(node, boundary.key(key), &["potential_V", "normal_field_V_m"])?;
-            let potential = table.number("potential_V", ELECTRIC)?;
-            let normal = table.number("normal_field_V_m", ELECTRIC)?;
-            match (potential, normal) {
-                (Some(volts), None) => Ok(Boundary::Potential(volts)),
-                (None, Some(normal_field_v_m)) => Ok(Boundary::Insulating { normal_field_v_m }),
-                _ => Err(boundary.bad(key, format!("give exactly one key; {FACE_FORMS}"))),
-            }
-        }
-        _ => Err(boundary.bad(key, format!("expected {FACE_FORMS}"))),
     }
 }

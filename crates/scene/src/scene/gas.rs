@@ -1,7 +1,6 @@
 //! Section `[gas]`.
 
 use crate::SceneError;
-use crate::limits::TIME;
 use crate::tree::{Range, SceneTable};
 use amberfield_core::{DragLaw, Gas, GasFlow, GasModel};
 
@@ -15,9 +14,7 @@ const FLOW_KEYS: [&str; 6] =
 
 /// Reads `[gas]`; the defaults are those of air at 20 °C at rest.
 pub(super) fn read_gas(document: &SceneTable<'_>) -> Result<Option<Gas>, SceneError> {
-    let alone = ["drag", "density_kg_m3", "viscosity_Pa_s", "velocity_m_s", "magnus_lift", "flow"];
-    let keys = [&alone[..], &FLOW_KEYS[..]].concat();
-    let Some(table) = document.table("gas", &keys)? else { return Ok(None) };
+    let Some(table) = document.table("gas")? else { return Ok(None) };
     let laws = DragLaw::ALL.map(|law| (law.name(), law));
     let flows = table.word("flow", &[("uniform", false), ("solver", true)])?.unwrap_or(false);
     let flow = if flows { Some(read_flow(document, &table)?) } else { None };
@@ -25,12 +22,12 @@ pub(super) fn read_gas(document: &SceneTable<'_>) -> Result<Option<Gas>, SceneEr
         return Err(table.bad(key, "needs a flow that is computed; set flow = \"solver\", or leave it out"));
     }
     // A flow solver divides by the density; a uniform gas without density has no inertial drag.
-    let least = if flows { Range::positive(1e6) } else { Range::closed(0.0, 1e6) };
+    let densities = if flows { Range::positive(1e6) } else { Range::closed(0.0, 1e6) };
     Ok(Some(Gas {
         drag: table.word("drag", &laws)?.unwrap_or_default(),
-        density_kg_m3: table.number("density_kg_m3", least)?.unwrap_or(AIR_DENSITY),
-        viscosity_pa_s: table.number("viscosity_Pa_s", Range::positive(1e6))?.unwrap_or(AIR_VISCOSITY),
-        velocity_m_s: table.vector("velocity_m_s", Range::closed(-1e6, 1e6))?.unwrap_or_default(),
+        density_kg_m3: table.number_in("density_kg_m3", densities)?.unwrap_or(AIR_DENSITY),
+        viscosity_pa_s: table.number("viscosity_Pa_s")?.unwrap_or(AIR_VISCOSITY),
+        velocity_m_s: table.vector("velocity_m_s")?.unwrap_or_default(),
         magnus_lift: table.boolean("magnus_lift")?.unwrap_or(false),
         flow,
     }))
@@ -47,8 +44,8 @@ fn read_flow(document: &SceneTable<'_>, table: &SceneTable<'_>) -> Result<GasFlo
     }
     let flow = GasFlow {
         model: table.word("model", &[("A", GasModel::A), ("B", GasModel::B)])?.unwrap_or_default(),
-        interval_s: table.need_number("interval_s", TIME)?,
-        smoothing_length_m: table.number("smoothing_length_m", Range::positive(1e3))?,
+        interval_s: table.need_number("interval_s")?,
+        smoothing_length_m: table.number("smoothing_length_m")?,
         viscous_force: table.boolean("viscous_force")?.unwrap_or(false),
         saffman_lift: table.boolean("saffman_lift")?.unwrap_or(false),
         overlap: table.boolean("overlap")?.unwrap_or(false),

@@ -2,14 +2,13 @@
 
 use super::description::{ChargeTransferSettings, OpenFoamSettings, OutputSettings, SolverLoss};
 use crate::SceneError;
-use crate::limits::TIME;
 use crate::source::SceneSource;
-use crate::tree::{Range, SceneTable, Value};
+use crate::tree::SceneTable;
 use amberfield_core::RollingModel;
 
 /// Reads `[contacts]`.
 pub(super) fn read_contacts(document: &SceneTable<'_>) -> Result<RollingModel, SceneError> {
-    let Some(table) = document.table("contacts", &["rolling_model"])? else { return Ok(Default::default()) };
+    let Some(table) = document.table("contacts")? else { return Ok(Default::default()) };
     let models = RollingModel::ALL.map(|model| (model.name(), model));
     Ok(table.word("rolling_model", &models)?.unwrap_or_default())
 }
@@ -18,13 +17,12 @@ pub(super) fn read_contacts(document: &SceneTable<'_>) -> Result<RollingModel, S
 pub(super) fn read_charge_transfer(
     document: &SceneTable<'_>,
 ) -> Result<Option<ChargeTransferSettings>, SceneError> {
-    let keys = ["beyond_previous_maximum", "breakdown_field_V_m", "stiffness_correction", "velocity_ratio"];
-    let Some(table) = document.table("charge_transfer", &keys)? else { return Ok(None) };
+    let Some(table) = document.table("charge_transfer")? else { return Ok(None) };
     Ok(Some(ChargeTransferSettings {
         beyond_previous_maximum: table.boolean("beyond_previous_maximum")?.unwrap_or(false),
-        breakdown_field_v_m: table.number("breakdown_field_V_m", Range::positive(1e15))?,
+        breakdown_field_v_m: table.number("breakdown_field_V_m")?,
         stiffness_correction: table.boolean("stiffness_correction")?.unwrap_or(false),
-        velocity_ratio: table.number("velocity_ratio", Range::positive(1e6))?.unwrap_or(1.0),
+        velocity_ratio: table.number("velocity_ratio")?.unwrap_or(1.0),
     }))
 }
 
@@ -33,8 +31,7 @@ pub(super) fn read_solver(
     document: &SceneTable<'_>,
     source: &SceneSource,
 ) -> Result<Option<OpenFoamSettings>, SceneError> {
-    let keys = ["openfoam_case", "application", "start", "ranks", "timeout_s", "wait_s", "on_solver_loss"];
-    let Some(table) = document.table("solver", &keys)? else { return Ok(None) };
+    let Some(table) = document.table("solver")? else { return Ok(None) };
     let case = table.text("openfoam_case")?;
     let case = table.need(case, "openfoam_case", "name the folder with 0/, constant/ and system/")?;
     let folder = source.path(case);
@@ -43,42 +40,29 @@ pub(super) fn read_solver(
             table.bad("openfoam_case", "no such folder; name the folder with 0/, constant/ and system/")
         );
     }
-    let ranks = table.integer("ranks", 1, 65_536)?.unwrap_or(1);
+    let ranks = table.integer("ranks")?.unwrap_or(1);
     let losses = [("stop", SolverLoss::Stop), ("fallback", SolverLoss::Fallback), ("wait", SolverLoss::Wait)];
     Ok(Some(OpenFoamSettings {
         openfoam_case: folder,
         application: table.text("application")?.map(str::to_owned),
         start: table.boolean("start")?.unwrap_or(true),
         ranks: u32::try_from(ranks).expect("the range ends at 65536"),
-        timeout_s: table.number("timeout_s", TIME)?.unwrap_or(30.0),
-        wait_s: table.number("wait_s", TIME)?,
+        timeout_s: table.number("timeout_s")?.unwrap_or(30.0),
+        wait_s: table.number("wait_s")?,
         on_solver_loss: table.word("on_solver_loss", &losses)?.unwrap_or_default(),
     }))
 }
 
 /// Reads `[output]`.
 pub(super) fn read_output(document: &SceneTable<'_>) -> Result<OutputSettings, SceneError> {
-    let keys = ["every_s", "history_every_s", "formats", "checkpoint_every_s"];
     let mut output = OutputSettings::default();
-    let Some(table) = document.table("output", &keys)? else { return Ok(output) };
-    output.every_s = table.number("every_s", TIME)?;
-    output.history_every_s = table.number("history_every_s", TIME)?;
-    output.checkpoint_every_s = table.number("checkpoint_every_s", TIME)?;
-    if let Some(formats) = table.items("formats")? {
-        (output.vtk, output.csv, output.png) = (false, false, false);
-        for format in formats {
-            match &format.value {
-                Value::Text(word) if word == "vtk" => output.vtk = true,
-                Value::Text(word) if word == "csv" => output.csv = true,
-                Value::Text(word) if word == "png" => output.png = true,
-                _ => {
-                    return Err(table.bad(
-                        "formats",
-                        format!("{} is not one of \"vtk\", \"csv\", \"png\"", format.shown()),
-                    ));
-                }
-            }
-        }
+    let Some(table) = document.table("output")? else { return Ok(output) };
+    output.every_s = table.number("every_s")?;
+    output.history_every_s = table.number("history_every_s")?;
+    output.checkpoint_every_s = table.number("checkpoint_every_s")?;
+    if let Some(formats) = table.words("formats")? {
+        (output.vtk, output.csv, output.png) =
+            (formats.contains(&"vtk"), formats.contains(&"csv"), formats.contains(&"png"));
     }
     Ok(output)
 }

@@ -8,9 +8,6 @@ use crate::source::SceneSource;
 use crate::tree::SceneTable;
 use amberfield_core::{Domain, OnExit, Wall};
 
-/// Keys of `[particles]`.
-const KEYS: [&str; 4] = ["file", "generate", "allow_overlap", "on_exit"];
-
 /// Content of `[particles]`.
 #[derive(Debug)]
 pub(super) struct ParticlesSection {
@@ -30,7 +27,7 @@ pub(super) fn read_section(
     allow_points: bool,
     source: &mut SceneSource,
 ) -> Result<ParticlesSection, SceneError> {
-    let table = document.table("particles", &KEYS)?;
+    let table = document.table("particles")?;
     let table = document.need(
         table,
         "particles",
@@ -39,7 +36,7 @@ pub(super) fn read_section(
     let on_exit =
         table.word("on_exit", &[("stop", OnExit::Stop), ("delete", OnExit::Delete)])?.unwrap_or_default();
     let allow_overlap = table.boolean("allow_overlap")?.unwrap_or(false);
-    let read = match (table.text("file")?, table.get("generate")) {
+    let read = match (table.text("file")?, table.table("generate")?) {
         (Some(_), Some(_)) => {
             return Err(table.bad("generate", "file is given too; give exactly one of file, generate"));
         }
@@ -51,12 +48,12 @@ pub(super) fn read_section(
             // What is no text is no table either: that says more than the first cell that is odd.
             read.map_err(|error| source.not_text(file).unwrap_or(error))?
         }
-        (None, Some(node)) => {
+        (None, Some(generator)) => {
             let Some(domain) = domain else {
                 return Err(table.bad("generate", "a generator needs [domain]; add it"));
             };
             let mut context = GenerateContext { domain, materials, walls, source };
-            generate(node, &table.key("generate"), &mut context)?
+            generate(&generator, &mut context)?
         }
     };
     Ok(ParticlesSection { read, on_exit, allow_overlap })

@@ -12,26 +12,12 @@ use super::together::{check_sections, check_together};
 use super::walls::read_walls;
 use crate::SceneError;
 use crate::error::Problems;
+use crate::keys::SCENE;
 use crate::materials::{Materials, read_materials};
 use crate::source::{SceneSource, read_text};
 use crate::tree::{Entries, Node, Place, SceneTable, Value, apply_overrides, parse_document};
 use std::path::Path;
 use std::sync::Arc;
-
-/// Sections of a scene.
-const SECTIONS: [&str; 11] = [
-    "domain",
-    "walls",
-    "materials",
-    "contacts",
-    "particles",
-    "time",
-    "electric_field",
-    "charge_transfer",
-    "solver",
-    "gas",
-    "output",
-];
 
 /// Reads a scene file, applies `KEY=VALUE` overrides and reads the files that it names.
 ///
@@ -85,7 +71,7 @@ fn parse(
     let file: Arc<str> = file.into();
     let mut entries = parse_document(&file, text.strip_prefix('\u{feff}').unwrap_or(text))?;
     apply_overrides(&mut entries, overrides)?;
-    let document = SceneTable::document(&entries, Place::Line { file, line: 0 }, &SECTIONS)?;
+    let document = SceneTable::document(&entries, Place::Line { file, line: 0 }, SCENE)?;
     let mut source = SceneSource::new(folder, mesh);
     let mut scene = read_sections(&document, &mut source, purpose)?;
     scene.physics = Physics::new(&entries, &source);

@@ -1,13 +1,10 @@
 //! Section `[time]`.
 
 use crate::SceneError;
-use crate::limits::{LENGTH, TIME};
-use crate::tree::{Range, SceneTable};
+use crate::tree::SceneTable;
 use amberfield_core::{OnExit, Skin, Step, TimeSettings};
 use nalgebra::Vector3;
 
-/// Keys of `[time]`.
-const KEYS: [&str; 5] = ["step_s", "end_s", "gravity_m_s2", "skin_m", "allow_unstable"];
 /// Largest number of steps of a run, which a double holds exactly.
 const MOST_STEPS: f64 = 9e15;
 /// Gravity [m/s²] of a scene that gives none.
@@ -19,13 +16,13 @@ pub(super) fn read_time(
     on_exit: OnExit,
     allow_overlap: bool,
 ) -> Result<Option<TimeSettings>, SceneError> {
-    let Some(table) = document.table("time", &KEYS)? else { return Ok(None) };
-    let step = match table.number_or_auto("step_s", TIME)? {
+    let Some(table) = document.table("time")? else { return Ok(None) };
+    let step = match table.number_or_auto("step_s")? {
         Some(Some(seconds)) => Step::Seconds(seconds),
         Some(None) => Step::Auto,
         None => return Err(table.missing("step_s", "give the step in seconds, or \"auto\"")),
     };
-    let end_s = table.need_number("end_s", TIME)?;
+    let end_s = table.need_number("end_s")?;
     if let Step::Seconds(seconds) = step {
         if seconds > end_s {
             return Err(table.bad("step_s", format!("longer than the run of {end_s} s; give a smaller step")));
@@ -38,8 +35,8 @@ pub(super) fn read_time(
     Ok(Some(TimeSettings {
         step,
         end_s,
-        gravity_m_s2: table.vector("gravity_m_s2", Range::closed(-1e9, 1e9))?.unwrap_or(NO_GRAVITY),
-        skin: table.number_or_auto("skin_m", LENGTH)?.flatten().map_or(Skin::Auto, Skin::Metres),
+        gravity_m_s2: table.vector("gravity_m_s2")?.unwrap_or(NO_GRAVITY),
+        skin: table.number_or_auto("skin_m")?.flatten().map_or(Skin::Auto, Skin::Metres),
         allow_unstable: table.boolean("allow_unstable")?.unwrap_or(false),
         on_exit,
         allow_overlap,

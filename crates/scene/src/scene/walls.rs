@@ -2,17 +2,14 @@
 
 use crate::SceneError;
 use crate::error::Problems;
-use crate::limits::COORDINATE;
 use crate::materials::Materials;
 use crate::poly_mesh::{PatchError, PolyMesh};
 use crate::scene::OpenFoamSettings;
 use crate::source::SceneSource;
 use crate::stl::{Surface, read_stl};
-use crate::tree::{Range, SceneTable};
+use crate::tree::SceneTable;
 use amberfield_core::{Fingerprint, TriangleMesh, Wall, WallCharging, WallShape};
 
-/// Keys of a wall.
-const KEYS: [&str; 6] = ["stl", "scale", "plane", "material", "charging", "patch"];
 /// Length below which a normal has no direction.
 const SHORTEST_NORMAL: f64 = 1e-100;
 
@@ -45,9 +42,9 @@ pub(super) fn read_walls(
     let mut read = ReadWalls { walls: Vec::new(), patches: Vec::new(), warnings: Vec::new() };
     let mut mesh = solver.map(|solver| PolyMesh::of(&solver.openfoam_case, source.mesh()));
     let mut problems = Problems::default();
-    for (index, node) in document.items("walls")?.unwrap_or_default().iter().enumerate() {
-        let wall = SceneTable::new(node, format!("walls[{index}]"), &KEYS)
-            .and_then(|table| read_wall(&table, materials, mesh.as_mut(), source, &mut read.warnings));
+    for table in document.tables("walls")?.into_iter().flatten() {
+        let wall =
+            table.and_then(|table| read_wall(&table, materials, mesh.as_mut(), source, &mut read.warnings));
         // Whoever can make the mesh does so and reads the scene again.
         if let Err(error @ SceneError::NoMesh { .. }) = wall {
             return Err(error);
@@ -82,7 +79,7 @@ fn read_wall(
     }
     let (name, shape) = match (table.text("stl")?, table.has("plane")) {
         (Some(stl), false) => {
-            let scale = table.number("scale", Range::positive(1e6))?.unwrap_or(1.0);
+            let scale = table.number("scale")?.unwrap_or(1.0);
             let bytes = source.read_file(table, "stl", stl)?;
             let Surface { mesh, dropped } = read_stl(stl, &bytes, scale)?;
             if dropped > 0 {
@@ -150,10 +147,10 @@ fn refusal(table: &SceneTable<'_>, error: PatchError) -> SceneError {
 }
 
 fn read_plane(table: &SceneTable<'_>) -> Result<WallShape, SceneError> {
-    let plane = table.table("plane", &["point_m", "normal"])?;
+    let plane = table.table("plane")?;
     let plane = table.need(plane, "plane", "give { point_m, normal }")?;
-    let point = plane.need_vector("point_m", COORDINATE)?;
-    let normal = plane.need_vector("normal", Range::closed(-1e100, 1e100))?;
+    let point = plane.need_vector("point_m")?;
+    let normal = plane.need_vector("normal")?;
     if normal.norm() < SHORTEST_NORMAL {
         return Err(plane.bad("normal", "the normal has no direction; give it a length, as [0, 0, 1]"));
     }

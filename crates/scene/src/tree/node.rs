@@ -85,6 +85,16 @@ impl Node {
         }
     }
 
+    /// Number, of a float or an integer.
+    pub(crate) fn number(&self) -> Option<f64> {
+        match self.value {
+            Value::Float(number) => Some(number),
+            #[expect(clippy::cast_precision_loss, reason = "scenes hold no integers beyond 2^53")]
+            Value::Integer(number) => Some(number as f64),
+            _ => None,
+        }
+    }
+
     /// Name of the kind of value, for messages.
     pub(crate) fn kind(&self) -> &'static str {
         match self.value {

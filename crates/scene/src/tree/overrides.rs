@@ -8,8 +8,8 @@ use std::sync::Arc;
 
 /// Writes overrides into a document.
 ///
-/// A key is a dotted path, in which array items are counted from 0 (`walls.0.charging`). A value is TOML;
-/// what is not valid TOML is taken as a text.
+/// A key is a dotted path, in which array items are counted from 0 (`walls.0.charging`, `walls[0].charging`).
+/// A value is TOML; what is not valid TOML is taken as a text.
 ///
 /// # Errors
 /// Overrides without `=`, paths through values that have no keys, and array items that do not exist.
@@ -22,7 +22,8 @@ pub(crate) fn apply_overrides(document: &mut Entries, overrides: &[String]) -> R
                 problem: "write KEY=VALUE, as in electric_field.tolerance=1e-3".to_owned(),
             });
         };
-        let parts: Vec<&str> = key.trim().split('.').map(|part| part.trim().trim_matches('"')).collect();
+        let dotted = key.trim().replace('[', ".").replace(']', "");
+        let parts: Vec<&str> = dotted.split('.').map(|part| part.trim().trim_matches('"')).collect();
         if parts.iter().any(|part| part.is_empty()) {
             return Err(SceneError::Override {
                 place: place.to_string(),

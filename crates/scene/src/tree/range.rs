@@ -4,7 +4,7 @@ use std::fmt;
 
 /// Interval of numbers.
 #[derive(Clone, Copy, Debug)]
-pub(crate) struct Range {
+pub struct Range {
     low: f64,
     low_included: bool,
     high: f64,
@@ -19,6 +19,11 @@ impl Range {
     /// Interval above 0, up to and including `high`.
     pub(crate) const fn positive(high: f64) -> Self {
         Self { low: 0.0, low_included: false, high }
+    }
+
+    /// Lower end, whether it is included, and upper end, which is.
+    pub(crate) fn ends(&self) -> (f64, bool, f64) {
+        (self.low, self.low_included, self.high)
     }
 
     /// Tells whether a number lies in the range; NaN never does.

@@ -3,15 +3,18 @@
 use super::node::{Entries, Node, Place, Value};
 use super::range::Range;
 use crate::SceneError;
-use crate::error::shorten;
+use crate::error::{Problems, shorten};
+use crate::keys::{Form, Key, Without, unknown_key};
 use nalgebra::Vector3;
 
 /// Table of the tree, with typed access to its values.
 ///
-/// Reading functions return `None` when the key is absent.
+/// Values are checked by the table of keys. Reading functions return `None` when the key is absent.
 #[derive(Clone, Debug)]
 pub(crate) struct SceneTable<'a> {
     entries: &'a Entries,
+    /// Keys that the table may have.
+    keys: &'static [Key],
     /// Path of keys from the document to the table; empty for the document.
     path: String,
     place: Place,
@@ -33,43 +36,73 @@ pub(crate) fn nearest<'k>(name: &str, known: &[&'k str]) -> Option<&'k str> {
 
 impl<'a> SceneTable<'a> {
     /// Table of a whole document, whose keys must be known.
-    pub(crate) fn document(entries: &'a Entries, place: Place, known: &[&str]) -> Result<Self, SceneError> {
-        let table = Self { entries, path: String::new(), place };
-        table.refuse_unknown(known)?;
+    pub(crate) fn document(
+        entries: &'a Entries,
+        place: Place,
+        keys: &'static [Key],
+    ) -> Result<Self, SceneError> {
+        let table = Self { entries, keys, path: String::new(), place };
+        table.refuse_unknown()?;
         Ok(table)
     }
 
-    /// Table of a node, which must be a table with known keys only.
-    pub(crate) fn new(node: &'a Node, path: impl Into<String>, known: &[&str]) -> Result<Self, SceneError> {
-        let path = path.into();
+    /// Table of a node that a key holds, or one of several; it must be a table with known keys only.
+    pub(crate) fn new(node: &'a Node, path: impl Into<String>, key: &Key) -> Result<Self, SceneError> {
+        let (path, keys) = (path.into(), key.form.keys());
         let Value::Table(entries) = &node.value else {
             return Err(SceneError::Value {
                 place: node.place.to_string(),
                 key: path,
                 value: node.shown(),
-                problem: format!("expected a table with keys {}, got {}", known.join(", "), node.kind()),
+                problem: format!("expected {}, got {}", Form::Table(keys).expected(""), node.kind()),
             });
         };
-        let table = Self { entries, path, place: node.place.clone() };
-        table.refuse_unknown(known)?;
+        let table = Self { entries, keys, path, place: node.place.clone() };
+        table.refuse_unknown()?;
         Ok(table)
     }
 
-    fn refuse_unknown(&self, known: &[&str]) -> Result<(), SceneError> {
-        let mut problems = crate::error::Problems::default();
-        for (key, node) in self.entries {
-            if !known.contains(&key.as_str()) {
-                let advice = nearest(key, known).map_or_else(String::new, |near| {
-                    format!("; the nearest known key is {}", self.key(near))
-                });
+    fn refuse_unknown(&self) -> Result<(), SceneError> {
+        let mut problems = Problems::default();
+        for (name, node) in self.entries {
+            if !self.keys.iter().any(|key| key.name == name) {
                 problems.keep::<()>(Err(SceneError::UnknownKey {
                     place: node.place.to_string(),
-                    key: self.key(&shorten(key)),
-                    advice,
+                    key: self.key(&shorten(name)),
+                    advice: unknown_key(name, &self.path, self.keys, node),
                 }));
             }
         }
         problems.finish()
+    }
+
+    /// Entry of a name in the table of keys.
+    ///
+    /// # Panics
+    /// If a reader asks for a key that is not in the table, which a run of its section shows.
+    pub(crate) fn entry(&self, name: &str) -> &'static Key {
+        let entry = self.keys.iter().find(|key| key.name == name);
+        entry.unwrap_or_else(|| panic!("{} is not in the table of keys", self.key(name)))
+    }
+
+    /// Checks that a key's value is one that the key takes, and that it is there if it must be.
+    pub(crate) fn check(&self, name: &str) -> Result<(), SceneError> {
+        let found = self.checked(name)?;
+        if self.entry(name).without == Without::Required {
+            self.required(found, name).map(drop)
+        } else {
+            Ok(())
+        }
+    }
+
+    /// Node of a key whose value is one that the key takes.
+    fn checked(&self, name: &str) -> Result<Option<&'a Node>, SceneError> {
+        let entry = self.entry(name);
+        let Some(node) = self.get(name) else { return Ok(None) };
+        match entry.form.refuse(entry, node) {
+            None => Ok(Some(node)),
+            Some(problem) => Err(self.bad(name, problem)),
+        }
     }
 
     /// Place of the table.
@@ -90,6 +123,11 @@ impl<'a> SceneTable<'a> {
     /// Tells whether a key is present.
     pub(crate) fn has(&self, key: &str) -> bool {
         self.get(key).is_some()
+    }
+
+    /// Names of the keys that the table may have.
+    pub(crate) fn known(&self) -> Vec<&'static str> {
+        self.keys.iter().map(|key| key.name).collect()
     }
 
     /// Keys that are present.
@@ -147,135 +185,144 @@ impl<'a> SceneTable<'a> {
         value.ok_or_else(|| self.missing(key, advice))
     }
 
-    /// Number in a range.
-    pub(crate) fn number(&self, key: &str, range: Range) -> Result<Option<f64>, SceneError> {
-        let Some(node) = self.get(key) else { return Ok(None) };
-        let number = as_number(node).ok_or_else(|| {
-            self.bad(key, format!("expected a number, got {}; write one {range}", node.kind()))
-        })?;
-        if range.contains(number) {
-            Ok(Some(number))
-        } else if number.is_finite() {
-            Err(self.bad(key, format!("out of range; give a number {range}")))
-        } else {
-            Err(self.bad(key, format!("not finite; give a number {range}")))
-        }
+    /// Unwraps a value of a key that is required.
+    fn required<T>(&self, value: Option<T>, name: &str) -> Result<T, SceneError> {
+        let entry = self.entry(name);
+        let example = if entry.example.is_empty() { String::new() } else { format!(", as {}", entry.line()) };
+        value.ok_or_else(|| self.missing(name, format!("give {}{example}", entry.values())))
     }
 
-    /// Number in a range, under a key that is required.
-    pub(crate) fn need_number(&self, key: &str, range: Range) -> Result<f64, SceneError> {
-        let number = self.number(key, range)?;
-        self.need(number, key, &format!("give a number {range}"))
+    /// Number in the key's range.
+    pub(crate) fn number(&self, name: &str) -> Result<Option<f64>, SceneError> {
+        Ok(self.checked(name)?.and_then(Node::number))
     }
 
-    /// Number in a range, or the word `auto` (`Some(None)`).
-    pub(crate) fn number_or_auto(&self, key: &str, range: Range) -> Result<Option<Option<f64>>, SceneError> {
-        match self.get(key).map(|node| &node.value) {
-            Some(Value::Text(word)) if word == "auto" => Ok(Some(None)),
-            Some(Value::Text(_)) => Err(self.bad(key, format!("give a number {range}, or \"auto\""))),
-            _ => Ok(self.number(key, range)?.map(Some)),
-        }
-    }
-
-    /// Integer in a range.
-    pub(crate) fn integer(&self, key: &str, low: i64, high: i64) -> Result<Option<i64>, SceneError> {
-        let Some(node) = self.get(key) else { return Ok(None) };
-        match node.value {
-            Value::Integer(number) if (low..=high).contains(&number) => Ok(Some(number)),
-            Value::Integer(_) => {
-                Err(self.bad(key, format!("out of range; give an integer from {low} to {high}")))
+    /// Number in a range that is narrower than the key's.
+    pub(crate) fn number_in(&self, name: &str, range: Range) -> Result<Option<f64>, SceneError> {
+        match self.number(name)? {
+            Some(number) if !range.contains(number) => {
+                Err(self.bad(name, format!("out of range; give a number {range}")))
             }
-            _ => Err(self.bad(key, format!("expected an integer from {low} to {high}, got {}", node.kind()))),
+            number => Ok(number),
         }
+    }
+
+    /// Number in the key's range, under a key that is required.
+    pub(crate) fn need_number(&self, name: &str) -> Result<f64, SceneError> {
+        let number = self.number(name)?;
+        self.required(number, name)
+    }
+
+    /// Number in the key's range, or the word `auto` (`Some(None)`).
+    pub(crate) fn number_or_auto(&self, name: &str) -> Result<Option<Option<f64>>, SceneError> {
+        Ok(self.checked(name)?.map(Node::number))
+    }
+
+    /// Whole number in the key's range.
+    pub(crate) fn integer(&self, name: &str) -> Result<Option<i64>, SceneError> {
+        Ok(self.checked(name)?.and_then(|node| match node.value {
+            Value::Integer(number) => Some(number),
+            _ => None,
+        }))
+    }
+
+    /// Three whole numbers in the key's range; other values are none.
+    pub(crate) fn integers(&self, name: &str) -> Result<Option<[i64; 3]>, SceneError> {
+        let Some(Node { value: Value::Array(items), .. }) = self.checked(name)? else { return Ok(None) };
+        let whole = |item: &Node| if let Value::Integer(number) = item.value { Some(number) } else { None };
+        let numbers: Vec<i64> = items.iter().filter_map(whole).collect();
+        Ok(numbers.try_into().ok())
     }
 
     /// Boolean.
-    pub(crate) fn boolean(&self, key: &str) -> Result<Option<bool>, SceneError> {
-        let Some(node) = self.get(key) else { return Ok(None) };
-        match node.value {
-            Value::Boolean(flag) => Ok(Some(flag)),
-            _ => Err(self.bad(key, format!("expected true or false, got {}", node.kind()))),
-        }
+    pub(crate) fn boolean(&self, name: &str) -> Result<Option<bool>, SceneError> {
+        Ok(self.checked(name)?.and_then(|node| match node.value {
+            Value::Boolean(flag) => Some(flag),
+            _ => None,
+        }))
     }
 
     /// Text that is not empty.
-    pub(crate) fn text(&self, key: &str) -> Result<Option<&'a str>, SceneError> {
-        let Some(node) = self.get(key) else { return Ok(None) };
-        match &node.value {
-            Value::Text(text) if text.is_empty() => Err(self.bad(key, "the text is empty; give a name")),
-            Value::Text(text) if text.contains('\0') => {
-                Err(self.bad(key, "the text holds a zero byte; remove it"))
+    pub(crate) fn text(&self, name: &str) -> Result<Option<&'a str>, SceneError> {
+        Ok(self.checked(name)?.and_then(|node| match &node.value {
+            Value::Text(text) => Some(text.as_str()),
+            _ => None,
+        }))
+    }
+
+    /// Value of one of the key's words; other values are none.
+    pub(crate) fn word<T: Copy>(&self, name: &str, words: &[(&str, T)]) -> Result<Option<T>, SceneError> {
+        let Some(text) = self.text(name)? else { return Ok(None) };
+        let value = words.iter().find(|(word, _)| *word == text).map(|(_, value)| *value);
+        Ok(Some(value.unwrap_or_else(|| panic!("{} takes {text} but nobody reads it", self.key(name)))))
+    }
+
+    /// Vector of three numbers, each in the key's range; other values are none.
+    pub(crate) fn vector(&self, name: &str) -> Result<Option<Vector3<f64>>, SceneError> {
+        Ok(self.numbers(name)?.map(|numbers| Vector3::from_column_slice(&numbers)))
+    }
+
+    /// Vector of three numbers, under a key that is required.
+    pub(crate) fn need_vector(&self, name: &str) -> Result<Vector3<f64>, SceneError> {
+        let vector = self.vector(name)?;
+        self.required(vector, name)
+    }
+
+    /// Array of numbers, each in the key's range; other values are none.
+    pub(crate) fn numbers(&self, name: &str) -> Result<Option<Vec<f64>>, SceneError> {
+        Ok(self.checked(name)?.and_then(|node| match &node.value {
+            Value::Array(items) => Some(items.iter().filter_map(Node::number).collect()),
+            _ => None,
+        }))
+    }
+
+    /// Array of numbers under a key that is required.
+    pub(crate) fn need_numbers(&self, name: &str) -> Result<Vec<f64>, SceneError> {
+        let numbers = self.numbers(name)?;
+        self.required(numbers, name)
+    }
+
+    /// Words of a list.
+    pub(crate) fn words(&self, name: &str) -> Result<Option<Vec<&'a str>>, SceneError> {
+        Ok(self.checked(name)?.and_then(|node| match &node.value {
+            Value::Array(items) => Some(
+                items
+                    .iter()
+                    .filter_map(
+                        |item| if let Value::Text(word) = &item.value { Some(word.as_str()) } else { None },
+                    )
+                    .collect(),
+            ),
+            _ => None,
+        }))
+    }
+
+    /// Table below a key; other values are none.
+    pub(crate) fn table(&self, name: &str) -> Result<Option<SceneTable<'a>>, SceneError> {
+        match self.checked(name)? {
+            Some(node)
+                if matches!(node.value, Value::Table(_)) && !self.entry(name).form.keys().is_empty() =>
+            {
+                SceneTable::new(node, self.key(name), self.entry(name)).map(Some)
             }
-            Value::Text(text) => Ok(Some(text)),
-            _ => Err(self.bad(key, format!("expected a text in quotes, got {}", node.kind()))),
+            _ => Ok(None),
         }
     }
 
-    /// Value of one of several words.
-    pub(crate) fn word<T: Copy>(&self, key: &str, words: &[(&str, T)]) -> Result<Option<T>, SceneError> {
-        let Some(node) = self.get(key) else { return Ok(None) };
-        let names: Vec<&str> = words.iter().map(|(name, _)| *name).collect();
-        let Value::Text(text) = &node.value else {
-            return Err(self.bad(key, format!("expected one of {}, got {}", names.join(", "), node.kind())));
-        };
-        if let Some((_, value)) = words.iter().find(|(name, _)| name == text) {
-            return Ok(Some(*value));
-        }
-        let near = nearest(text, &names).map_or_else(String::new, |near| format!(" (nearest: \"{near}\")"));
-        Err(self.bad(key, format!("give one of {}{near}", names.join(", "))))
-    }
-
-    /// Vector of three numbers, each in a range.
-    pub(crate) fn vector(&self, key: &str, range: Range) -> Result<Option<Vector3<f64>>, SceneError> {
-        let Some(numbers) = self.numbers(key, range)? else { return Ok(None) };
-        match numbers[..] {
-            [x, y, z] => Ok(Some(Vector3::new(x, y, z))),
-            _ => Err(self.bad(key, format!("expected three numbers [x, y, z], got {}", numbers.len()))),
-        }
-    }
-
-    /// Vector of three numbers, each in a range, under a key that is required.
-    pub(crate) fn need_vector(&self, key: &str, range: Range) -> Result<Vector3<f64>, SceneError> {
-        let vector = self.vector(key, range)?;
-        self.need(vector, key, &format!("give three numbers [x, y, z], each {range}"))
-    }
-
-    /// Array of numbers, each in a range.
-    pub(crate) fn numbers(&self, key: &str, range: Range) -> Result<Option<Vec<f64>>, SceneError> {
-        let Some(items) = self.items(key)? else { return Ok(None) };
-        items
-            .iter()
-            .map(|item| match as_number(item) {
-                Some(number) if range.contains(number) => Ok(number),
-                Some(_) => {
-                    Err(self.bad(key, format!("{} is out of range; give numbers {range}", item.shown())))
-                }
-                None => Err(self.bad(key, format!("{} is not a number; give numbers {range}", item.shown()))),
-            })
-            .collect::<Result<Vec<_>, _>>()
-            .map(Some)
-    }
-
-    /// Items of an array.
-    pub(crate) fn items(&self, key: &str) -> Result<Option<&'a [Node]>, SceneError> {
-        let Some(node) = self.get(key) else { return Ok(None) };
-        match &node.value {
-            Value::Array(items) => Ok(Some(items)),
-            _ => Err(self.bad(key, format!("expected an array [ … ], got {}", node.kind()))),
-        }
-    }
-
-    /// Table below a key.
-    pub(crate) fn table(&self, key: &str, known: &[&str]) -> Result<Option<SceneTable<'a>>, SceneError> {
-        self.get(key).map(|node| SceneTable::new(node, self.key(key), known)).transpose()
-    }
-}
-
-fn as_number(node: &Node) -> Option<f64> {
-    match node.value {
-        Value::Float(number) => Some(number),
-        #[expect(clippy::cast_precision_loss, reason = "scenes hold no integers beyond 2^53")]
-        Value::Integer(number) => Some(number as f64),
-        _ => None,
+    /// Tables of a list, each of which may be refused.
+    pub(crate) fn tables(
+        &self,
+        name: &str,
+    ) -> Result<Option<impl Iterator<Item = Result<SceneTable<'a>, SceneError>> + use<'a>>, SceneError> {
+        let (path, entry) = (self.key(name), self.entry(name));
+        Ok(self.checked(name)?.and_then(|node| match &node.value {
+            Value::Array(items) if entry.form.is_list() => Some(
+                items
+                    .iter()
+                    .enumerate()
+                    .map(move |(index, node)| SceneTable::new(node, format!("{path}[{index}]"), entry)),
+            ),
+            _ => None,
+        }))
     }
 }

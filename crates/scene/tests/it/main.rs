@@ -7,4 +7,5 @@ mod bad_scenes;
 mod common;
 mod generators;
 mod good_scenes;
+mod keys;
 mod outputs;

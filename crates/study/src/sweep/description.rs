@@ -1,6 +1,7 @@
 //! Description of a study: STUDY.toml.
 
 use crate::StudyError;
+use amberfield_scene::keys;
 use serde::Deserialize;
 use std::path::{Path, PathBuf};
 
@@ -289,6 +290,8 @@ impl Study {
         let text = std::fs::read_to_string(path)
             .map_err(|source| StudyError::Read { path: path.to_owned(), source })?;
         let bad = |reason: String| StudyError::Description { path: path.to_owned(), reason };
+        keys::check(&path.display().to_string(), &text, keys::STUDY)
+            .map_err(|error| bad(error.to_string()))?;
         let study: Self = toml::from_str(&text).map_err(|error| bad(error.to_string()))?;
         study.check().map_err(bad)?;
         Ok(study)

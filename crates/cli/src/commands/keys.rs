@@ -1,0 +1,16 @@
+//! Command `keys`: what the keys of a scene take and mean.
+
+use crate::arguments::KeysOptions;
+use crate::failure::Failure;
+use crate::print;
+use amberfield_scene::keys;
+
+/// Prints one key with those below it, or a line for each key.
+pub(crate) fn keys(options: &KeysOptions) -> Result<(), Failure> {
+    let path = options.path.as_deref().unwrap_or_default();
+    match keys::section(path) {
+        Some(text) => print::line(format_args!("{}", text.trim_end())),
+        None => return Err(Failure::bad_input(keys::advice(path))),
+    }
+    Ok(())
+}
