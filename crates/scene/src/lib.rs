@@ -14,6 +14,7 @@ mod poly_mesh;
 mod scene;
 mod source;
 mod stl;
+mod table;
 mod tree;
 mod weld;
 mod write;
@@ -23,6 +24,7 @@ pub use scene::{
     ChargeTransferSettings, ElectricFieldSettings, OpenFoamSettings, OutputSettings, Physics, Purpose, Scene,
     SolverLoss, parse_scene, read_scene, read_scene_with_mesh,
 };
+pub use table::check_keys;
 pub use write::{
     ChargedSquare, FieldColumns, FieldComponents, FieldReport, FieldReportSeconds, HistoryFile, HistoryValue,
     PvdSeries, read_checkpoint, read_table, write_atomically, write_charge_vtu, write_checkpoint,

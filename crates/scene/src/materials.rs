@@ -2,7 +2,8 @@
 
 use crate::SceneError;
 use crate::error::Problems;
-use crate::tree::{SceneTable, nearest};
+use crate::table::SceneTable;
+use crate::tree::nearest;
 use amberfield_core::{Material, MaterialId};
 
 /// Reads `[[materials]]`.

@@ -1,7 +1,7 @@
 //! Files of a scene: its folder, and a fingerprint of all files that were read.
 
 use crate::SceneError;
-use crate::tree::SceneTable;
+use crate::table::SceneTable;
 use amberfield_core::Fingerprint;
 use std::fs::File;
 use std::io::{BufRead as _, BufReader, ErrorKind, Read};

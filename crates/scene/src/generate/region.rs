@@ -3,7 +3,8 @@
 use super::spec::GenerateContext;
 use super::surfaces::Surfaces;
 use crate::SceneError;
-use crate::tree::{SceneTable, Value};
+use crate::table::SceneTable;
+use crate::tree::Value;
 use amberfield_core::{Axis, Domain, Wall, WallShape};
 use nalgebra::Vector3;
 use rand::{RngExt, SeedableRng};

@@ -7,7 +7,7 @@ use crate::SceneError;
 use crate::materials::Materials;
 use crate::particles::ReadParticles;
 use crate::source::SceneSource;
-use crate::tree::SceneTable;
+use crate::table::SceneTable;
 use amberfield_core::{Domain, Grain, GroupId, Particles, Wall};
 use nalgebra::Vector3;
 use rand::SeedableRng;

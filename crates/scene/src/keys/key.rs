@@ -14,19 +14,19 @@ pub struct Key {
     pub form: Form,
     /// Unit; empty where there is none.
     pub unit: &'static str,
-    /// What holds where the key is absent.
+    /// Effect of leaving the key out.
     pub without: Without,
     /// Sentence about the key.
     pub meaning: &'static str,
     /// Value in TOML, for an example; empty for tables that are not written in one line.
     pub example: &'static str,
-    /// Other names under which people look for it.
+    /// Further names under which people look for it.
     pub also: &'static [&'static str],
     /// Version that has it first.
     pub since: &'static str,
 }
 
-/// What holds where a key is absent.
+/// Effect of leaving a key out.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Without {
     /// The key must be there.

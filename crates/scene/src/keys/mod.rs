@@ -5,7 +5,6 @@
 
 mod advice;
 mod charge_transfer;
-mod check;
 mod contacts;
 mod domain;
 mod electric_field;
@@ -24,7 +23,6 @@ mod walls;
 
 pub use advice::advice;
 pub(crate) use advice::{unknown_key, unknown_word};
-pub use check::check;
 pub use form::Form;
 pub use key::{Key, Without};
 pub use page::{page, section};
@@ -55,7 +53,8 @@ pub static SCENE: &[Key] = &[
 /// Keys of a study.
 pub static STUDY: &[Key] = study::KEYS;
 
-/// Key of a scene at a path such as `domain.boundary.x` or `walls[0].stl`; the number of an item does not matter.
+/// Key of a scene at a path such as `domain.boundary.x` or `walls[0].stl`; the number of an item does not
+/// matter.
 #[must_use]
 pub fn find(path: &str) -> Option<&'static Key> {
     let mut keys = SCENE;

@@ -12,9 +12,13 @@ pub(super) static KEYS: &[Key] = &[
         .without("electricFieldFoam, or amberPimpleFoam with a gas that flows")
         .example("\"electricFieldFoam\"")
         .also(&["program", "executable", "solver"]),
-    Key::new("start", Form::Boolean, "Whether the run starts the program, or waits for one that is started by hand.")
-        .default("true")
-        .example("false"),
+    Key::new(
+        "start",
+        Form::Boolean,
+        "Whether the run starts the program, or waits for one that is started by hand.",
+    )
+    .default("true")
+    .example("false"),
     Key::new("ranks", Form::Whole(1, 65_536), "Processes of the program, by MPI.")
         .default("1")
         .example("2")
@@ -28,7 +32,11 @@ pub(super) static KEYS: &[Key] = &[
         .unit("s")
         .without("for ever")
         .example("600.0"),
-    Key::new("on_solver_loss", Form::Word(&["stop", "fallback", "wait"]), "What happens when the program is lost: the run ends, goes on with the internal grid, or waits for another.")
-        .default("\"stop\"")
-        .example("\"wait\""),
+    Key::new(
+        "on_solver_loss",
+        Form::Word(&["stop", "fallback", "wait"]),
+        "Effect of a lost program: the run ends, goes on with the internal grid, or waits for another.",
+    )
+    .default("\"stop\"")
+    .example("\"wait\""),
 ];

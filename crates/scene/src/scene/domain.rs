@@ -1,7 +1,8 @@
 //! Section `[domain]`.
 
 use crate::SceneError;
-use crate::tree::{SceneTable, Value};
+use crate::table::SceneTable;
+use crate::tree::Value;
 use amberfield_core::{Axis, Boundary, Domain, DomainError, Side};
 
 /// Forms that the value of a face may have, for messages.

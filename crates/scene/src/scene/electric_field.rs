@@ -3,7 +3,8 @@
 use super::command::command_entries;
 use super::description::ElectricFieldSettings;
 use crate::SceneError;
-use crate::tree::{Entries, Node, SceneTable, Value};
+use crate::table::SceneTable;
+use crate::tree::{Entries, Node, Value};
 use amberfield_core::{CouplingInterval, ForceLimit, Method, Permittivity, Tuning};
 
 /// Reads `[electric_field]`.

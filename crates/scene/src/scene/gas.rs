@@ -1,7 +1,8 @@
 //! Section `[gas]`.
 
 use crate::SceneError;
-use crate::tree::{Range, SceneTable};
+use crate::table::SceneTable;
+use crate::tree::Range;
 use amberfield_core::{DragLaw, Gas, GasFlow, GasModel};
 
 /// Density of dry air at 20 °C and 101325 Pa [kg/m³] (CRC Handbook of Chemistry and Physics).

@@ -3,7 +3,7 @@
 use super::description::{ChargeTransferSettings, OpenFoamSettings, OutputSettings, SolverLoss};
 use crate::SceneError;
 use crate::source::SceneSource;
-use crate::tree::SceneTable;
+use crate::table::SceneTable;
 use amberfield_core::RollingModel;
 
 /// Reads `[contacts]`.

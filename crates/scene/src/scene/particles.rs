@@ -5,7 +5,7 @@ use crate::generate::{GenerateContext, generate};
 use crate::materials::Materials;
 use crate::particles::{CsvContext, ReadParticles, read_particles};
 use crate::source::SceneSource;
-use crate::tree::SceneTable;
+use crate::table::SceneTable;
 use amberfield_core::{Domain, OnExit, Wall};
 
 /// Content of `[particles]`.

@@ -15,7 +15,8 @@ use crate::error::Problems;
 use crate::keys::SCENE;
 use crate::materials::{Materials, read_materials};
 use crate::source::{SceneSource, read_text};
-use crate::tree::{Entries, Node, Place, SceneTable, Value, apply_overrides, parse_document};
+use crate::table::SceneTable;
+use crate::tree::{Entries, Node, Place, Value, apply_overrides, parse_document};
 use std::path::Path;
 use std::sync::Arc;
 

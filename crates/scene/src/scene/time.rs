@@ -1,7 +1,7 @@
 //! Section `[time]`.
 
 use crate::SceneError;
-use crate::tree::SceneTable;
+use crate::table::SceneTable;
 use amberfield_core::{OnExit, Skin, Step, TimeSettings};
 use nalgebra::Vector3;
 

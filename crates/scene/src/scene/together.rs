@@ -4,7 +4,8 @@ use super::description::{Purpose, Scene};
 use super::unusual::unusual_values;
 use crate::SceneError;
 use crate::error::{Problems, shorten};
-use crate::tree::{SceneTable, nearest};
+use crate::table::SceneTable;
+use crate::tree::nearest;
 use amberfield_core::{Axis, Boundary, Domain, Method, Vector3, WallCharging, WallShape};
 
 /// Number of grains beyond which the direct sum causes a warning.

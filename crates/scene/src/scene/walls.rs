@@ -7,7 +7,7 @@ use crate::poly_mesh::{PatchError, PolyMesh};
 use crate::scene::OpenFoamSettings;
 use crate::source::SceneSource;
 use crate::stl::{Surface, read_stl};
-use crate::tree::SceneTable;
+use crate::table::SceneTable;
 use amberfield_core::{Fingerprint, TriangleMesh, Wall, WallCharging, WallShape};
 
 /// Length below which a normal has no direction.

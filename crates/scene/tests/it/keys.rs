@@ -2,7 +2,7 @@
 
 use crate::common::{Folder, SCENE};
 use amberfield_scene::keys::{self, Form, Key, Without};
-use amberfield_scene::{Purpose, parse_scene};
+use amberfield_scene::{Purpose, check_keys, parse_scene};
 use std::path::{Path, PathBuf};
 
 /// Variable with which the test of the pages writes them.
@@ -49,7 +49,7 @@ fn examples_and_defaults_are_values_that_their_keys_take() {
         for value in [key.example, default].into_iter().filter(|value| !value.is_empty()) {
             let one: &'static [Key] = Box::leak(Box::new([*key]));
             let text = format!("{} = {value}", key.name);
-            keys::check(&path, &text, one).unwrap_or_else(|error| panic!("{text}: {error}"));
+            check_keys(&path, &text, one).unwrap_or_else(|error| panic!("{text}: {error}"));
         }
         assert!(
             !key.example.is_empty() || !key.form.keys().is_empty(),

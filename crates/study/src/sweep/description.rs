@@ -1,7 +1,8 @@
 //! Description of a study: STUDY.toml.
 
 use crate::StudyError;
-use amberfield_scene::keys;
+use amberfield_scene::check_keys;
+use amberfield_scene::keys::STUDY;
 use serde::Deserialize;
 use std::path::{Path, PathBuf};
 
@@ -290,8 +291,7 @@ impl Study {
         let text = std::fs::read_to_string(path)
             .map_err(|source| StudyError::Read { path: path.to_owned(), source })?;
         let bad = |reason: String| StudyError::Description { path: path.to_owned(), reason };
-        keys::check(&path.display().to_string(), &text, keys::STUDY)
-            .map_err(|error| bad(error.to_string()))?;
+        check_keys(&path.display().to_string(), &text, STUDY).map_err(|error| bad(error.to_string()))?;
         let study: Self = toml::from_str(&text).map_err(|error| bad(error.to_string()))?;
         study.check().map_err(bad)?;
         Ok(study)

@@ -1,11 +1,14 @@
 //! Typed access to the values of a table.
 
-use super::node::{Entries, Node, Place, Value};
-use super::range::Range;
+mod check;
+
 use crate::SceneError;
 use crate::error::{Problems, shorten};
 use crate::keys::{Form, Key, Without, unknown_key};
+use crate::tree::{Entries, Node, Place, Range, Value};
 use nalgebra::Vector3;
+
+pub use check::check_keys;
 
 /// Table of the tree, with typed access to its values.
 ///
@@ -18,20 +21,6 @@ pub(crate) struct SceneTable<'a> {
     /// Path of keys from the document to the table; empty for the document.
     path: String,
     place: Place,
-}
-
-/// Known name that is nearest to a misspelt one.
-pub(crate) fn nearest<'k>(name: &str, known: &[&'k str]) -> Option<&'k str> {
-    // The cost of the comparison grows with the length, and such a long name is no misspelling.
-    if name.chars().count() > 200 {
-        return None;
-    }
-    let lower = name.to_lowercase();
-    known
-        .iter()
-        .map(|candidate| (strsim::damerau_levenshtein(&lower, &candidate.to_lowercase()), *candidate))
-        .min_by_key(|(distance, _)| *distance)
-        .map(|(_, candidate)| candidate)
 }
 
 impl<'a> SceneTable<'a> {

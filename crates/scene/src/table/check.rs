@@ -1,16 +1,17 @@
 //! Check of a whole document by a table of keys.
 
-use super::Key;
+use super::SceneTable;
 use crate::SceneError;
 use crate::error::Problems;
-use crate::tree::{Place, SceneTable, parse_document};
+use crate::keys::Key;
+use crate::tree::{Place, parse_document};
 
 /// Checks the keys of a document, whether they are known, required and of a value that they take; `file` is
 /// its name in messages.
 ///
 /// # Errors
 /// All problems that there are, each with its place.
-pub fn check(file: &str, text: &str, keys: &'static [Key]) -> Result<(), SceneError> {
+pub fn check_keys(file: &str, text: &str, keys: &'static [Key]) -> Result<(), SceneError> {
     let entries = parse_document(&file.into(), text)?;
     let place = Place::Line { file: file.into(), line: 0 };
     let mut problems = Problems::default();
