@@ -1,0 +1,93 @@
+//! Names of columns: those of this project, those in other units, and those of other programs.
+
+/// Column of a file of grains.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(super) struct Quantity {
+    /// Name of the column that it stands for, of [`super::csv_reader::COLUMNS`].
+    pub(super) name: &'static str,
+    /// Factor from the file's unit to that of the name.
+    pub(super) factor: f64,
+}
+
+/// Elementary charge [C], exact (SI Brochure, 9th edition, 2019).
+const ELEMENTARY: f64 = 1.602_176_634e-19;
+
+const LENGTHS: &[(&str, f64)] =
+    &[("m", 1.0), ("cm", 1e-2), ("mm", 1e-3), ("um", 1e-6), ("µm", 1e-6), ("μm", 1e-6), ("nm", 1e-9)];
+const CHARGES: &[(&str, f64)] = &[
+    ("C", 1.0),
+    ("mC", 1e-3),
+    ("uC", 1e-6),
+    ("µC", 1e-6),
+    ("μC", 1e-6),
+    ("nC", 1e-9),
+    ("pC", 1e-12),
+    ("fC", 1e-15),
+    ("e", ELEMENTARY),
+];
+const SPEEDS: &[(&str, f64)] = &[("m_s", 1.0), ("cm_s", 1e-2), ("mm_s", 1e-3)];
+const SPINS: &[(&str, f64)] = &[("rad_s", 1.0), ("rpm", std::f64::consts::PI / 30.0)];
+const DENSITIES: &[(&str, f64)] = &[("kg_m3", 1.0), ("g_cm3", 1e3)];
+
+/// Names without a unit, the columns that they stand for, the units that may follow them, and a factor.
+const STEMS: &[(&[&str], &str, &[(&str, f64)], f64)] = &[
+    (&["x"], "x_m", LENGTHS, 1.0),
+    (&["y"], "y_m", LENGTHS, 1.0),
+    (&["z"], "z_m", LENGTHS, 1.0),
+    (&["radius", "r"], "radius_m", LENGTHS, 1.0),
+    (&["diameter", "d"], "radius_m", LENGTHS, 0.5),
+    (&["charge", "q"], "charge_C", CHARGES, 1.0),
+    (&["vx"], "vx_m_s", SPEEDS, 1.0),
+    (&["vy"], "vy_m_s", SPEEDS, 1.0),
+    (&["vz"], "vz_m_s", SPEEDS, 1.0),
+    (&["wx", "omegax"], "wx_rad_s", SPINS, 1.0),
+    (&["wy", "omegay"], "wy_rad_s", SPINS, 1.0),
+    (&["wz", "omegaz"], "wz_rad_s", SPINS, 1.0),
+    (&["density"], "density_kg_m3", DENSITIES, 1.0),
+];
+
+impl Quantity {
+    /// Quantity of a column whose name has its unit, or needs none.
+    pub(super) fn named(name: &str) -> Option<Self> {
+        if let Some(known) = ["id", "material", "group"].into_iter().find(|known| *known == name) {
+            return Some(Self { name: known, factor: 1.0 });
+        }
+        let (stem, unit) = name.split_once('_')?;
+        let (_, known, units, factor) = STEMS.iter().find(|(stems, ..)| stems.contains(&stem))?;
+        let (_, scale) = units.iter().find(|(name, _)| *name == unit)?;
+        Some(Self { name: known, factor: factor * scale })
+    }
+
+    /// Column that a name without a unit stands for, and the units that may follow the name.
+    pub(super) fn unit_missing(name: &str) -> Option<String> {
+        let plain = name.to_lowercase();
+        let (stems, _, units, _) = STEMS.iter().find(|(stems, ..)| stems.contains(&plain.as_str()))?;
+        let stem = stems.iter().find(|stem| **stem == plain)?;
+        let names: Vec<String> = units.iter().take(4).map(|(unit, _)| format!("{stem}_{unit}")).collect();
+        Some(names.join(", "))
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn units_follow_names() {
+        for (name, known, factor) in [
+            ("x_mm", "x_m", 1e-3),
+            ("diameter_um", "radius_m", 0.5e-6),
+            ("charge_e", "charge_C", 1.602_176_634e-19),
+            ("q_pC", "charge_C", 1e-12),
+            ("density_g_cm3", "density_kg_m3", 1e3),
+            ("vx_mm_s", "vx_m_s", 1e-3),
+            ("material", "material", 1.0),
+        ] {
+            assert_eq!(Quantity::named(name), Some(Quantity { name: known, factor }), "{name}");
+        }
+        for name in ["x", "x_ft", "mass_kg", "", "_m"] {
+            assert_eq!(Quantity::named(name), None, "{name}");
+        }
+        assert_eq!(Quantity::unit_missing("X").as_deref(), Some("x_m, x_cm, x_mm, x_um"));
+    }
+}
