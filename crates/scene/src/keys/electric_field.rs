@@ -49,8 +49,8 @@ pub(super) static KEYS: &[Key] = &[
         Form::Word(&["timed", "model"]),
         "How parameters are chosen: by trial on this machine, or by a model of cost alone.",
     )
-    .default("\"timed\"")
-    .example("\"model\""),
+    .default("\"model\"")
+    .example("\"timed\""),
     Key::new(
         "far_tolerance",
         Form::Either(&[Form::Number(TOLERANCE), Form::Word(&["auto"])]),

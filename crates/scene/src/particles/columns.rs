@@ -1,5 +1,6 @@
 //! Columns of a particles CSV, found by name and in any order.
 
+use super::quantity::Quantity;
 use crate::SceneError;
 use crate::error::shorten;
 use crate::tree::{Range, nearest};
@@ -9,8 +10,18 @@ use csv::StringRecord;
 pub(super) struct CsvColumns<'f> {
     /// File, as the user named it.
     file: &'f str,
-    /// Names of the columns, in their order.
-    header: Vec<String>,
+    /// Columns, in their order.
+    header: Vec<Column>,
+}
+
+/// Column of a file.
+struct Column {
+    /// Name in the file.
+    name: String,
+    /// Name of the column that it stands for, in this project's unit.
+    known: String,
+    /// Factor from the file's unit to this project's.
+    factor: f64,
 }
 
 impl<'f> CsvColumns<'f> {
@@ -24,23 +35,31 @@ impl<'f> CsvColumns<'f> {
         known: &[&str],
         required: &[&str],
     ) -> Result<Self, SceneError> {
-        let header: Vec<String> = header.iter().map(|name| name.trim().to_owned()).collect();
-        for (index, name) in header.iter().enumerate() {
-            if !known.contains(&name.as_str()) {
-                let advice = nearest(name, known)
-                    .map_or_else(String::new, |near| format!("; the nearest known column is {near}"));
+        let header: Vec<Column> = header.iter().map(|name| Column::new(name.trim())).collect();
+        for (index, Column { name, known: meant, .. }) in header.iter().enumerate() {
+            if !known.contains(&meant.as_str()) {
+                let advice = match Quantity::unit_missing(name) {
+                    Some(names) => format!("; its unit is missing, write one of {names}"),
+                    None => nearest(name, known)
+                        .map_or_else(String::new, |near| format!("; the nearest known column is {near}")),
+                };
                 return Err(SceneError::data(
                     file,
                     1,
                     format!("unknown column \"{}\"{advice}", shorten(name)),
                 ));
             }
-            if header[..index].contains(name) {
-                return Err(SceneError::data(file, 1, format!("column {name} is there twice; remove one")));
+            if let Some(before) = header[..index].iter().find(|column| column.known == *meant) {
+                let problem = if before.name == *name {
+                    format!("column {name} is there twice; remove one")
+                } else {
+                    format!("columns {} and {name} are both {meant}; remove one", before.name)
+                };
+                return Err(SceneError::data(file, 1, problem));
             }
         }
         for name in required {
-            if !header.iter().any(|column| column == name) {
+            if !header.iter().any(|column| column.known == *name) {
                 return Err(SceneError::data(
                     file,
                     1,
@@ -53,12 +72,12 @@ impl<'f> CsvColumns<'f> {
 
     /// Index of the column with a name.
     pub(super) fn find(&self, name: &str) -> Option<usize> {
-        self.header.iter().position(|column| column == name)
+        self.header.iter().position(|column| column.known == name)
     }
 
     /// Name of the column with an index.
     pub(super) fn name(&self, column: usize) -> &str {
-        &self.header[column]
+        &self.header[column].name
     }
 
     /// Error about the value in a row and a column.
@@ -81,12 +100,26 @@ impl<'f> CsvColumns<'f> {
         let Ok(number) = text.parse::<f64>() else {
             return Err(self.bad(record, column, &format!("not a number; give one {range}")));
         };
+        let Column { known, factor, .. } = &self.header[column];
+        let number = number * factor;
+        let range_of = if *factor == 1.0 { String::new() } else { format!(" as {known}") };
         if range.contains(number) {
             Ok(number)
         } else if number.is_finite() {
-            Err(self.bad(record, column, &format!("out of range; give a number {range}")))
+            Err(self.bad(record, column, &format!("out of range{range_of}; give a number {range}")))
         } else {
             Err(self.bad(record, column, &format!("not finite; give a number {range}")))
+        }
+    }
+}
+
+impl Column {
+    fn new(name: &str) -> Self {
+        match Quantity::named(name) {
+            Some(Quantity { name: known, factor }) => {
+                Self { name: name.to_owned(), known: known.to_owned(), factor }
+            }
+            None => Self { name: name.to_owned(), known: name.to_owned(), factor: 1.0 },
         }
     }
 }

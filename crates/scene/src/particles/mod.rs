@@ -2,5 +2,6 @@
 
 mod columns;
 mod csv_reader;
+mod quantity;
 
 pub(crate) use csv_reader::{CsvContext, ReadParticles, read_charges, read_particles};

@@ -3,7 +3,7 @@
 /// Column of a file of grains.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) struct Quantity {
-    /// Name of the column that it stands for, of [`super::csv_reader::COLUMNS`].
+    /// Name of the column that it stands for, in this project's unit.
     pub(super) name: &'static str,
     /// Factor from the file's unit to that of the name.
     pub(super) factor: f64,
@@ -12,9 +12,12 @@ pub(super) struct Quantity {
 /// Elementary charge [C], exact (SI Brochure, 9th edition, 2019).
 const ELEMENTARY: f64 = 1.602_176_634e-19;
 
-const LENGTHS: &[(&str, f64)] =
+/// Units, and the factors from them to this project's.
+type Units = &'static [(&'static str, f64)];
+
+const LENGTHS: Units =
     &[("m", 1.0), ("cm", 1e-2), ("mm", 1e-3), ("um", 1e-6), ("µm", 1e-6), ("μm", 1e-6), ("nm", 1e-9)];
-const CHARGES: &[(&str, f64)] = &[
+const CHARGES: Units = &[
     ("C", 1.0),
     ("mC", 1e-3),
     ("uC", 1e-6),
@@ -25,25 +28,40 @@ const CHARGES: &[(&str, f64)] = &[
     ("fC", 1e-15),
     ("e", ELEMENTARY),
 ];
-const SPEEDS: &[(&str, f64)] = &[("m_s", 1.0), ("cm_s", 1e-2), ("mm_s", 1e-3)];
-const SPINS: &[(&str, f64)] = &[("rad_s", 1.0), ("rpm", std::f64::consts::PI / 30.0)];
-const DENSITIES: &[(&str, f64)] = &[("kg_m3", 1.0), ("g_cm3", 1e3)];
+const SPEEDS: Units = &[("m_s", 1.0), ("cm_s", 1e-2), ("mm_s", 1e-3)];
+const SPINS: Units = &[("rad_s", 1.0), ("rpm", std::f64::consts::PI / 30.0)];
+const DENSITIES: Units = &[("kg_m3", 1.0), ("g_cm3", 1e3)];
 
-/// Names without a unit, the columns that they stand for, the units that may follow them, and a factor.
-const STEMS: &[(&[&str], &str, &[(&str, f64)], f64)] = &[
-    (&["x"], "x_m", LENGTHS, 1.0),
-    (&["y"], "y_m", LENGTHS, 1.0),
-    (&["z"], "z_m", LENGTHS, 1.0),
-    (&["radius", "r"], "radius_m", LENGTHS, 1.0),
-    (&["diameter", "d"], "radius_m", LENGTHS, 0.5),
-    (&["charge", "q"], "charge_C", CHARGES, 1.0),
-    (&["vx"], "vx_m_s", SPEEDS, 1.0),
-    (&["vy"], "vy_m_s", SPEEDS, 1.0),
-    (&["vz"], "vz_m_s", SPEEDS, 1.0),
-    (&["wx", "omegax"], "wx_rad_s", SPINS, 1.0),
-    (&["wy", "omegay"], "wy_rad_s", SPINS, 1.0),
-    (&["wz", "omegaz"], "wz_rad_s", SPINS, 1.0),
-    (&["density"], "density_kg_m3", DENSITIES, 1.0),
+/// Columns of one kind and their units.
+struct Stem {
+    /// Names without a unit.
+    names: &'static [&'static str],
+    /// Column that they stand for, in this project's unit.
+    known: &'static str,
+    /// Units that may follow the name.
+    units: Units,
+    /// Further factor, of a diameter for example.
+    factor: f64,
+}
+
+const fn stem(names: &'static [&'static str], known: &'static str, units: Units, factor: f64) -> Stem {
+    Stem { names, known, units, factor }
+}
+
+const STEMS: &[Stem] = &[
+    stem(&["x"], "x_m", LENGTHS, 1.0),
+    stem(&["y"], "y_m", LENGTHS, 1.0),
+    stem(&["z"], "z_m", LENGTHS, 1.0),
+    stem(&["radius", "r"], "radius_m", LENGTHS, 1.0),
+    stem(&["diameter", "d"], "radius_m", LENGTHS, 0.5),
+    stem(&["charge", "q"], "charge_C", CHARGES, 1.0),
+    stem(&["vx"], "vx_m_s", SPEEDS, 1.0),
+    stem(&["vy"], "vy_m_s", SPEEDS, 1.0),
+    stem(&["vz"], "vz_m_s", SPEEDS, 1.0),
+    stem(&["wx", "omegax"], "wx_rad_s", SPINS, 1.0),
+    stem(&["wy", "omegay"], "wy_rad_s", SPINS, 1.0),
+    stem(&["wz", "omegaz"], "wz_rad_s", SPINS, 1.0),
+    stem(&["density"], "density_kg_m3", DENSITIES, 1.0),
 ];
 
 impl Quantity {
@@ -53,7 +71,7 @@ impl Quantity {
             return Some(Self { name: known, factor: 1.0 });
         }
         let (stem, unit) = name.split_once('_')?;
-        let (_, known, units, factor) = STEMS.iter().find(|(stems, ..)| stems.contains(&stem))?;
+        let Stem { known, units, factor, .. } = STEMS.iter().find(|known| known.names.contains(&stem))?;
         let (_, scale) = units.iter().find(|(name, _)| *name == unit)?;
         Some(Self { name: known, factor: factor * scale })
     }
@@ -61,8 +79,8 @@ impl Quantity {
     /// Column that a name without a unit stands for, and the units that may follow the name.
     pub(super) fn unit_missing(name: &str) -> Option<String> {
         let plain = name.to_lowercase();
-        let (stems, _, units, _) = STEMS.iter().find(|(stems, ..)| stems.contains(&plain.as_str()))?;
-        let stem = stems.iter().find(|stem| **stem == plain)?;
+        let Stem { names, units, .. } = STEMS.iter().find(|stem| stem.names.contains(&plain.as_str()))?;
+        let stem = names.iter().find(|stem| **stem == plain)?;
         let names: Vec<String> = units.iter().take(4).map(|(unit, _)| format!("{stem}_{unit}")).collect();
         Some(names.join(", "))
     }

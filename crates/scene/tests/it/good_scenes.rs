@@ -160,3 +160,22 @@ fn a_command_line_is_the_same_as_keys() {
         .unwrap();
     assert_eq!(keys.electric_field, line.electric_field);
 }
+
+#[test]
+fn columns_may_be_in_other_units() {
+    let folder = Folder::good();
+    folder.write(
+        "grains.csv",
+        "id,x_mm,y_um,z_m,diameter_um,charge_pC,material\n1,1,2000,0.003,200,-0.5,glass\n",
+    );
+    let scene = folder.read(&[]).unwrap();
+    assert!((scene.particles.position[0] - Vector3::new(1e-3, 2e-3, 3e-3)).norm() < 1e-15);
+    assert!((scene.particles.radius[0] - 1e-4).abs() < 1e-18);
+    assert!((scene.particles.charge[0] + 0.5e-12).abs() < 1e-25);
+    folder.write("grains.csv", "id,x,y_m,z_m,radius_m\n1,1,2,3,1e-4\n");
+    let said = folder.refusal(&[]);
+    assert!(said.contains("\"x\"; its unit is missing, write one of x_m, x_cm, x_mm"), "{said}");
+    folder.write("grains.csv", "id,x_m,y_m,z_m,radius_m,diameter_m\n1,1,2,3,1e-4,2e-4\n");
+    let said = folder.refusal(&[]);
+    assert!(said.contains("columns radius_m and diameter_m are both radius_m"), "{said}");
+}
