@@ -6,7 +6,7 @@ use crate::SceneError;
 use crate::error::{Problems, shorten};
 use crate::table::SceneTable;
 use crate::tree::nearest;
-use amberfield_core::{Axis, Boundary, Domain, Method, Vector3, WallCharging, WallShape};
+use amberfield_core::{Axis, Boundary, Domain, Method, Vector3, Wall, WallCharging, WallShape};
 
 /// Number of grains beyond which the direct sum causes a warning.
 const MANY_FOR_DIRECT: usize = 100_000;
@@ -207,18 +207,37 @@ fn warn(scene: &mut Scene) {
                 .to_owned(),
         );
     }
-    if method.is_some() && scene.solver.is_none() {
-        for wall in &scene.walls {
-            let is_face = scene.domain.as_ref().is_some_and(|domain| is_conducting_face(domain, &wall.shape));
-            if wall.charging == WallCharging::Grounded && !is_face {
-                scene.warnings.push(format!(
-                    "{}: the internal grid does not know this grounded surface; \
-                     it takes charge, but does not bound the field: at its contacts the field of charges \
-                     counts twice, for their images, and fields of electrodes and external ones as they are",
-                    wall.name
-                ));
-            }
-        }
+    if method.is_some() {
+        let unknown: Vec<String> = unknown_grounded_walls(scene).map(|wall| wall.name.clone()).collect();
+        let over_mesh = scene.solver.is_some();
+        scene.warnings.extend(unknown.iter().map(|name| unknown_grounded(name, over_mesh)));
+    }
+}
+
+/// Grounded walls at which the field does not end.
+fn unknown_grounded_walls(scene: &Scene) -> impl Iterator<Item = &Wall> {
+    let is_known = |wall: &Wall| match (&scene.solver, &scene.domain) {
+        (Some(_), _) => wall.bounds_field,
+        (None, Some(domain)) => is_conducting_face(domain, &wall.shape),
+        (None, None) => false,
+    };
+    scene.walls.iter().filter(move |wall| wall.charging == WallCharging::Grounded && !is_known(wall))
+}
+
+/// Warning about a grounded wall at which the field does not end.
+fn unknown_grounded(name: &str, over_mesh: bool) -> String {
+    if over_mesh {
+        format!(
+            "{name}: the wall takes charge, but is no patch of the solver's mesh: at its contacts all of the \
+             field counts twice, that of electrodes too; name its patch with patch = \"…\", or set charging \
+             = \"none\""
+        )
+    } else {
+        format!(
+            "{name}: the internal grid does not know this grounded surface; it takes charge, but does not \
+             bound the field: at its contacts the field of charges counts twice, for their images, and \
+             fields of electrodes and external ones as they are"
+        )
     }
 }
 
