@@ -59,6 +59,8 @@ pub(crate) enum Command {
     /// Measures error against run time: sweeps methods and parameters over problems
     #[cfg(feature = "plots")]
     Study(StudyOptions),
+    /// Writes a small scene with comments to start from, or lists such scenes
+    New(NewOptions),
     /// Shows the keys of a scene: values, units, defaults, examples
     Keys(KeysOptions),
     /// Tells what this machine offers and which stale runs it holds
@@ -114,6 +116,16 @@ pub(crate) struct FieldOptions {
     /// Overrides a key of the scene, for example electric_field.tolerance=1e-3
     #[arg(long, value_name = "KEY=VALUE")]
     pub(crate) set: Vec<String>,
+}
+
+/// Options of `new`.
+#[derive(Debug, Args)]
+pub(crate) struct NewOptions {
+    /// Scene: bed, separator, chute or fluidised-bed [default: lists them]
+    pub(crate) name: Option<String>,
+    /// Folder of the scene [default: named after the scene]
+    #[arg(long, value_name = "DIR")]
+    pub(crate) out: Option<PathBuf>,
 }
 
 /// Options of `keys`.

@@ -41,6 +41,7 @@ fn dispatch(arguments: &Arguments, log: &logging::Log) -> Result<(), Failure> {
         Command::Tune(options) => commands::tune(options),
         #[cfg(feature = "plots")]
         Command::Study(options) => commands::study(options),
+        Command::New(options) => commands::new(options),
         Command::Keys(options) => commands::keys(options),
         Command::Doctor(options) => commands::doctor(options),
     }
