@@ -12,5 +12,6 @@ mod interrupt;
 mod openfoam;
 mod run;
 mod scenes;
+mod start;
 mod study;
 mod what_must_not_matter;

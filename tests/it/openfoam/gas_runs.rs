@@ -233,3 +233,10 @@ fn a_gas_that_cannot_be_is_refused_by_name() {
     refused(&bench, &[], 2, "/0/U");
     assert_eq!(bench.names("out"), ["solver"], "nothing has begun");
 }
+
+#[test]
+fn a_fluidised_bed_to_start_from_runs() {
+    let bench = Workbench::new("");
+    good(&bench.run(&["new", "fluidised-bed"]));
+    good(&bench.run(&["run", "fluidised-bed/scene.toml", "--out", "out", "--steps", "60", "--no-progress"]));
+}
