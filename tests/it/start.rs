@@ -1,4 +1,4 @@
-//! What a newcomer begins with: scenes to start from, and keys in the terminal.
+//! First steps of a newcomer: scenes to start from, and keys in the terminal.
 
 use amberfield_tests::Workbench;
 

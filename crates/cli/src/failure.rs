@@ -36,6 +36,7 @@ impl Failure {
     }
 
     /// End by the user's interrupt: exit code 130.
+    #[cfg(feature = "coupling")]
     pub(crate) fn interrupted(what: impl Into<String>) -> Self {
         Self { code: EXIT_INTERRUPTED, message: format!("stopped: {}", what.into()) }
     }

@@ -9,6 +9,7 @@ pub(crate) const NAME: &str = "solver";
 
 /// Folder in which a scene's field solver works: with its log, the parts of its case, and what it writes.
 #[derive(Debug)]
+#[cfg_attr(not(feature = "coupling"), expect(dead_code, reason = "without a solver nobody works in it"))]
 pub(crate) enum SolverFolder {
     /// One that stays.
     Kept(PathBuf),
@@ -36,6 +37,7 @@ impl SolverFolder {
     }
 
     /// Path of the folder, which need not be there yet.
+    #[cfg(feature = "coupling")]
     pub(crate) fn path(&self) -> &Path {
         match self {
             Self::Kept(path) => path,
