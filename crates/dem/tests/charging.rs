@@ -176,9 +176,7 @@ fn bounces_on_one_spot_approach_the_steady_charge() {
         let steady = -6.2587e-13;
         for (n, charge) in charges.iter().enumerate() {
             let expected = steady * (1.0 - (-(n as f64 + 1.0) * relaxation).exp());
-            // Until the first evaluation of a contact E_x is that of the centre by the forecast, which errs
-            // by up to a hundredth of the image's field: 7.1e-4 of the charge is seen after 20 bounces.
-            let bound = if name.starts_with("insulating") { 10.0 * ONE_IMPACT } else { ONE_IMPACT };
+            let bound = if name.starts_with("insulating") { 5.0 * ONE_IMPACT } else { ONE_IMPACT };
             assert!(
                 (charge / expected - 1.0).abs() < bound,
                 "{name}, bounce {n}: {charge:e} for {expected:e}"

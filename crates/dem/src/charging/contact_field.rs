@@ -7,6 +7,9 @@
 //! its tangent plane at the contact, which doubles their normal field there. What is there without charges,
 //! an external field or that of electrodes, has no images and stays as it is.
 //!
+//! Between evaluations E_x follows the line through the last two, where both foresaw the contact, to the
+//! middle of the time in which the area grew.
+//!
 //! A contact that was not foreseen has a stand-in until the next evaluation: the mean of E at the two centres
 //! without the partner's field, or at a wall E at the centre without the grain's own image.
 
@@ -14,15 +17,20 @@ use super::around::Toucher;
 use super::spots::Contact;
 use super::{Charging, Traders, inside};
 use crate::contacts::Contacts;
+use crate::contacts::memory::Foreseen;
 use crate::contacts::neighbours::{Listed, Neighbours};
-use crate::contacts::walls::{ContactWalls, Touch, WallSlot};
+use crate::contacts::walls::Touch;
 use crate::field_stage::Extras;
-use crate::motion::grains::Grains;
+use crate::motion::grains::{Grains, Original};
 use amberfield_core::{Domain, Vector3, WallCharging};
+use serde::{Deserialize, Serialize};
 
 /// Distance before a wall at which its field is asked for, over the radius: a wall of facets may lie outside
 /// the field's curved domain.
 const BEFORE_WALL: f64 = 0.02;
+
+/// Cosine of the largest turn for which a contact with a wall is the one that was foreseen (60°).
+const SAME_CONTACT: f64 = 0.5;
 
 /// A contact at which E is asked for.
 #[derive(Clone, Copy, Debug)]
@@ -37,7 +45,25 @@ pub(super) struct Probe {
 #[derive(Clone, Copy, Debug)]
 enum Slot {
     Pair { chunk: usize, entry: usize },
-    Wall(WallSlot),
+    Wall(Original),
+}
+
+/// Contact with a wall that an evaluation foresaw.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
+pub(crate) struct AtWall {
+    grain: Original,
+    /// Direction from the grain to the wall.
+    normal: Vector3<f64>,
+    foreseen: Foreseen,
+}
+
+/// Contact of a grain in the direction that is nearest to a normal, among contacts sorted by grain.
+fn at_wall(contacts: &[AtWall], grain: Original, normal: &Vector3<f64>) -> Option<Foreseen> {
+    let from = contacts.partition_point(|contact| contact.grain < grain);
+    let of_grain = contacts[from..].iter().take_while(|contact| contact.grain == grain);
+    let cosines = of_grain.map(|contact| (contact.normal.dot(normal), contact.foreseen));
+    let nearest = cosines.max_by(|(a, _), (b, _)| a.total_cmp(b));
+    nearest.filter(|(cosine, _)| *cosine > SAME_CONTACT).map(|(_, foreseen)| foreseen)
 }
 
 impl Charging {
@@ -57,15 +83,15 @@ impl Charging {
         }
     }
 
-    /// Adds the charges of walls and the places of contacts to `extras`. Pairs that are up to `margin` [m]
-    /// apart are asked for as well: they may touch before the next evaluation. `charge` is by the set-up's
-    /// order [C].
+    /// Adds the charges of walls and the places of contacts to `extras`. Pairs, and grains and walls, that
+    /// are up to given margins [m] apart are asked for as well: they may touch before the next evaluation.
+    /// `charge` is by the set-up's order [C].
     pub(super) fn ask(
         &mut self,
         traders: Traders<'_>,
         contacts: &Contacts,
         charge: &[f64],
-        margin: f64,
+        [of_pairs, of_walls]: [f64; 2],
         extras: &mut Extras,
     ) {
         let Traders { domain, grains, .. } = traders;
@@ -77,7 +103,7 @@ impl Charging {
         probes.clear();
         let k = self.coulomb;
         let of = |grain: usize| charge[grains.original[grain].index()];
-        Self::pairs_within(traders, neighbours, margin, |pair, offset| {
+        Self::pairs_within(traders, neighbours, of_pairs, |pair, offset| {
             let distance = offset.norm();
             let normal = offset / distance;
             let (a, b) = (grains.centre[pair.i][3], grains.centre[pair.j][3]);
@@ -89,11 +115,14 @@ impl Charging {
             let slot = Slot::Pair { chunk: pair.chunk, entry: pair.entry };
             probes.push(Probe { slot, normal, own, mirror: Mirror::NONE });
         });
-        for touch in walls.into_iter().flat_map(|walls| walls.touches(grains)) {
+        let touching = walls.into_iter().flat_map(|walls| walls.touches(grains));
+        let upcoming = walls.into_iter().flat_map(|walls| walls.upcoming(domain, grains, of_walls));
+        for touch in touching.map(|touching| touching.touch).chain(upcoming) {
             if traders.member(touch.grain).is_none() {
                 continue;
             }
             let Touch { grain, normal, distance, .. } = touch;
+            let original = grains.original[grain];
             let before = BEFORE_WALL * grains.centre[grain][3];
             let place = grains.position(grain) + normal * (distance - before);
             let charge = of(grain);
@@ -106,28 +135,33 @@ impl Charging {
                 own += self.spots.evaluated(domain, &contact, [place, normal], mirror.image, false, k);
             }
             extras.push(inside(domain, place), 0.0);
-            probes.push(Probe { slot: Slot::Wall(touch.slot), normal, own, mirror });
+            probes.push(Probe { slot: Slot::Wall(original), normal, own, mirror });
         }
         self.probes = probes;
     }
 
     /// Takes E [V/m] at what was asked for.
-    pub(super) fn take(
-        &mut self,
-        e: &[Vector3<f64>],
-        neighbours: &mut Neighbours,
-        mut walls: Option<&mut ContactWalls>,
-        charge: &[f64],
-    ) {
+    pub(super) fn take(&mut self, e: &[Vector3<f64>], neighbours: &mut Neighbours, charge: &[f64]) {
         let sources = e.len() - self.probes.len();
+        self.evaluation += 1;
+        let (evaluation, age) = (self.evaluation, std::mem::take(&mut self.age));
+        let mut at_walls = Vec::with_capacity(self.at_walls.len());
         for (probe, e) in self.probes.iter().zip(&e[sources..]) {
             let field = probe.mirror.of_others(e.dot(&probe.normal) - probe.own);
-            match (probe.slot, walls.as_mut()) {
-                (Slot::Pair { chunk, entry }, _) => neighbours.lists[chunk].foreseen[entry] = Some(field),
-                (Slot::Wall(slot), Some(walls)) => walls.memory_mut(slot).foreseen = Some(field),
-                (Slot::Wall(_), None) => {}
+            match probe.slot {
+                Slot::Pair { chunk, entry } => {
+                    let known = &mut neighbours.lists[chunk].foreseen[entry];
+                    *known = Foreseen::new(field, evaluation, Some(*known), age);
+                }
+                Slot::Wall(grain) => {
+                    let known = at_wall(&self.at_walls, grain, &probe.normal);
+                    let foreseen = Foreseen::new(field, evaluation, known, age);
+                    at_walls.push(AtWall { grain, normal: probe.normal, foreseen });
+                }
             }
         }
+        at_walls.sort_by_key(|contact| contact.grain);
+        self.at_walls = at_walls;
         self.evaluated.copy_from_slice(charge);
         self.lag = 0.0;
     }
@@ -144,6 +178,12 @@ impl Charging {
         let distance2 = offset.norm_squared();
         let sum = traders.field.at(pair.i) + traders.field.at(pair.j);
         0.5 * (sum.dot(&offset) / distance2.sqrt() + self.coulomb * (of_j - of_i) / distance2)
+    }
+
+    /// E_x·n of a contact with a wall [V/m] in the middle of the step, if it was foreseen.
+    pub(super) fn foreseen_at_wall(&self, traders: Traders<'_>, touch: &Touch) -> Option<f64> {
+        let grain = traders.grains.original[touch.grain];
+        at_wall(&self.at_walls, grain, &touch.normal)?.at(self.evaluation, self.age as f64 - 0.5)
     }
 
     /// E_x·n of a contact with a wall that was not foreseen [V/m].

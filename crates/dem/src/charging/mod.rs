@@ -28,16 +28,16 @@ pub(crate) use rounds::Round;
 pub use spots::ChargedSpot;
 pub(crate) use state::ChargingState;
 
-use crate::contacts::memory::{Follow, Memory, PairGrowth};
+use crate::contacts::memory::{Follow, Foreseen, Growth, PairGrowth};
 use crate::contacts::neighbours::Neighbours;
-use crate::contacts::walls::Touch;
+use crate::contacts::walls::Touching;
 use crate::field_stage::FieldStage;
 use crate::motion::grains::Grains;
 use amberfield_core::{ChargeTransfer, Domain, FieldSettings, Material, Particles, Vector3};
 use amberfield_laws::charge_transfer::Drive;
 use amberfield_laws::dielectric_breakdown;
 use around::Around;
-use contact_field::Probe;
+use contact_field::{AtWall, Probe};
 use materials::ChargingTable;
 use pairs::MemberCharge;
 use serde::{Deserialize, Serialize};
@@ -91,14 +91,21 @@ pub(crate) struct Charging {
     lag: f64,
     /// Charges at the last evaluation, by the set-up's order [C].
     evaluated: Vec<f64>,
+    /// Number of the last evaluation, and the steps since.
+    evaluation: u64,
+    age: u64,
+    /// Steps whose growth between grains has not moved charge yet.
+    gathered: u64,
+    /// Contacts with walls that the last evaluation foresaw, sorted by grain.
+    at_walls: Vec<AtWall>,
     probes: Vec<Probe>,
     around: Around,
     /// Charges in the making of a trade.
     held: Vec<MemberCharge>,
     /// Contacts with walls in the making of a trade.
-    touches: Vec<Touch>,
+    touches: Vec<Touching>,
     /// Sorted indices of the grains that traded with walls last.
-    pub(crate) at_walls: Vec<u32>,
+    pub(crate) traded_at_walls: Vec<u32>,
 }
 
 impl Charging {
@@ -121,11 +128,15 @@ impl Charging {
             backwards: false,
             lag: 0.0,
             evaluated: particles.charge.clone(),
+            evaluation: 0,
+            age: 0,
+            gathered: 0,
+            at_walls: Vec::new(),
             probes: Vec::new(),
             around: Around::default(),
             held: Vec::new(),
             touches: Vec::new(),
-            at_walls: Vec::new(),
+            traded_at_walls: Vec::new(),
         }
     }
 
@@ -136,9 +147,12 @@ impl Charging {
             let all = all.map(|(entry, (&growth, &foreseen))| PairGrowth {
                 chunk: k as u32,
                 entry: entry as u32,
-                memory: Memory { growth, foreseen },
+                growth,
+                foreseen,
             });
-            pairs.extend(all.filter(|pair| pair.memory != Memory::default()));
+            let is_known =
+                |pair: &PairGrowth| pair.growth != Growth::default() || pair.foreseen != Foreseen::default();
+            pairs.extend(all.filter(is_known));
         }
         ChargingState {
             charge: particles.charge.clone(),
@@ -148,6 +162,10 @@ impl Charging {
             ledger: self.ledger.clone(),
             backwards: self.backwards,
             lag: self.lag,
+            evaluation: self.evaluation,
+            age: self.age,
+            gathered: self.gathered,
+            at_walls: self.at_walls.clone(),
         }
     }
 
@@ -164,7 +182,7 @@ impl Charging {
             let list = list.filter(|list| entry < list.growth.len());
             let list =
                 list.ok_or_else(|| format!("charging of unknown contact {:?}", [pair.chunk, pair.entry]))?;
-            (list.growth[entry], list.foreseen[entry]) = (pair.memory.growth, pair.memory.foreseen);
+            (list.growth[entry], list.foreseen[entry]) = (pair.growth, pair.foreseen);
         }
         if state.ledger.walls.len() != self.ledger.walls.len()
             || state.evaluated.len() != self.evaluated.len()
@@ -175,6 +193,8 @@ impl Charging {
         self.spots.restore(domain, &state.spots);
         self.ledger = state.ledger.clone();
         (self.backwards, self.lag) = (state.backwards, state.lag);
+        (self.evaluation, self.age, self.gathered) = (state.evaluation, state.age, state.gathered);
+        self.at_walls.clone_from(&state.at_walls);
         Ok(())
     }
 

@@ -63,6 +63,7 @@ impl Charging {
     ) {
         neighbours.lists.par_iter_mut().for_each(ChunkList::list_grown);
         if neighbours.lists.iter().all(|list| list.grown.is_empty()) {
+            self.gathered = 0;
             return;
         }
         let original = &traders.grains.original;
@@ -82,6 +83,7 @@ impl Charging {
         }
         self.held = held;
         self.backwards = !self.backwards;
+        self.gathered = 0;
         self.lag += traded.largest;
         self.ledger.moved += traded.moved;
     }
@@ -193,8 +195,11 @@ impl Charging {
         let Listed { i, j, .. } = pair;
         let grains = traders.grains;
         let materials = self.table.get(grains.material[i], grains.material[j]);
-        let field =
-            list.foreseen[pair.entry].unwrap_or_else(|| self.unforeseen(traders, shifts, pair, [of_i, of_j]));
+        // Half of the growth came earlier.
+        let middle = self.age as f64 - 0.5 * self.gathered as f64;
+        let field = list.foreseen[pair.entry]
+            .at(self.evaluation, middle)
+            .unwrap_or_else(|| self.unforeseen(traders, shifts, pair, [of_i, of_j]));
         let colliders = [(of_i, i), (of_j, j)]
             .map(|(charge, grain)| ChargedSphere { charge, radius: grains.centre[grain][3] });
         let drive = between_grains(self.permittivity, materials.work, colliders, field);

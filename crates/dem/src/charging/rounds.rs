@@ -30,7 +30,10 @@ impl Charging {
     /// Follows the contact areas of walls in a step, 0 for the start, as the forces do those of pairs, and
     /// counts the contacts that begin.
     pub(crate) fn follow_areas(&mut self, step: u64, grains: &Grains, contacts: &mut Contacts) {
-        self.ledger.collisions += contacts.neighbours.lists.iter().map(|list| list.begun).sum::<u64>();
+        self.age += 1;
+        self.gathered += 1;
+        self.ledger.collisions +=
+            contacts.neighbours.lists.iter().map(|list| list.met.len() as u64).sum::<u64>();
         if let Some(walls) = &mut contacts.walls {
             self.ledger.collisions += walls.follow(grains, self.follow(step));
         }
@@ -48,7 +51,7 @@ impl Charging {
         let Round { domain, grains, contacts, field, charge } = round;
         let Some(walls) = &mut contacts.walls else { return };
         self.trade_walls(Traders { domain, grains, field }, &contacts.neighbours, walls, charge);
-        let traded = self.at_walls.iter().map(|&grain| grain as usize);
+        let traded = self.traded_at_walls.iter().map(|&grain| grain as usize);
         field.recharge(traded, &grains.original, charge);
     }
 
@@ -57,12 +60,13 @@ impl Charging {
     pub(crate) fn ask_field(&mut self, round: &Round<'_>, travel: f64, skin: f64, extras: &mut Extras) {
         extras.clear();
         let steps = FORESIGHT * round.field.intervals().steps_now as f64;
-        let margin = (2.0 * travel * steps).min(skin);
-        self.ask(round.traders(), round.contacts, round.charge, margin, extras);
+        let reach = travel * steps;
+        let margins = [(2.0 * reach).min(skin), reach];
+        self.ask(round.traders(), round.contacts, round.charge, margins, extras);
     }
 
     /// Takes E [V/m] at what was asked for.
     pub(crate) fn take_field(&mut self, e: &[Vector3<f64>], contacts: &mut Contacts, charge: &[f64]) {
-        self.take(e, &mut contacts.neighbours, contacts.walls.as_mut(), charge);
+        self.take(e, &mut contacts.neighbours, charge);
     }
 }

@@ -1,5 +1,6 @@
 //! State of charge transfer, for checkpoints.
 
+use super::contact_field::AtWall;
 use super::{ChargedSpot, Ledger};
 use crate::contacts::memory::PairGrowth;
 use serde::{Deserialize, Serialize};
@@ -15,4 +16,8 @@ pub(crate) struct ChargingState {
     pub(crate) ledger: Ledger,
     pub(crate) backwards: bool,
     pub(crate) lag: f64,
+    pub(crate) evaluation: u64,
+    pub(crate) age: u64,
+    pub(crate) gathered: u64,
+    pub(crate) at_walls: Vec<AtWall>,
 }

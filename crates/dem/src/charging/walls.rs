@@ -5,7 +5,7 @@ use super::contact_field::Mirror;
 use super::spots::Contact;
 use super::{Charging, LAG_SEEN, Traders};
 use crate::contacts::neighbours::Neighbours;
-use crate::contacts::walls::{ContactWalls, Touch};
+use crate::contacts::walls::{ContactWalls, Touch, Touching};
 use amberfield_core::{Vector3, WallCharging};
 use amberfield_laws::charge_transfer::{ChargedSphere, with_grounded_wall, with_insulating_wall};
 
@@ -20,32 +20,33 @@ impl Charging {
     ) {
         let mut grown = std::mem::take(&mut self.touches);
         grown.clear();
-        grown.extend(walls.touches(traders.grains).filter(|touch| touch.memory.growth.due() > 0.0));
+        grown.extend(walls.touches(traders.grains).filter(|touching| touching.growth.due() > 0.0));
         if self.backwards {
             grown.reverse();
         }
         if self.lag > LAG_SEEN && !grown.is_empty() {
             self.around.build(traders.grains, neighbours);
         }
-        self.at_walls.clear();
+        self.traded_at_walls.clear();
         let mut largest = 0.0_f64;
-        for touch in &grown {
-            walls.memory_mut(touch.slot).growth.settle();
-            largest = largest.max(self.trade_wall(traders, touch, charge));
+        for Touching { slot, touch, growth } in &grown {
+            walls.growth_mut(*slot).settle();
+            largest = largest.max(self.trade_wall(traders, touch, growth.due(), charge));
         }
         self.lag += largest;
         self.touches = grown;
     }
 
-    /// Moves the charge that is due at one contact; returns αΔA, by how much the contact relaxed.
-    fn trade_wall(&mut self, traders: Traders<'_>, touch: &Touch, charge: &mut [f64]) -> f64 {
+    /// Moves the charge that a growth of the area [m²] moves at one contact; returns αΔA, by how much the
+    /// contact relaxed.
+    fn trade_wall(&mut self, traders: Traders<'_>, touch: &Touch, growth: f64, charge: &mut [f64]) -> f64 {
         let grains = traders.grains;
         let Some(a) = traders.member(touch.grain) else { return 0.0 };
         let materials = self.table.get(grains.material[touch.grain], touch.material);
         let contact = Contact::of(traders, touch);
         let number = self.spots.at(traders.domain, &contact);
-        let mut field =
-            touch.memory.foreseen.unwrap_or_else(|| self.unforeseen_at_wall(traders, touch, charge));
+        let foreseen = self.foreseen_at_wall(traders, touch);
+        let mut field = foreseen.unwrap_or_else(|| self.unforeseen_at_wall(traders, touch, charge));
         if self.lag > LAG_SEEN {
             let wall_itself = Toucher { grain: WALL, offset: Vector3::zeros() };
             let charges = |grain: usize| charge[grains.original[grain].index()];
@@ -63,14 +64,14 @@ impl Charging {
             }
             _ => with_grounded_wall(permittivity, work, grain, field),
         };
-        let growth = touch.memory.growth.due() * materials.area_factor;
+        let growth = growth * materials.area_factor;
         let moved = self.allowed(drive, work, drive.transfer(growth));
         // Positive is from the grain to the wall.
         charge[a] -= moved;
         self.spots.leave(traders.domain, number, &contact, moved);
         self.ledger.walls[touch.wall as usize] += moved;
         self.ledger.moved += moved.abs();
-        self.at_walls.push(touch.grain as u32);
+        self.traded_at_walls.push(touch.grain as u32);
         drive.decay * growth
     }
 }

@@ -50,12 +50,36 @@ impl Growth {
     }
 }
 
-/// All that a contact remembers of its charging.
+/// E_x·n at a contact, on the line through the last two evaluations of the field that foresaw it.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
-pub(crate) struct Memory {
-    pub(crate) growth: Growth,
-    /// E_x·n at the last evaluation of the field [V/m]; `None`: the contact was not foreseen there.
-    pub(crate) foreseen: Option<f64>,
+pub(crate) struct Foreseen {
+    /// E_x·n at the evaluation [V/m].
+    field: f64,
+    /// Change per step [V/m]; zero where the evaluation before did not foresee the contact.
+    slope: f64,
+    /// Number of the evaluation; 0: none has foreseen the contact.
+    evaluation: u64,
+}
+
+impl Foreseen {
+    /// Takes E_x·n [V/m] of an evaluation, `age` steps after the one before, which may have `known` it.
+    pub(crate) fn new(field: f64, evaluation: u64, known: Option<Self>, age: u64) -> Self {
+        let known =
+            known.filter(|known| known.evaluation > 0 && known.evaluation + 1 == evaluation && age > 0);
+        let slope = known.map_or(0.0, |known| (field - known.field) / age as f64);
+        Self { field, slope, evaluation }
+    }
+
+    /// E_x·n [V/m], `age` steps after the evaluation of a number; `None` if that did not foresee the contact.
+    #[inline(always)]
+    pub(crate) fn at(self, evaluation: u64, age: f64) -> Option<f64> {
+        (self.evaluation > 0 && self.evaluation == evaluation).then_some(self.field + self.slope * age)
+    }
+
+    /// E_x·n as seen from the other collider.
+    pub(crate) fn times(self, sign: f64) -> Self {
+        Self { field: sign * self.field, slope: sign * self.slope, ..self }
+    }
 }
 
 /// A pair of a list whose growth is due.
@@ -107,7 +131,8 @@ pub(crate) struct WallHistory {
     pub(crate) spring: Spring,
     /// Rolling torque [N·m].
     pub(crate) rolling: [f64; 3],
-    pub(crate) charging: Memory,
+    /// Growth of the area.
+    pub(crate) growth: Growth,
 }
 
 /// State of all contacts, for checkpoints.
@@ -128,7 +153,8 @@ pub(crate) struct PairGrowth {
     pub(crate) chunk: u32,
     /// Entry in that list.
     pub(crate) entry: u32,
-    pub(crate) memory: Memory,
+    pub(crate) growth: Growth,
+    pub(crate) foreseen: Foreseen,
 }
 
 #[cfg(test)]

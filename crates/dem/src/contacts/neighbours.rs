@@ -2,7 +2,7 @@
 
 use crate::contacts::cells::{INDEX_BITS, INDEX_MASK, LinkedCells};
 use crate::contacts::material_pairs::Features;
-use crate::contacts::memory::{Follow, Grown, Growth, PairHistory, Spring};
+use crate::contacts::memory::{Follow, Foreseen, Grown, Growth, PairHistory, Spring};
 use crate::motion::chunks::{CHUNK, NO_PUSH, Push, chunk_count, for_each_chunk, is_parallel};
 use crate::motion::grains::Grains;
 use amberfield_core::{Domain, Vector3};
@@ -31,13 +31,12 @@ pub(crate) struct ChunkList {
     pub(crate) rolling: Vec<[f64; 3]>,
     /// Charging of the entries; empty without charge transfer.
     pub(crate) growth: Vec<Growth>,
-    /// E_x·n of the entries at the last evaluation of the field [V/m], `None` of those that were not foreseen
-    /// there; empty without charge transfer.
-    pub(crate) foreseen: Vec<Option<f64>>,
+    /// E_x·n of the entries by evaluations of the field; empty without charge transfer.
+    pub(crate) foreseen: Vec<Foreseen>,
     /// Entries whose growth is due, in the making of a trade.
     pub(crate) grown: Vec<Grown>,
-    /// Contacts that began in the last evaluation, counted with charge transfer only.
-    pub(crate) begun: u64,
+    /// Contacts that began at the last evaluation.
+    pub(crate) met: Vec<Hit>,
     /// Scratch of the step.
     pub(crate) hits: Vec<Hit>,
     /// Pushes of this chunk on grains of others.
@@ -232,6 +231,12 @@ impl Neighbours {
         self.pairs().filter(|pair| self.lists[pair.chunk].touching[pair.entry])
     }
 
+    /// Pairs that began to touch at the last evaluation, in order.
+    pub(crate) fn met(&self) -> impl Iterator<Item = Listed> + '_ {
+        let lists = self.lists.iter().enumerate();
+        lists.flat_map(|(k, list)| list.met.iter().map(move |hit| list.listed(k, hit.local, hit.entry)))
+    }
+
     /// Number of touching pairs.
     pub(crate) fn contacts(&self) -> usize {
         self.lists.iter().map(|list| list.contacts).sum()
@@ -251,8 +256,7 @@ impl ChunkList {
     #[inline(always)]
     pub(crate) fn follow_area(&mut self, entry: u32, area: f64, follow: Follow) {
         let entry = entry as usize;
-        let begins = self.growth[entry].follow(area, self.touching[entry], follow);
-        self.begun += u64::from(begins);
+        self.growth[entry].follow(area, self.touching[entry], follow);
     }
 
     fn fill(&mut self, k: usize, cells: &LinkedCells, grains: &Grains, features: Features) {
@@ -274,14 +278,16 @@ impl ChunkList {
         self.growth.clear();
         self.growth.resize(if features.charging { entries } else { 0 }, Growth::default());
         self.foreseen.clear();
-        self.foreseen.resize(self.growth.len(), None);
+        self.foreseen.resize(self.growth.len(), Foreseen::default());
         self.grown.clear();
         self.grown.reserve(self.growth.len());
+        self.met.clear();
+        self.met.reserve(entries);
         self.hits.resize(entries + 1, Hit::default());
         self.contacts = 0;
     }
 
-    /// Takes the histories of pairs that overlap now from the lists before.
+    /// Takes the histories of pairs that overlap now from the lists before, and the fields foreseen of all.
     fn inherit(
         &mut self,
         k: usize,
@@ -299,14 +305,19 @@ impl ChunkList {
                 let shift = shifts[(partner >> INDEX_BITS) as usize];
                 let (a, b) = (&grains.centre[i], &grains.centre[j]);
                 let d2: f64 = (0..3).map(|x| (b[x] + shift[x] - a[x]).powi(2)).sum();
-                if d2 >= (a[3] + b[3]).powi(2) {
+                let overlaps = d2 < (a[3] + b[3]).powi(2);
+                if !(overlaps || features.charging) {
                     continue;
                 }
                 let (old_i, old_j) = (order[i], order[j]);
                 let found = find(previous, old_i, old_j)
                     .map(|(list, e)| (list, e, 1.0))
                     .or_else(|| find(previous, old_j, old_i).map(|(list, e)| (list, e, -1.0)));
-                if let Some((list, old, sign)) = found {
+                let Some((list, old, sign)) = found else { continue };
+                if features.charging {
+                    self.foreseen[entry] = list.foreseen[old].times(sign);
+                }
+                if overlaps && list.touching[old] {
                     self.touching[entry] = true;
                     if features.friction {
                         let Spring { force, contact_radius } = list.spring[old];
@@ -317,7 +328,6 @@ impl ChunkList {
                     }
                     if features.charging {
                         self.growth[entry] = list.growth[old];
-                        self.foreseen[entry] = list.foreseen[old].map(|field| sign * field);
                     }
                 }
             }
@@ -325,11 +335,11 @@ impl ChunkList {
     }
 }
 
-/// The touching entry of `j` in the list of `i`.
+/// Entry of `j` in the list of `i`.
 fn find(lists: &[ChunkList], i: u32, j: u32) -> Option<(&ChunkList, usize)> {
     let list = &lists[i as usize / CHUNK];
     let local = i as usize % CHUNK;
     (list.start[local] as usize..list.start[local + 1] as usize)
-        .find(|&entry| list.partner[entry] & INDEX_MASK == j && list.touching[entry])
+        .find(|&entry| list.partner[entry] & INDEX_MASK == j)
         .map(|entry| (list, entry))
 }

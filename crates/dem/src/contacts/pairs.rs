@@ -142,7 +142,8 @@ fn chunk<const FRICTION: bool, const ROLLING: bool, const DAMPING: bool, const P
     loads.slowing.fill(0.0);
     list.filled.fill(false);
     let found = find_hits::<PERIODIC>(scene, first, list);
-    (list.contacts, list.begun, list.deepest) = (found, 0, 0.0);
+    (list.contacts, list.deepest) = (found, 0.0);
+    list.met.clear();
     let mut batch = Batch::new(*scene.table.get(0, 0));
     for start in (0..found).step_by(BATCH) {
         let size = BATCH.min(found - start);
@@ -176,6 +177,9 @@ fn write<const FRICTION: bool, const ROLLING: bool, const DAMPING: bool>(
     let Hit { entry, local, slot } = list.hits[hit];
     let (entry, local) = (entry as usize, local as usize);
     let j = (list.partner[entry] & INDEX_MASK) as usize;
+    if !list.touching[entry] {
+        list.met.push(list.hits[hit]);
+    }
     list.touching[entry] = true;
     list.deepest = list.deepest.max(batch.depth[lane]);
     if FRICTION {

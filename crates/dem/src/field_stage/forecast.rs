@@ -50,6 +50,16 @@ impl Forecast {
         self.at(grain, age) * self.charge[grain]
     }
 
+    /// Charge of a grain [C]; zero before the first evaluation.
+    pub(crate) fn charge(&self, grain: usize) -> f64 {
+        self.charge.get(grain).copied().unwrap_or(0.0)
+    }
+
+    /// Sum of the squared electric forces at the last evaluation, less those of the external field [N²].
+    pub(crate) fn squared_forces(&self) -> f64 {
+        self.scale.weights * self.scale.of_forces.powi(2)
+    }
+
     /// Takes a grain's new charge [C]; nothing is known before the first evaluation.
     pub(crate) fn recharge(&mut self, grain: usize, charge: f64) {
         if let Some(known) = self.charge.get_mut(grain).filter(|known| **known != charge) {
@@ -227,6 +237,8 @@ struct Scale {
     of_all: f64,
     /// Scale with the charges squared as weights: the forces'.
     of_forces: f64,
+    /// Sum of the squared charges [C²].
+    weights: f64,
 }
 
 impl Scale {
@@ -242,6 +254,7 @@ impl Scale {
             least: medium.least,
             of_all: root(all, count).max(medium.least),
             of_forces: root(forces, weights).max(medium.least),
+            weights,
         }
     }
 }

@@ -8,12 +8,14 @@
 //!   little about grains that are elsewhere by now;
 //! * as soon as charges, or E by what their changes do to it, have changed by the tolerance in RMS, at
 //!   contacts or because grains have left;
+//! * as soon as impacts have turned grains so that the extrapolation errs by the tolerance ([`impacts`]);
 //! * at the latest after 0.2/ω_p.
 //!
 //! A number of steps is kept as it is. All depends on the grains only.
 
 mod answers;
 mod forecast;
+mod impacts;
 mod interval;
 mod members;
 mod source;
@@ -32,6 +34,7 @@ use amberfield_field::far::FarSolver;
 use amberfield_field::{FieldValues, Wanted};
 use amberfield_laws::{force_limit, time_step_limits};
 use forecast::{EnergyForecast, FieldEnergy, Forecast, Medium};
+use impacts::Impacts;
 use interval::IntervalControl;
 use members::{Charges, Members};
 use serde::{Deserialize, Serialize};
@@ -90,6 +93,7 @@ pub(crate) struct FieldStage {
     forecast: Forecast,
     energy: EnergyForecast,
     control: IntervalControl,
+    impacts: Impacts,
     /// Travel of the fastest grain since the last evaluation [m].
     travel: f64,
     /// Most steps between evaluations under the plasma limit.
@@ -130,6 +134,7 @@ impl FieldStage {
             forecast: Forecast::default(),
             energy: EnergyForecast::default(),
             control: IntervalControl::new(),
+            impacts: Impacts::default(),
             travel: 0.0,
             plasma_steps: 1,
             plasma_limit: f64::INFINITY,
@@ -140,6 +145,7 @@ impl FieldStage {
             stage.forecast.clone_from(&state.forecast);
             stage.energy = state.energy;
             stage.control = state.control;
+            stage.impacts = state.impacts;
             stage.travel = state.travel;
             stage.solver_iterations = state.solver_iterations;
             stage.plasma_steps = state.plasma_steps;
@@ -159,6 +165,7 @@ impl FieldStage {
             forecast: self.forecast.clone(),
             energy: self.energy,
             control: self.control,
+            impacts: self.impacts,
             travel: self.travel,
             plasma_steps: self.plasma_steps,
             plasma_limit: self.plasma_limit,
@@ -234,6 +241,7 @@ impl FieldStage {
         self.watch_plasma(grains, moment.step_s);
         let FieldSettings { coupling_interval, tolerance, .. } = self.settings;
         self.control.evaluated(check, coupling_interval, tolerance, self.plasma_steps);
+        self.impacts.evaluated(age);
         self.travel = 0.0;
         self.source.recheck(domain, &self.settings, &self.members, self.control.intervals.evaluations)?;
         Ok(())

@@ -2,6 +2,7 @@
 
 use super::Limited;
 use super::forecast::{EnergyForecast, Forecast};
+use super::impacts::Impacts;
 use super::interval::IntervalControl;
 use amberfield_field::Choice;
 use amberfield_field::far::FarState;
@@ -22,6 +23,7 @@ pub(crate) struct FieldState {
     pub(crate) forecast: Forecast,
     pub(crate) energy: EnergyForecast,
     pub(crate) control: IntervalControl,
+    pub(crate) impacts: Impacts,
     pub(crate) travel: f64,
     pub(crate) plasma_steps: u64,
     pub(crate) plasma_limit: f64,

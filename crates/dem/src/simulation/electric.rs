@@ -6,7 +6,7 @@ use super::state::Progress;
 use super::timing::Stage;
 use crate::charging::{ChargedSpot, Charging, Ledger, Round};
 use crate::error::DemError;
-use crate::field_stage::Moment;
+use crate::field_stage::{FieldStage, Moment};
 
 impl Simulation {
     /// Follows the areas of contacts, and moves the charge that is due: between grains every few steps, with
@@ -34,8 +34,12 @@ impl Simulation {
     /// whether it was.
     pub(super) fn evaluate_field_where_due(&mut self) -> Result<bool, DemError> {
         let Progress { step_s, speed, .. } = self.progress;
+        if let Some(field) = &mut self.field {
+            field.book_impacts(&self.domain, &self.grains, &self.contacts, step_s);
+        }
         let interval_ended = self.field.as_mut().is_some_and(|field| field.is_due(step_s, speed));
-        let due = interval_ended || self.charges_have_changed();
+        let turned = self.field.as_ref().is_some_and(FieldStage::impacts_are_due);
+        let due = interval_ended || turned || self.charges_have_changed();
         if due {
             self.evaluate_field()?;
         } else if let Some(field) = &mut self.field {

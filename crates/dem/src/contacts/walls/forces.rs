@@ -1,7 +1,7 @@
 //! Forces of walls on the grains of a chunk, and contacts that are the same from step to step.
 
 use super::parts::Part;
-use super::{ChunkWalls, WallContact, WallLoad, touches};
+use super::{ChunkWalls, Met, WallContact, WallLoad, touches};
 use crate::contacts::law::{Contact, History, respond};
 use crate::contacts::material_pairs::{PairConstants, PairTable};
 use crate::contacts::walls::surfaces::{Found, MOST_CONTACTS, Surfaces};
@@ -34,7 +34,8 @@ impl ChunkWalls {
         loads: ChunkLoads<'_>,
     ) {
         let &Scene { surfaces, parts, shifts, grains, table, rolling_model, step } = scene;
-        let Self { entries, triangles, contacts, charging: memory, scratch, loads: on_walls, deepest } = self;
+        let Self { entries, triangles, contacts, growth, scratch, met, loads: on_walls, deepest } = self;
+        met.clear();
         *deepest = 0.0;
         on_walls.clear();
         on_walls.resize(if entries.is_empty() { 0 } else { parts.len() }, WallLoad::default());
@@ -50,10 +51,16 @@ impl ChunkWalls {
             let count = surfaces.contacts(radius, near, scratch, &mut found);
             let kept = &mut contacts[entry.contacts as usize..];
             let from = renew(kept, entry.count as usize, &found[..count]);
-            if !memory.is_empty() {
-                touches::renew(&mut memory[entry.contacts as usize..], &from[..count]);
+            if !growth.is_empty() {
+                touches::renew(&mut growth[entry.contacts as usize..], &from[..count]);
             }
             entry.count = count as u32;
+            let begun = kept[..count].iter().zip(&from).filter(|(_, from)| from.is_none());
+            met.extend(begun.map(|(contact, _)| Met {
+                grain: i,
+                normal: contact.normal,
+                bounds_field: parts[surfaces.surface_of(contact.triangle)].bounds_field,
+            }));
             for (wall_contact, found) in kept[..count].iter_mut().zip(&found) {
                 let part = &parts[surfaces.surface_of(wall_contact.triangle)];
                 let pair = table.get(grains.material[i], part.material);

@@ -8,10 +8,10 @@ pub(crate) mod surfaces;
 mod touches;
 
 pub use loads::WallLoad;
-pub(crate) use touches::{Touch, WallSlot};
+pub(crate) use touches::{Met, Touch, Touching};
 
 use crate::contacts::material_pairs::{Features, PairTable};
-use crate::contacts::memory::{Memory, Spring, WallHistory};
+use crate::contacts::memory::{Growth, Spring, WallHistory};
 use crate::contacts::walls::parts::{Part, surfaces_of};
 use crate::contacts::walls::surfaces::{ClosestPoint, Surfaces};
 use crate::motion::chunks::{CHUNK, Loads, chunk_count, for_each_chunk, for_each_load, is_parallel};
@@ -76,9 +76,11 @@ pub(crate) struct ChunkWalls {
     entries: Vec<Entry>,
     triangles: Vec<NearTriangle>,
     contacts: Vec<WallContact>,
-    /// Charging of the contacts; empty without charge transfer.
-    charging: Vec<Memory>,
+    /// Growth of the contacts' areas; empty without charge transfer.
+    growth: Vec<Growth>,
     scratch: Vec<ClosestPoint>,
+    /// Contacts that began at the last evaluation.
+    met: Vec<Met>,
     /// Loads on each wall at the last evaluation; empty where no grain is near one.
     loads: Vec<WallLoad>,
     /// Largest overlap over the grain's radius at the last evaluation.
@@ -138,7 +140,7 @@ impl ContactWalls {
                         triangle: contact.triangle,
                         spring: contact.spring,
                         rolling: contact.rolling,
-                        charging: chunk.charging.get(number).copied().unwrap_or_default(),
+                        growth: chunk.growth.get(number).copied().unwrap_or_default(),
                     }
                 }));
             }

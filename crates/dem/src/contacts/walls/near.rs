@@ -2,7 +2,7 @@
 
 use super::{ChunkWalls, Entry, NearTriangle, WallContact};
 use crate::contacts::cells::NO_SHIFT;
-use crate::contacts::memory::{Memory, WallHistory};
+use crate::contacts::memory::{Growth, WallHistory};
 use crate::contacts::walls::surfaces::{MOST_CONTACTS, Surfaces};
 use crate::motion::chunks::CHUNK;
 use crate::motion::grains::Grains;
@@ -29,7 +29,7 @@ impl ChunkWalls {
         self.entries.clear();
         self.triangles.clear();
         self.contacts.clear();
-        self.charging.clear();
+        self.growth.clear();
         let mut near = Vec::new();
         let mut most = 0;
         for i in k * CHUNK..grains.len().min((k + 1) * CHUNK) {
@@ -50,7 +50,7 @@ impl ChunkWalls {
             }
             let (contacts, room) = (self.contacts.len(), count.min(MOST_CONTACTS));
             self.contacts.resize(contacts + room, WallContact::default());
-            self.charging.resize(if charge { contacts + room } else { 0 }, Memory::default());
+            self.growth.resize(if charge { contacts + room } else { 0 }, Growth::default());
             let original = grains.original[i];
             let from = histories.partition_point(|h| h.grain < original);
             let mut touching = 0;
@@ -64,7 +64,7 @@ impl ChunkWalls {
                     rolling: h.rolling,
                 };
                 if charge {
-                    self.charging[contacts + touching] = h.charging;
+                    self.growth[contacts + touching] = h.growth;
                 }
                 touching += 1;
             }
@@ -77,11 +77,13 @@ impl ChunkWalls {
         }
         self.scratch.clear();
         self.scratch.reserve(most);
+        self.met.clear();
+        self.met.reserve(self.contacts.len());
     }
 }
 
 /// The centre and its periodic images that can reach into the domain, with their shift codes.
-fn images<'a>(
+pub(super) fn images<'a>(
     domain: &'a Domain,
     shifts: &'a [[f64; 3]; 32],
     centre: Vector3<f64>,

@@ -54,6 +54,14 @@ pub(crate) struct Found {
     pub(crate) triangle: u32,
 }
 
+impl Found {
+    /// Overlap δ of the sphere and the wall at the contact [m].
+    pub(crate) fn depth(&self) -> f64 {
+        let of = |overlap: f64| overlap * overlap.sqrt();
+        if self.joined > 0.0 { (of(self.overlap) + of(self.joined)).cbrt().powi(2) } else { self.overlap }
+    }
+}
+
 /// A closest point.
 #[derive(Clone, Copy, Debug, Default)]
 pub(crate) struct ClosestPoint {

@@ -1,12 +1,15 @@
 //! Touching contacts with walls, one by one, for those who follow and charge them.
 
 use super::ContactWalls;
-use crate::contacts::memory::{Follow, Memory};
-use crate::contacts::walls::surfaces::MOST_CONTACTS;
+use super::near::images;
+use crate::contacts::cells::NO_SHIFT;
+use crate::contacts::memory::{Follow, Growth};
+use crate::contacts::walls::surfaces::{Found, MOST_CONTACTS};
 use crate::motion::chunks::CHUNK;
 use crate::motion::grains::Grains;
-use amberfield_core::{Vector3, WallCharging};
+use amberfield_core::{Domain, Vector3, WallCharging};
 use amberfield_laws::contact_area;
+use rayon::prelude::*;
 
 /// Place of a contact with a wall.
 #[derive(Clone, Copy, Debug)]
@@ -16,11 +19,18 @@ pub(crate) struct WallSlot {
     contact: u32,
 }
 
-/// A touching contact of a grain with a wall that trades charge.
+/// A touching contact with a wall that trades charge, and the growth of its area.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Touching {
+    /// Place of the growth.
+    pub(crate) slot: WallSlot,
+    pub(crate) touch: Touch,
+    pub(crate) growth: Growth,
+}
+
+/// Place where a grain touches a wall that trades charge, or may soon.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Touch {
-    /// Place of its memory.
-    pub(crate) slot: WallSlot,
     /// Sorted index.
     pub(crate) grain: usize,
     /// Wall of the scene.
@@ -32,7 +42,6 @@ pub(crate) struct Touch {
     pub(crate) normal: Vector3<f64>,
     /// Centre of the grain from the wall [m].
     pub(crate) distance: f64,
-    pub(crate) memory: Memory,
 }
 
 impl Touch {
@@ -50,12 +59,12 @@ impl ContactWalls {
             for entry in &chunk.entries {
                 let radius = grains.centre[k * CHUNK + entry.local as usize][3];
                 let touching = entry.contacts as usize..(entry.contacts + entry.count) as usize;
-                for (contact, memory) in
-                    chunk.contacts[touching.clone()].iter().zip(&mut chunk.charging[touching])
+                for (contact, growth) in
+                    chunk.contacts[touching.clone()].iter().zip(&mut chunk.growth[touching])
                 {
                     // What did not touch before has nothing to remember.
                     let area = contact_area::hertz(radius, contact.overlap);
-                    begun += u64::from(memory.growth.follow(area, true, follow));
+                    begun += u64::from(growth.follow(area, true, follow));
                 }
             }
         }
@@ -63,41 +72,97 @@ impl ContactWalls {
     }
 
     /// Touching contacts with walls that trade charge, in order.
-    pub(crate) fn touches<'a>(&'a self, grains: &'a Grains) -> impl DoubleEndedIterator<Item = Touch> + 'a {
+    pub(crate) fn touches<'a>(
+        &'a self,
+        grains: &'a Grains,
+    ) -> impl DoubleEndedIterator<Item = Touching> + 'a {
         self.chunks.iter().enumerate().flat_map(move |(k, chunk)| {
             chunk.entries.iter().flat_map(move |entry| {
                 (entry.contacts..entry.contacts + entry.count).filter_map(move |number| {
                     let contact = &chunk.contacts[number as usize];
                     let grain = k * CHUNK + entry.local as usize;
-                    let part = self.part(contact.triangle);
-                    (part.charging != WallCharging::None).then(|| Touch {
+                    let distance = grains.centre[grain][3] - contact.overlap;
+                    let touch = self.touch(grain, contact.triangle, contact.normal, distance);
+                    touch.map(|touch| Touching {
                         slot: WallSlot { chunk: k as u32, contact: number },
-                        grain,
-                        wall: part.wall,
-                        material: part.material,
-                        charging: part.charging,
-                        bounds_field: part.bounds_field,
-                        normal: contact.normal,
-                        distance: grains.centre[grain][3] - contact.overlap,
-                        memory: chunk.charging[number as usize],
+                        touch,
+                        growth: chunk.growth[number as usize],
                     })
                 })
             })
         })
     }
 
-    /// Memory that a contact has of its charging.
-    pub(crate) fn memory_mut(&mut self, WallSlot { chunk, contact }: WallSlot) -> &mut Memory {
-        &mut self.chunks[chunk as usize].charging[contact as usize]
+    /// Place at a triangle or plane whose wall trades charge.
+    fn touch(&self, grain: usize, triangle: u32, normal: Vector3<f64>, distance: f64) -> Option<Touch> {
+        let part = self.part(triangle);
+        (part.charging != WallCharging::None).then_some(Touch {
+            grain,
+            wall: part.wall,
+            material: part.material,
+            charging: part.charging,
+            bounds_field: part.bounds_field,
+            normal,
+            distance,
+        })
+    }
+
+    /// Places at walls that trade charge, up to `margin` [m] from grains that do not touch them, in order.
+    /// They may be farther than the lists know walls.
+    pub(crate) fn upcoming(&self, domain: &Domain, grains: &Grains, margin: f64) -> Vec<Touch> {
+        let chunk = |k: usize| {
+            let (mut numbers, mut near) = (Vec::new(), Vec::new());
+            let (mut scratch, mut touches) = (Vec::new(), Vec::new());
+            for grain in k * CHUNK..grains.len().min((k + 1) * CHUNK) {
+                let (centre, reach) = (grains.position(grain), grains.centre[grain][3] + margin);
+                near.clear();
+                for (shift, image) in images(domain, &self.shifts, centre, reach) {
+                    numbers.clear();
+                    self.surfaces.within(image, reach, &mut numbers);
+                    if shift == NO_SHIFT {
+                        self.surfaces.planes_within(centre, reach, &mut numbers);
+                    }
+                    near.extend(numbers.iter().map(|&number| (number, image)));
+                }
+                let mut found = [Found::default(); MOST_CONTACTS];
+                let count = self.surfaces.contacts(reach, near.iter().copied(), &mut scratch, &mut found);
+                touches.extend(found[..count].iter().filter(|found| found.depth() < margin).filter_map(
+                    |found| self.touch(grain, found.triangle, found.normal, reach - found.depth()),
+                ));
+            }
+            touches
+        };
+        (0..self.chunks.len()).into_par_iter().flat_map_iter(chunk).collect()
+    }
+
+    /// Contacts that began at the last evaluation, in order.
+    pub(crate) fn met(&self) -> impl Iterator<Item = &Met> {
+        self.chunks.iter().flat_map(|chunk| &chunk.met)
+    }
+
+    /// Growth of a contact's area.
+    pub(crate) fn growth_mut(&mut self, WallSlot { chunk, contact }: WallSlot) -> &mut Growth {
+        &mut self.chunks[chunk as usize].growth[contact as usize]
     }
 }
 
-/// Moves charging along with contacts that were others before; those that are gone have nothing due.
-pub(super) fn renew(memory: &mut [Memory], from: &[Option<usize>]) {
-    let mut old = [Memory::default(); MOST_CONTACTS];
-    let count = memory.len().min(MOST_CONTACTS);
-    old[..count].copy_from_slice(&memory[..count]);
-    for (memory, from) in memory.iter_mut().zip(from) {
-        *memory = from.map_or_else(Memory::default, |from| old[from]);
+/// Contact with a wall that begins.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Met {
+    /// Sorted index.
+    pub(crate) grain: usize,
+    /// Direction from the grain to the wall.
+    pub(crate) normal: Vector3<f64>,
+    /// Whether the wall mirrors the grain's charge, besides those on faces of the domain.
+    pub(crate) bounds_field: bool,
+}
+
+/// Moves growth along with contacts that were others before; those that are gone have nothing due.
+pub(super) fn renew(growth: &mut [Growth], from: &[Option<usize>]) {
+    let mut old = [Growth::default(); MOST_CONTACTS];
+    let count = growth.len().min(MOST_CONTACTS);
+    old[..count].copy_from_slice(&growth[..count]);
+    for (growth, from) in growth.iter_mut().zip(from) {
+        *growth = from.map_or_else(Growth::default, |from| old[from]);
     }
 }

@@ -148,6 +148,12 @@ fn contacts_remember_no_areas_unless_they_charge() {
     ] == [0; 3]));
 }
 
+/// E_x·n of a pair at the last evaluation [V/m].
+fn foreseen(run: &Simulation, k: usize, grown: Grown) -> Option<f64> {
+    let evaluation = run.field.as_ref().expect("a field").intervals().evaluations;
+    run.contacts.neighbours.lists[k].foreseen[grown.entry as usize].at(evaluation, 0.0)
+}
+
 #[test]
 fn field_at_contacts_is_the_direct_sum_of_all_others_there() {
     let places = close_packed(2);
@@ -160,7 +166,7 @@ fn field_at_contacts_is_the_direct_sum_of_all_others_there() {
     assert!(pairs.len() > 90);
     let count = run.grains.len();
     for (k, grown, i, j) in pairs {
-        let found = run.contacts.neighbours.lists[k].foreseen[grown.entry as usize].expect("it touches");
+        let found = foreseen(&run, k, grown).expect("it touches");
         let others = (0..count).filter(|&source| source != i && source != j);
         let term = |source: usize| grain_of(&run, source).charge * seen(&run, source, i, j);
         let exact: f64 = others.clone().map(term).sum();
@@ -184,7 +190,7 @@ fn charges_of_touching_grains_are_seen_before_the_next_evaluation() {
     };
     let &(k, grown, i, j) =
         pairs.iter().find(|(_, _, i, j)| [*i, *j].contains(&beside) && sees(*i, *j)).expect("a good scene");
-    assert_eq!(run.contacts.neighbours.lists[k].foreseen[grown.entry as usize], Some(0.0));
+    assert_eq!(foreseen(&run, k, grown), Some(0.0));
     let decay = between_grains(VACUUM_PERMITTIVITY, 0.0, [grain_of(&run, i), grain_of(&run, j)], 0.0).decay;
     force(&mut run, k, grown, 1e3 / decay);
     run.trade_between_grains();
@@ -212,7 +218,7 @@ fn force(run: &mut Simulation, k: usize, grown: Grown, growth: f64) {
 /// Driving terms of all contacts at the present charges, and the largest charge.
 fn driving(run: &Simulation, cutoff_m: f64, works: &[f64]) -> (f64, f64) {
     let term = |(k, grown, i, j): (usize, Grown, usize, usize)| {
-        let field = run.contacts.neighbours.lists[k].foreseen[grown.entry as usize].expect("it touches");
+        let field = foreseen(run, k, grown).expect("it touches");
         let work = work(run, cutoff_m, works, i, j);
         between_grains(VACUUM_PERMITTIVITY, work, [grain_of(run, i), grain_of(run, j)], field).drive.powi(2)
     };
@@ -289,8 +295,7 @@ fn explicit_update_of_all_at_once_runs_away_where_ours_does_not() {
         let drives: Vec<f64> = pairs
             .iter()
             .map(|&(k, grown, i, j)| {
-                let field =
-                    run.contacts.neighbours.lists[k].foreseen[grown.entry as usize].expect("a good scene");
+                let field = foreseen(&run, k, grown).expect("a good scene");
                 let pair = [grain_of(&run, i), grain_of(&run, j)];
                 let drive = between_grains(VACUUM_PERMITTIVITY, work(&run, 5e-7, &works, i, j), pair, field);
                 // αΔA = 1 of every contact.
