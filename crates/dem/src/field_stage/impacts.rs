@@ -6,7 +6,9 @@
 //! times the time since. A wall that mirrors the grain's charge at a height h stands for a grain at 2h. The
 //! squares of the errors of all impacts add up,
 //!
-//!     δE²(s) = Σ r² (s − s₁)² = A s² − 2B s + C,
+//! ```text
+//! δE²(s) = Σ r² (s − s₁)² = A s² − 2B s + C,
+//! ```
 //!
 //! s₁ the step of an impact, r the change of its error per step. The next evaluation sees the whole error,
 //! and puts 1 − s₁/S of what the slope lacks into the slope. The rest goes on through the next interval.
