@@ -135,6 +135,11 @@ fn scenes() -> Vec<Scene> {
         scene("chute", falling(bed(0.0), [0.3, 0.0, -0.3]), 0.1, OPEN, slope, 2000)
             .with_floor(WallCharging::Grounded)
             .with_charging(),
+        scene("landing", charged(falling(bed(0.0), [0.1, 0.05, -0.5]), sign), 0.1, grounded, down, 400)
+            .with_floor(WallCharging::None),
+        scene("first charges", falling(bed(0.0), [0.0, 0.0, -0.5]), 0.1, grounded, down, 150)
+            .with_floor(WallCharging::Grounded)
+            .with_charging(),
         scene("fast passage", two([1e-11, 1e-11]), 0.05, OPEN, [0.0; 3], 1000),
         scene("lone grain", lone, 0.05, grounded, down, 1500).with_floor(WallCharging::None),
     ]

@@ -126,7 +126,8 @@ impl Forecast {
     /// forecast; `None` the first time and when no step was taken.
     ///
     /// As much of the difference as charges may have made ([`Self::jumps`]) counts as jump, the rest as
-    /// drift. The slope takes the drift alone: a jump does not go on.
+    /// drift; all of it where there were no charges before. The slope takes the drift alone: a jump does not
+    /// go on.
     pub(crate) fn renew(
         &mut self,
         members: &Members,
@@ -151,7 +152,8 @@ impl Forecast {
             let difference = fresh - self.at(i, age);
             let difference2 = difference.norm_squared();
             let near = near_jump(charge - self.evaluated[i], &centre[i], coulomb);
-            let jump2 = difference2.min(near * near + far2);
+            let made2 = if jumps.share2 < 1.0 { near * near + far2 } else { f64::INFINITY };
+            let jump2 = difference2.min(made2);
             let drift2 = difference2 - jump2;
             sums.add(charge * charge, drift2, jump2);
             if known && difference2 > 0.0 {
