@@ -102,3 +102,26 @@ fn height(domain: &Domain, grains: &Grains, grain: usize) -> f64 {
     let faces = Axis::ALL.into_iter().flat_map(|axis| [(axis, Side::Min), (axis, Side::Max)]);
     faces.map(of_face).fold(f64::INFINITY, f64::min).max(grains.centre[grain][3])
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn sums_are_the_error_of_lines_through_values_that_turn() {
+        // Values of three grains go along lines that turn in some step: a turn of the slope, and the step.
+        let turns = [(0.3, 2.0), (-0.1, 7.0), (0.2, 9.0)];
+        let value = |(turn, at): (f64, f64), s: f64| 0.5 * s + turn * (s - at).max(0.0);
+        let mut impacts = Impacts::default();
+        turns.iter().for_each(|&(turn, at)| impacts.add(turn, at));
+        let error2 = |line: &dyn Fn((f64, f64), f64) -> f64, s: f64| {
+            turns.iter().map(|&grain| (value(grain, s) - line(grain, s)).powi(2)).sum::<f64>()
+        };
+        let before = |_: (f64, f64), s: f64| 0.5 * s;
+        assert!((impacts.error2(10.0) - error2(&before, 10.0)).abs() < 1e-12);
+        // The next line goes through the values in steps 0 and 10.
+        let after = |grain: (f64, f64), s: f64| value(grain, 10.0) * s / 10.0;
+        impacts.evaluated(10);
+        assert!((impacts.error2(6.0) - error2(&after, 16.0)).abs() < 1e-12);
+    }
+}
