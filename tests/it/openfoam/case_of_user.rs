@@ -250,7 +250,9 @@ fn two_runs_on_one_case_keep_apart() {
 
 #[test]
 fn resume_takes_other_technical_settings_and_names_what_is_physics() {
-    let bench = bench(&(SCENE.to_owned() + MOTION));
+    // What has changed shows within ten steps.
+    let often = SCENE.replace("[electric_field]", "[electric_field]\ncoupling_interval = 5");
+    let bench = bench(&(often + MOTION));
     good(&run(&bench, &["--out", "whole", "--steps", "50"]));
     good(&run(&bench, &["--out", "half", "--steps", "40"]));
     let checkpoint = "half/checkpoints/step_000000000040.amber";

@@ -15,9 +15,20 @@ struct Template {
     files: &'static [(&'static str, &'static str)],
 }
 
-macro_rules! files {
-    ($folder:literal: $($name:literal),+ $(,)?) => {
-        &[$(($name, include_str!(concat!("../../templates/", $folder, "/", $name)))),+]
+/// File of a template.
+macro_rules! template {
+    ($name:literal) => {
+        ("scene.toml", include_str!(concat!("../../templates/", $name, ".toml")))
+    };
+}
+
+/// File of the case of a fluidised bed, which is that of `cases`.
+macro_rules! case {
+    ($name:literal) => {
+        (
+            concat!("foam/", $name),
+            include_str!(concat!("../../../../cases/fluidised-charged-bed/foam/", $name)),
+        )
     };
 }
 
@@ -25,25 +36,33 @@ const TEMPLATES: &[Template] = &[
     Template {
         name: "bed",
         question: "charged beads settle between grounded plates",
-        files: files!("bed": "scene.toml"),
+        files: &[template!("bed")],
     },
     Template {
         name: "separator",
         question: "grains of both signs fall between two electrodes",
-        files: files!("separator": "scene.toml"),
+        files: &[template!("separator")],
     },
     Template {
         name: "chute",
         question: "grains slide down a metal chute and charge on it",
-        files: files!("chute": "scene.toml"),
+        files: &[template!("chute")],
     },
     Template {
         name: "fluidised-bed",
         question: "air fluidises a charged bed; over OpenFOAM",
-        files: files!("fluidised-bed": "scene.toml", "foam/0/U", "foam/0/p", "foam/0/phiE",
-            "foam/constant/transportProperties", "foam/constant/turbulenceProperties",
-            "foam/system/blockMeshDict", "foam/system/controlDict", "foam/system/fvSchemes",
-            "foam/system/fvSolution"),
+        files: &[
+            template!("fluidised-bed"),
+            case!("0/U"),
+            case!("0/p"),
+            case!("0/phiE"),
+            case!("constant/transportProperties"),
+            case!("constant/turbulenceProperties"),
+            case!("system/blockMeshDict"),
+            case!("system/controlDict"),
+            case!("system/fvSchemes"),
+            case!("system/fvSolution"),
+        ],
     },
 ];
 

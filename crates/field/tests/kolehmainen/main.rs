@@ -354,7 +354,7 @@ fn bad_settings_are_refused_with_numbers() {
     );
     refuse(&periodic, 0.1, Some([0, 10, 10]));
     refuse(&periodic, 1e-6, None);
-    assert!(refuse(&domain([1.0; 3], [OPEN, OPEN, GROUNDED]), 0.5, None).contains("axes x and y"));
+    assert!(refuse(&domain([1.0; 3], [OPEN, OPEN, GROUNDED]), 0.5, None).contains("closed along z"));
     let electrode = [Boundary::Potential(3.0), Boundary::Grounded];
     assert!(refuse(&domain([1.0; 3], [electrode, GROUNDED, OPEN]), 0.5, None).contains("open faces"));
     let mut out = FieldValues::default();

@@ -6,6 +6,8 @@ use crate::tree::Range;
 
 /// Numbers of no particular size, above 0.
 const POSITIVE: Range = Range::positive(1e300);
+/// Bounds of what may come out; 0 where nothing may.
+const BOUND: Range = Range::closed(0.0, 1e300);
 
 static SWEEP: &[Key] = &[
     Key::new("key", Form::Text, "Key of the scene, as in --set.")
@@ -89,7 +91,7 @@ static METHODS: &[Key] = &[
         .example("[\"bed\"]"),
     Key::new("most_grains", Form::Whole(1, i64::MAX), "Grains beyond which the method is left out.")
         .example("10000"),
-    Key::new("most_error", Form::Number(POSITIVE), "Relative RMS error above which the study fails.")
+    Key::new("most_error", Form::Number(BOUND), "Relative RMS error above which the study fails.")
         .example("0.1"),
 ];
 
@@ -125,27 +127,23 @@ static EXTREMES: &[Key] = &[
     Key::new("says", Form::Text, "Words that the last message should contain.").example("\"step\""),
     Key::new(
         "most_gain",
-        Form::Number(POSITIVE),
+        Form::Number(BOUND),
         "Most that the energy rises, over the largest that is turned over.",
     )
     .example("1e-3"),
-    Key::new("most_loss", Form::Number(POSITIVE), "Most that the energy falls, likewise.").example("1e-3"),
-    Key::new("most_kinetic_j", Form::Number(POSITIVE), "Most kinetic energy per grain at the end.")
+    Key::new("most_loss", Form::Number(BOUND), "Most that the energy falls, likewise.").example("1e-3"),
+    Key::new("most_kinetic_j", Form::Number(BOUND), "Most kinetic energy per grain at the end.")
         .unit("J")
         .example("1e-12"),
     Key::new(
         "most_error",
-        Form::Number(POSITIVE),
+        Form::Number(BOUND),
         "Most relative RMS error of E; the field is evaluated then, and nothing moves.",
     )
     .example("1e-2"),
-    Key::new(
-        "most_charge",
-        Form::Number(POSITIVE),
-        "Most change of all charge, over the sizes of all charges.",
-    )
-    .default("1e-12")
-    .example("1e-12"),
+    Key::new("most_charge", Form::Number(BOUND), "Most change of all charge, over the sizes of all charges.")
+        .default("1e-12")
+        .example("1e-12"),
     Key::new("limited", Form::Boolean, "Whether forces should be limited.").example("true"),
     Key::new("most_s", Form::Number(POSITIVE), "Longest time that it may take.")
         .unit("s")
