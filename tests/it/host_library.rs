@@ -37,7 +37,9 @@ fn host(bench: &Workbench) -> PathBuf {
 fn run(program: &Path, arguments: &[&str], particles: &str) -> Output {
     let solver = amberfield_coupling::solver_program(false);
     let mut command = Command::new(program);
-    command.args(arguments).env("AMBERFIELD_SOLVER", solver);
+    // The field solver works below the host's own folder.
+    let folder = program.parent().expect("the program is in a folder");
+    command.args(arguments).current_dir(folder).env("AMBERFIELD_SOLVER", solver);
     let mut child =
         command.stdin(Stdio::piped()).stdout(Stdio::piped()).stderr(Stdio::piped()).spawn().unwrap();
     child.stdin.take().unwrap().write_all(particles.as_bytes()).unwrap();
