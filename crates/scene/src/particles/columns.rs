@@ -102,11 +102,11 @@ impl<'f> CsvColumns<'f> {
         };
         let Column { known, factor, .. } = &self.header[column];
         let number = number * factor;
-        let range_of = if *factor == 1.0 { String::new() } else { format!(" as {known}") };
         if range.contains(number) {
             Ok(number)
         } else if number.is_finite() {
-            Err(self.bad(record, column, &format!("out of range{range_of}; give a number {range}")))
+            let converted = if *factor == 1.0 { String::new() } else { format!(" as {known}") };
+            Err(self.bad(record, column, &format!("out of range{converted}; give a number {range}")))
         } else {
             Err(self.bad(record, column, &format!("not finite; give a number {range}")))
         }

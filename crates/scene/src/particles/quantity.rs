@@ -1,4 +1,4 @@
-//! Names of columns: those of this project, those in other units, and those of other programs.
+//! Names of columns: those of this project, and those in other units.
 
 /// Column of a file of grains.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -76,7 +76,7 @@ impl Quantity {
         Some(Self { name: known, factor: factor * scale })
     }
 
-    /// Column that a name without a unit stands for, and the units that may follow the name.
+    /// Names with a unit that a name without one may stand for; `None` where there are none.
     pub(super) fn unit_missing(name: &str) -> Option<String> {
         let plain = name.to_lowercase();
         let Stem { names, units, .. } = STEMS.iter().find(|stem| stem.names.contains(&plain.as_str()))?;
