@@ -20,6 +20,7 @@ mod weld;
 mod write;
 
 pub use error::SceneError;
+pub use particles::{Snapshot, SnapshotBox, SnapshotOptions, Units};
 pub use scene::{
     ChargeTransferSettings, ElectricFieldSettings, OpenFoamSettings, OutputSettings, Physics, Purpose, Scene,
     SolverLoss, parse_scene, read_scene, read_scene_with_mesh,

@@ -10,6 +10,8 @@ pub(crate) const LENGTH: Range = Range::positive(1e6);
 pub(crate) const RADIUS: Range = Range::closed(1e-12, 1e3);
 /// Radii of particles that need no size [m].
 pub(crate) const RADIUS_OR_POINT: Range = Range::closed(0.0, 1e3);
+/// Masses of grains [kg].
+pub(crate) const MASS: Range = Range::closed(1e-40, 1e15);
 /// Densities [kg/m³].
 pub(crate) const DENSITY: Range = Range::closed(1e-6, 1e9);
 /// Young's moduli [Pa].

@@ -3,8 +3,9 @@
 use crate::SceneError;
 use crate::table::SceneTable;
 use amberfield_core::Fingerprint;
+use flate2::bufread::MultiGzDecoder;
 use std::fs::File;
-use std::io::{BufRead as _, BufReader, ErrorKind, Read};
+use std::io::{self, BufRead, BufReader, ErrorKind, Read};
 use std::path::{Path, PathBuf};
 
 /// Folder of a scene, and fingerprints of the files that were read from it.
@@ -67,7 +68,9 @@ impl SceneSource {
     /// Error of a file that is not UTF-8 text; `None` where it is, or cannot be read once more.
     pub(crate) fn not_text(&self, name: &str) -> Option<SceneError> {
         let bytes = read_bytes(&self.path(name)).ok()?;
-        decode(name, &bytes).err()
+        let mut text = Vec::new();
+        unpack(&bytes[..]).ok()?.read_to_end(&mut text).ok()?;
+        decode(name, &text).err()
     }
 
     /// Keeps the fingerprint of what was read otherwise.
@@ -93,10 +96,44 @@ pub(crate) struct SceneFile {
 }
 
 impl Read for SceneFile {
-    fn read(&mut self, buffer: &mut [u8]) -> std::io::Result<usize> {
+    fn read(&mut self, buffer: &mut [u8]) -> io::Result<usize> {
         let count = self.file.read(buffer)?;
         self.print.add(&buffer[..count]);
         Ok(count)
+    }
+}
+
+impl BufRead for SceneFile {
+    fn fill_buf(&mut self) -> io::Result<&[u8]> {
+        self.file.fill_buf()
+    }
+
+    fn consume(&mut self, count: usize) {
+        self.print.add(&self.file.buffer()[..count]);
+        self.file.consume(count);
+    }
+}
+
+/// First bytes of what gzip has compressed.
+const GZIP: [u8; 2] = [0x1f, 0x8b];
+
+/// Unpacks what gzip has compressed, which its first bytes tell, and passes on anything else.
+pub(crate) fn unpack<'r>(mut reader: impl BufRead + 'r) -> io::Result<Box<dyn BufRead + 'r>> {
+    if reader.fill_buf()?.starts_with(&GZIP) {
+        Ok(Box::new(BufReader::with_capacity(BLOCK, MultiGzDecoder::new(reader))))
+    } else {
+        Ok(Box::new(reader))
+    }
+}
+
+/// Opens a file or pipe that is not empty; its name stands in messages.
+pub(crate) fn open_alone(path: &Path) -> Result<BufReader<File>, SceneError> {
+    let unreadable = |reason| SceneError::Unreadable { file: path.display().to_string(), reason };
+    let mut file = BufReader::with_capacity(BLOCK, open(path).map_err(unreadable)?);
+    match file.fill_buf() {
+        Ok([]) => Err(unreadable(empty(path))),
+        Ok(_) => Ok(file),
+        Err(error) => Err(unreadable(self::unreadable(path, &error))),
     }
 }
 

@@ -234,10 +234,31 @@ static GENERATE: &[Key] = &[
 ];
 
 pub(super) static KEYS: &[Key] = &[
-    Key::new("file", Form::Text, "File with a row for each grain.")
-        .without("generate")
-        .example("\"grains.csv\"")
-        .also(&["csv", "path", "from", "snapshot", "dump"]),
+    Key::new(
+        "file",
+        Form::Text,
+        "File with the grains: a table (CSV), or a text dump of LAMMPS or LIGGGHTS; also packed by gzip.",
+    )
+    .without("generate")
+    .example("\"grains.csv\"")
+    .also(&["csv", "path", "from", "snapshot", "dump", "vtk", "vtu"]),
+    Key::new(
+        "units",
+        Form::Word(&["si", "cgs", "micro", "nano", "real", "metal", "electron"]),
+        "Unit style of a dump that does not name its own, as the command units of LAMMPS and LIGGGHTS has \
+         it; lj is none, since it has no units.",
+    )
+    .without("the style that the file names")
+    .example("\"si\"")
+    .also(&["unit", "unit_style", "scale"]),
+    Key::new("step", Form::Whole(0, i64::MAX), "Step of the frame, in a file with several.")
+        .without("the last frame")
+        .example("100000")
+        .also(&["frame", "timestep", "time_step", "snapshot_step"]),
+    Key::new("materials_by_type", Form::Texts, "Names of the materials of types 1, 2, … of a dump.")
+        .without("the scene's only material")
+        .example("[\"glass\", \"steel\"]")
+        .also(&["types", "type_names", "materials", "material_by_type"]),
     Key::new("generate", Form::Table(GENERATE), "Grains that are placed at random.")
         .without("file")
         .example("{ material = \"glass\", count = 1000, radius_m = 5e-4, seed = 1 }")

@@ -1,43 +1,72 @@
-//! Columns of a particles CSV, found by name and in any order.
+//! Columns of a file of grains, found by name and in any order.
 
 use super::quantity::Quantity;
+use super::row::{NO_NUMBER, Row, about_cell};
 use crate::SceneError;
 use crate::error::shorten;
 use crate::tree::{Range, nearest};
 use csv::StringRecord;
 
-/// Header of a CSV file, with checked access to the values of its rows.
-pub(super) struct CsvColumns<'f> {
+/// Columns of a file, with checked access to the values of its rows.
+#[derive(Debug)]
+pub(super) struct Columns {
     /// File, as the user named it.
-    file: &'f str,
+    pub(super) file: String,
     /// Columns, in their order.
-    header: Vec<Column>,
+    list: Vec<Column>,
 }
 
 /// Column of a file.
-struct Column {
+#[derive(Clone, Debug, PartialEq)]
+pub(super) struct Column {
     /// Name in the file.
-    name: String,
-    /// Name of the column that it stands for, in this project's unit.
-    known: String,
+    pub(super) name: String,
+    /// Name of the column that it stands for, in this project's unit; empty where it is not read.
+    pub(super) known: &'static str,
     /// Factor from the file's unit to this project's.
-    factor: f64,
+    pub(super) factor: f64,
+    /// Value in this project's unit for a zero in the file.
+    pub(super) offset: f64,
 }
 
-impl<'f> CsvColumns<'f> {
+impl Column {
+    /// Column with a factor.
+    pub(super) fn new(name: &str, known: &'static str, factor: f64) -> Self {
+        Self { name: name.to_owned(), known, factor, offset: 0.0 }
+    }
+
+    /// Column that is not read.
+    pub(super) fn unused(name: &str) -> Self {
+        Self::new(name, "", 1.0)
+    }
+
+    fn named(name: &str) -> Self {
+        Quantity::named(name).map_or_else(
+            || Self::unused(name),
+            |Quantity { name: known, factor }| Self::new(name, known, factor),
+        )
+    }
+}
+
+impl Columns {
+    /// Columns that were found otherwise than by a header row.
+    pub(super) fn of(file: &str, list: Vec<Column>) -> Self {
+        Self { file: file.to_owned(), list }
+    }
+
     /// Checks a header row.
     ///
     /// # Errors
     /// Unknown names, names given twice, and required names that are missing.
-    pub(super) fn new(
-        file: &'f str,
-        header: &StringRecord,
+    pub(super) fn of_header(
+        file: &str,
+        (header, line): (&StringRecord, u64),
         known: &[&str],
         required: &[&str],
     ) -> Result<Self, SceneError> {
-        let header: Vec<Column> = header.iter().map(|name| Column::new(name.trim())).collect();
-        for (index, Column { name, known: meant, .. }) in header.iter().enumerate() {
-            if !known.contains(&meant.as_str()) {
+        let list: Vec<Column> = header.iter().map(|name| Column::named(name.trim())).collect();
+        for (index, Column { name, known: meant, .. }) in list.iter().enumerate() {
+            if meant.is_empty() {
                 let advice = match Quantity::unit_missing(name) {
                     Some(names) => format!("; its unit is missing, write one of {names}"),
                     None => nearest(name, known)
@@ -45,98 +74,80 @@ impl<'f> CsvColumns<'f> {
                 };
                 return Err(SceneError::data(
                     file,
-                    1,
+                    line,
                     format!("unknown column \"{}\"{advice}", shorten(name)),
                 ));
             }
-            if let Some(before) = header[..index].iter().find(|column| column.known == *meant) {
+            if let Some(before) = list[..index].iter().find(|column| column.known == *meant) {
                 let problem = if before.name == *name {
                     format!("column {name} is there twice; remove one")
                 } else {
                     format!("columns {} and {name} are both {meant}; remove one", before.name)
                 };
-                return Err(SceneError::data(file, 1, problem));
+                return Err(SceneError::data(file, line, problem));
             }
         }
         for name in required {
-            if !header.iter().any(|column| column.known == *name) {
+            if !list.iter().any(|column| column.known == *name) {
                 return Err(SceneError::data(
                     file,
-                    1,
+                    line,
                     format!("missing column {name}; the header row needs {}", required.join(",")),
                 ));
             }
         }
-        Ok(Self { file, header })
+        Ok(Self { file: file.to_owned(), list })
     }
 
     /// Index of the column with a name.
     pub(super) fn find(&self, name: &str) -> Option<usize> {
-        self.header.iter().position(|column| column.known == name)
+        self.list.iter().position(|column| column.known == name)
     }
 
-    /// Name of the column with an index.
-    pub(super) fn name(&self, column: usize) -> &str {
-        &self.header[column].name
+    /// Names of the columns that are not read.
+    pub(super) fn unused(&self) -> Vec<String> {
+        self.list.iter().filter(|column| column.known.is_empty()).map(|column| column.name.clone()).collect()
+    }
+
+    /// Names of all columns, as the file has them.
+    pub(super) fn names(&self) -> String {
+        let names: Vec<String> = self.list.iter().map(|column| shorten(&column.name)).collect();
+        names.join(", ")
+    }
+
+    /// Tells whether a column is in another unit than this project's.
+    pub(super) fn is_converted(&self, column: usize) -> bool {
+        let Column { factor, offset, .. } = &self.list[column];
+        *factor != 1.0 || *offset != 0.0
     }
 
     /// Error about the value in a row and a column.
-    pub(super) fn bad(&self, record: &StringRecord, column: usize, problem: &str) -> SceneError {
-        let value = shorten(record.get(column).unwrap_or_default());
-        SceneError::data(self.file, line(record), format!("{} = \"{value}\": {problem}", self.name(column)))
+    pub(super) fn bad(&self, row: &impl Row, column: usize, problem: &str) -> SceneError {
+        row.error(&self.file, about_cell(&self.list[column].name, &row.text(column), problem))
     }
 
-    /// Number in a row and a column.
+    /// Number in a row and a column, in this project's unit.
     ///
     /// # Errors
     /// Values that are no number or out of range.
-    pub(super) fn number(
-        &self,
-        record: &StringRecord,
-        column: usize,
-        range: Range,
-    ) -> Result<f64, SceneError> {
-        let text = record.get(column).unwrap_or_default().trim();
-        let Ok(number) = text.parse::<f64>() else {
-            return Err(self.bad(record, column, &format!("not a number; give one {range}")));
+    pub(super) fn number(&self, row: &impl Row, column: usize, range: Range) -> Result<f64, SceneError> {
+        let number = match row.number(column) {
+            Ok(number) => number,
+            Err(NO_NUMBER) => return Err(self.bad(row, column, &format!("{NO_NUMBER}; give one {range}"))),
+            Err(problem) => return Err(self.bad(row, column, problem)),
         };
-        let Column { known, factor, .. } = &self.header[column];
-        let number = number * factor;
+        let Column { known, factor, offset, .. } = &self.list[column];
+        let mut number = number * factor;
+        if *offset != 0.0 {
+            number += offset;
+        }
         if range.contains(number) {
             Ok(number)
         } else if number.is_finite() {
             let converted = if *factor == 1.0 { String::new() } else { format!(" as {known}") };
-            Err(self.bad(record, column, &format!("out of range{converted}; give a number {range}")))
+            Err(self.bad(row, column, &format!("out of range{converted}; give a number {range}")))
         } else {
-            Err(self.bad(record, column, &format!("not finite; give a number {range}")))
+            Err(self.bad(row, column, &format!("not finite; give a number {range}")))
         }
-    }
-}
-
-impl Column {
-    fn new(name: &str) -> Self {
-        match Quantity::named(name) {
-            Some(Quantity { name: known, factor }) => {
-                Self { name: name.to_owned(), known: known.to_owned(), factor }
-            }
-            None => Self { name: name.to_owned(), known: name.to_owned(), factor: 1.0 },
-        }
-    }
-}
-
-/// Line on which a record starts, from 1.
-pub(super) fn line(record: &StringRecord) -> u64 {
-    record.position().map_or(0, csv::Position::line)
-}
-
-/// Translates an error of the csv library into one of this crate.
-pub(super) fn csv_error(file: &str, error: &csv::Error) -> SceneError {
-    match error.kind() {
-        csv::ErrorKind::UnequalLengths { pos, expected_len, len } => SceneError::data(
-            file,
-            pos.as_ref().map_or(0, csv::Position::line),
-            format!("{len} values in a row of {expected_len} columns; give one value per column"),
-        ),
-        _ => SceneError::data(file, error.position().map_or(0, csv::Position::line), error.to_string()),
     }
 }

@@ -1,7 +1,21 @@
-//! Particles from CSV files: one row per grain.
+//! Grains from files: tables in text, and snapshots of other programs.
 
 mod columns;
-mod csv_reader;
+mod dump;
+mod dump_header;
+mod grains;
+mod names;
+mod open;
 mod quantity;
+mod row;
+mod snapshot;
+mod text_table;
+mod units;
+mod words;
 
-pub(crate) use csv_reader::{CsvContext, ReadParticles, read_charges, read_particles};
+pub(crate) use grains::GrainContext;
+pub(crate) use names::MaterialNames;
+pub(crate) use open::{read_charges, read_grains};
+pub(crate) use snapshot::{FileChoices, ReadParticles};
+pub use snapshot::{Snapshot, SnapshotBox, SnapshotOptions};
+pub use units::Units;

@@ -1,5 +1,7 @@
 //! Names of columns: those of this project, and those in other units.
 
+use amberfield_core::constants::ELEMENTARY_CHARGE;
+
 /// Column of a file of grains.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) struct Quantity {
@@ -8,9 +10,6 @@ pub(super) struct Quantity {
     /// Factor from the file's unit to that of the name.
     pub(super) factor: f64,
 }
-
-/// Elementary charge [C], exact (SI Brochure, 9th edition, 2019).
-const ELEMENTARY: f64 = 1.602_176_634e-19;
 
 /// Units, and the factors from them to this project's.
 type Units = &'static [(&'static str, f64)];
@@ -26,10 +25,20 @@ const CHARGES: Units = &[
     ("nC", 1e-9),
     ("pC", 1e-12),
     ("fC", 1e-15),
-    ("e", ELEMENTARY),
+    ("e", ELEMENTARY_CHARGE),
 ];
 const SPEEDS: Units = &[("m_s", 1.0), ("cm_s", 1e-2), ("mm_s", 1e-3)];
 const SPINS: Units = &[("rad_s", 1.0), ("rpm", std::f64::consts::PI / 30.0)];
+const MASSES: Units = &[
+    ("kg", 1.0),
+    ("g", 1e-3),
+    ("mg", 1e-6),
+    ("ug", 1e-9),
+    ("µg", 1e-9),
+    ("μg", 1e-9),
+    ("ng", 1e-12),
+    ("pg", 1e-15),
+];
 const DENSITIES: Units = &[("kg_m3", 1.0), ("g_cm3", 1e3)];
 
 /// Columns of one kind and their units.
@@ -62,6 +71,7 @@ const STEMS: &[Stem] = &[
     stem(&["wy", "omegay"], "wy_rad_s", SPINS, 1.0),
     stem(&["wz", "omegaz"], "wz_rad_s", SPINS, 1.0),
     stem(&["density"], "density_kg_m3", DENSITIES, 1.0),
+    stem(&["mass", "m"], "mass_kg", MASSES, 1.0),
 ];
 
 impl Quantity {
@@ -99,11 +109,12 @@ mod tests {
             ("q_pC", "charge_C", 1e-12),
             ("density_g_cm3", "density_kg_m3", 1e3),
             ("vx_mm_s", "vx_m_s", 1e-3),
+            ("mass_ug", "mass_kg", 1e-9),
             ("material", "material", 1.0),
         ] {
             assert_eq!(Quantity::named(name), Some(Quantity { name: known, factor }), "{name}");
         }
-        for name in ["x", "x_ft", "mass_kg", "", "_m"] {
+        for name in ["x", "x_ft", "volume_m3", "", "_m"] {
             assert_eq!(Quantity::named(name), None, "{name}");
         }
         assert_eq!(Quantity::unit_missing("X").as_deref(), Some("x_m, x_cm, x_mm, x_um"));

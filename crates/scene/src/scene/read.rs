@@ -134,7 +134,7 @@ fn read_sections(
         solver,
         gas,
         output,
-        warnings: walls.warnings,
+        warnings: [walls.warnings, section.warnings].concat(),
         resolved: String::new(),
         physics: Physics::default(),
     };

@@ -5,6 +5,8 @@
 mod any_input;
 mod bad_scenes;
 mod common;
+mod dialects;
+mod dumps;
 mod generators;
 mod good_scenes;
 mod keys;
