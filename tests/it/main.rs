@@ -4,9 +4,11 @@
 
 mod any_bytes;
 mod bad_input;
+mod errors_page;
 mod explain_and_doctor;
 mod faults;
 mod field;
+mod files;
 mod host_library;
 mod interrupt;
 mod openfoam;

@@ -61,7 +61,7 @@ pub(crate) enum Command {
     Study(StudyOptions),
     /// Writes a small scene with comments to start from, or lists such scenes
     New(NewOptions),
-    /// Shows the keys of a scene: values, units, defaults, examples
+    /// Shows the keys of a scene (values, units, defaults, examples) and the columns of files
     Keys(KeysOptions),
     /// Tells what this machine offers and which stale runs it holds
     Doctor(DoctorOptions),
@@ -131,7 +131,7 @@ pub(crate) struct NewOptions {
 /// Options of `keys`.
 #[derive(Debug, Args)]
 pub(crate) struct KeysOptions {
-    /// Key or section, for example domain.boundary.x [default: all]
+    /// Key or section, for example domain.boundary.x, or file, for example history.csv [default: all keys]
     pub(crate) path: Option<String>,
 }
 

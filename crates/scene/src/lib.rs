@@ -5,6 +5,7 @@
 #![forbid(unsafe_code)]
 
 mod error;
+pub mod files;
 mod generate;
 pub mod keys;
 mod limits;
@@ -29,5 +30,5 @@ pub use table::check_keys;
 pub use write::{
     ChargedSquare, FieldColumns, FieldComponents, FieldReport, FieldReportSeconds, HistoryFile, HistoryValue,
     PvdSeries, read_checkpoint, read_table, write_atomically, write_charge_vtu, write_checkpoint,
-    write_field_csv, write_json, write_particles_csv, write_table, write_text, write_vtu,
+    write_field_csv, write_json, write_particles_csv, write_rows, write_table, write_text, write_vtu,
 };

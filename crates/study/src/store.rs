@@ -1,7 +1,8 @@
 //! Folder of a report: rows with the date of their measurement, pictures, pages.
 
 use crate::StudyError;
-use amberfield_scene::{read_table, write_table};
+use amberfield_scene::files::FileTable;
+use amberfield_scene::{read_table, write_rows, write_table};
 use serde::Serialize;
 use serde::de::DeserializeOwned;
 use std::path::PathBuf;
@@ -47,6 +48,14 @@ impl Store {
     /// A file that cannot be written.
     pub fn save<R: Serialize>(&self, name: &str, rows: &[R]) -> Result<(), StudyError> {
         Ok(write_table(&self.path(&format!("data/{}-{name}.csv", self.date)), rows)?)
+    }
+
+    /// Writes rows of a file of the table of files, as [`Self::save`] does.
+    ///
+    /// # Errors
+    /// A file that cannot be written.
+    pub fn save_as<R: Serialize>(&self, name: &str, file: &FileTable, rows: &[R]) -> Result<(), StudyError> {
+        Ok(write_rows(&self.path(&format!("data/{}-{name}.csv", self.date)), file, rows)?)
     }
 
     /// Reads the newest rows of a name with their date; `None` where there are none.

@@ -2,7 +2,7 @@
 
 use crate::profile::Profile;
 use crate::shell::{cargo, run as execute};
-use crate::{deny, leaving_out, test, tidy};
+use crate::{book, deny, leaving_out, test, tidy};
 use anyhow::{Result, bail};
 use std::path::Path;
 use std::process::Command;
@@ -32,6 +32,7 @@ pub(crate) fn run(root: &Path, with_tests: bool) -> Result<()> {
         execute(cargo(root, &cli).args(["--", "-D", "warnings"]))
     });
     step("docs", &|| documentation(root));
+    step("book", &|| book::run(root));
     step("deny", &|| deny::run(root));
     step("bench, quick", &|| quick_bench(root));
     step("leaving out", &|| leaving_out::run(root));

@@ -1,8 +1,9 @@
 //! Developer commands: `cargo xtask check`, `tidy`, `test`, `deny`, `bench`, `leaving-out`, `openfoam`,
-//! `images`, `fuzz`, `sanitize`, `header`, `keys`.
+//! `images`, `docs`, `fuzz`, `sanitize`, `header`, `keys`.
 #![expect(clippy::print_stdout, reason = "a program for developers that reports to the terminal")]
 
 mod bench;
+mod book;
 mod check;
 mod debian;
 mod deny;
@@ -23,7 +24,7 @@ use std::process::ExitCode;
 
 const USAGE: &str = "\
 cargo xtask check [--without tests]
-    runs what a change must pass: fmt, clippy, tidy, docs, deny, a quick bench, tests
+    runs what a change must pass: fmt, clippy, tidy, docs, the book, deny, a quick bench, tests
 cargo xtask test
     runs every test: documentation examples, units, commands, cases at smoke size. It builds the field
     solver and the images first (see openfoam, images) and uses cargo-nextest where it is installed
@@ -39,6 +40,9 @@ cargo xtask openfoam
 cargo xtask images
     builds the container images of docker/; installs and starts an engine where there is none, and makes
     their base with debootstrap where no registry can be reached
+cargo xtask docs
+    builds the docs as a book into target/book and reads all of it in a headless browser: links, pictures,
+    search, narrow screens; installs chromium, and MkDocs into target/, where they are missing
 cargo xtask fuzz [--seconds N] [TARGET…]
     sends any bytes to everything that is read, by cargo-fuzz, ten minutes a target unless told; installs
     cargo-fuzz where it is missing
@@ -47,7 +51,7 @@ cargo xtask sanitize
 cargo xtask header
     writes the C library's header
 cargo xtask keys
-    writes docs/scene.md and docs/amberfield.schema.json from the table of keys
+    writes docs/scene.md, docs/amberfield.schema.json and docs/files.md from the tables of keys and files
 cargo xtask leaving-out
     counts what a plain scene pays for all that it does not use: instructions of a run over those of a
     program of motion and contacts alone, under callgrind; installs valgrind where it is missing";
@@ -78,6 +82,7 @@ fn run() -> Result<()> {
         ["leaving-out"] => leaving_out::run(root),
         ["openfoam"] => openfoam::run(root),
         ["images"] => images::run(root),
+        ["docs"] => book::run(root),
         ["fuzz", rest @ ..] => fuzz::run(root, rest),
         ["sanitize"] => sanitize::run(root),
         ["header"] => execute(

@@ -7,7 +7,7 @@ use crate::run::{Charges, SolverFolder, charges_of, domain_of, read_scene, scene
 use amberfield_core::{Domain, FieldSettings, Method, Tuning, Vector3};
 use amberfield_field::{Candidate, Choice, ElectricField, FieldError, FieldValues, Wanted};
 use amberfield_oracle::{ErrorNorms, field_scale};
-use amberfield_scene::{Purpose, write_table};
+use amberfield_scene::{Purpose, files, write_rows};
 use serde::Serialize;
 use std::path::PathBuf;
 use std::time::Instant;
@@ -60,7 +60,7 @@ pub(crate) fn tune(options: &TuneOptions) -> Result<(), Failure> {
         .clone()
         .unwrap_or_else(|| PathBuf::from(format!("{}-tune.csv", scene_name(&options.scene))));
     let all = candidates.iter().map(|candidate| Row::new(candidate, false));
-    write_table(&out, &all.chain([Row::new(&chosen, true)]).collect::<Vec<_>>())?;
+    write_rows(&out, &files::TUNE, &all.chain([Row::new(&chosen, true)]).collect::<Vec<_>>())?;
     line(format_args!("results: {}", out.display()));
     let (error, by) = if charges.len() <= DIRECT_UP_TO {
         (against_direct(domain, &settings, (&positions, &charges), &values.e)?, "the direct sum")

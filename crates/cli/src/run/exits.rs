@@ -4,15 +4,12 @@ use super::folder::RunFolder;
 use crate::failure::Failure;
 use amberfield_core::OnExit;
 use amberfield_dem::{Exit, Simulation};
+use amberfield_scene::files::EXITS;
 use amberfield_scene::{HistoryFile, HistoryValue, Scene};
 use std::collections::BTreeMap;
 
 /// Name of the file.
-pub(crate) const FILE: &str = "exits.csv";
-/// Columns of the file; velocities are those in the middle of the step.
-const COLUMNS: [&str; 12] = [
-    "step", "time_s", "id", "face", "x_m", "y_m", "z_m", "vx_m_s", "vy_m_s", "vz_m_s", "radius_m", "charge_C",
-];
+pub(crate) const FILE: &str = EXITS.path;
 
 /// Sums over the grains that left through a face.
 #[derive(Clone, Copy, Debug, Default)]
@@ -33,7 +30,7 @@ pub(crate) struct Exits {
 impl Exits {
     /// Creates the file of a new run; `None` where grains that leave end the run.
     pub(crate) fn create(folder: &RunFolder, scene: &Scene) -> Result<Option<Self>, Failure> {
-        let create = || HistoryFile::create(&folder.file(FILE), &COLUMNS.map(str::to_owned));
+        let create = || HistoryFile::create(&folder.file(FILE), &EXITS.heading());
         Ok(is_written(scene).then(create).transpose()?.map(Self::of))
     }
 
@@ -43,7 +40,7 @@ impl Exits {
         scene: &Scene,
         simulation: &Simulation,
     ) -> Result<Option<Self>, Failure> {
-        let columns = COLUMNS.map(str::to_owned);
+        let columns = EXITS.heading();
         let resume = || HistoryFile::resume(&folder.file(FILE), &columns, simulation.step_index(), |_| true);
         Ok(is_written(scene).then(resume).transpose()?.map(Self::of))
     }

@@ -3,25 +3,15 @@
 use super::folder::RunFolder;
 use crate::failure::Failure;
 use amberfield_core::Particles;
+use amberfield_scene::files::CHARGE_HISTOGRAM;
 use amberfield_scene::{HistoryFile, HistoryValue};
 
 /// Number of equal bins between the smallest and the largest value of a frame.
 const BINS: usize = 40;
 /// Name of the file.
-pub(crate) const FILE: &str = "charge_histogram.csv";
+pub(crate) const FILE: &str = CHARGE_HISTOGRAM.path;
 /// Names of the plots of charge and of charge over mass.
 pub(crate) const PLOTS: [&str; 2] = ["charge_histogram.svg", "charge_to_mass_histogram.svg"];
-/// Columns of the file; each row has a bin of charges and a bin of charges over masses.
-const COLUMNS: [&str; 8] = [
-    "step",
-    "time_s",
-    "charge_from_C",
-    "charge_to_C",
-    "grains_by_charge",
-    "charge_to_mass_from_C_kg",
-    "charge_to_mass_to_C_kg",
-    "grains_by_charge_to_mass",
-];
 
 /// Open file of histograms.
 #[derive(Debug)]
@@ -32,7 +22,7 @@ pub(crate) struct Histogram {
 impl Histogram {
     /// Creates the file of a new run.
     pub(crate) fn create(folder: &RunFolder) -> Result<Self, Failure> {
-        Ok(Self { rows: HistoryFile::create(&folder.file(FILE), &COLUMNS.map(str::to_owned))? })
+        Ok(Self { rows: HistoryFile::create(&folder.file(FILE), &CHARGE_HISTOGRAM.heading())? })
     }
 
     /// Opens the file of a run that is continued after a step; frames that are not due are removed.
@@ -41,7 +31,7 @@ impl Histogram {
         step: u64,
         is_due: impl Fn(u64) -> bool,
     ) -> Result<Self, Failure> {
-        Ok(Self { rows: HistoryFile::resume(&folder.file(FILE), &COLUMNS.map(str::to_owned), step, is_due)? })
+        Ok(Self { rows: HistoryFile::resume(&folder.file(FILE), &CHARGE_HISTOGRAM.heading(), step, is_due)? })
     }
 
     /// Appends the histograms of a frame at a step and a time [s].
@@ -101,7 +91,7 @@ pub(crate) fn plot(folder: &RunFolder) {
         .lines()
         .skip(1)
         .map(|line| line.split(',').map(|cell| cell.parse().unwrap_or(f64::NAN)).collect())
-        .filter(|row: &Vec<f64>| row.len() == COLUMNS.len())
+        .filter(|row: &Vec<f64>| row.len() == CHARGE_HISTOGRAM.heading().len())
         .collect();
     let frames: Vec<&[Vec<f64>]> = rows.chunks(BINS).collect();
     let Some(last) = frames.len().checked_sub(1) else { return };

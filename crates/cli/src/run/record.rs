@@ -9,6 +9,7 @@ use super::wall_forces::WallForces;
 use crate::failure::Failure;
 use amberfield_core::WallCharging;
 use amberfield_dem::{ChargedSpot, Energies, Simulation};
+use amberfield_scene::files::{ELECTRIC_FORCE, HISTORY, When};
 use amberfield_scene::{
     ChargedSquare, HistoryFile, HistoryValue, PvdSeries, Scene, write_charge_vtu, write_particles_csv,
     write_vtu,
@@ -63,21 +64,27 @@ impl HistoryColumns {
         }
     }
 
-    /// Names of all columns, in their order.
+    /// Names of all columns, in the order of the table of files.
     fn names(&self) -> Vec<String> {
-        let mut names = vec!["step", "time_s", "kinetic_J", "contact_J"];
-        names.extend(self.gravity.then_some("gravity_J"));
-        names.extend(self.field.then_some("electric_J"));
-        names.extend(self.field.then_some("net_charge_C"));
-        names.extend(self.transfer.then_some("contact_charge_C"));
-        names.extend(self.walls.then_some("wall_charge_C"));
-        names.extend(self.limited.then_some("limited"));
-        names.push("contacts");
-        names.extend(self.transfer.then_some("collisions"));
-        names.extend(self.solver.then_some("solver_iterations"));
-        names.push("wall_s");
-        let stages = self.stages.iter().map(|stage| format!("wall_s_{stage}"));
-        names.into_iter().map(ToOwned::to_owned).chain(stages).collect()
+        let names = HISTORY.names(|when| self.holds(when)).flat_map(|name| {
+            let stages: &[&str] = if name.contains("STAGE") { &self.stages } else { &[""] };
+            stages.iter().map(move |stage| name.replace("STAGE", stage))
+        });
+        names.collect()
+    }
+
+    /// Whether columns with a condition are there.
+    fn holds(&self, when: When) -> bool {
+        match when {
+            When::Always | When::Stage => true,
+            When::Gravity => self.gravity,
+            When::Field => self.field,
+            When::Transfer => self.transfer,
+            When::ChargedWalls => self.walls,
+            When::Limit => self.limited,
+            When::Solver => self.solver,
+            When::Components => false,
+        }
     }
 }
 
@@ -98,7 +105,7 @@ impl Record {
         simulation: &Simulation,
     ) -> Result<Self, Failure> {
         let columns = HistoryColumns::new(scene, simulation);
-        let history = HistoryFile::create(&folder.file("history.csv"), &columns.names())?;
+        let history = HistoryFile::create(&folder.file(HISTORY.path), &columns.names())?;
         let series = PvdSeries::new(&folder.file("particles.pvd"));
         let walls = columns.walls.then(|| PvdSeries::new(&folder.file("walls.pvd")));
         if walls.is_some() {
@@ -122,7 +129,7 @@ impl Record {
     ) -> Result<Self, Failure> {
         let columns = HistoryColumns::new(scene, simulation);
         let reached = simulation.step_index();
-        let history = HistoryFile::resume(&folder.file("history.csv"), &columns.names(), reached, |step| {
+        let history = HistoryFile::resume(&folder.file(HISTORY.path), &columns.names(), reached, |step| {
             schedule.history.is_due(step)
         })?;
         let wall_forces = WallForces::resume(folder, simulation, |step| schedule.history.is_due(step))?;
@@ -215,7 +222,7 @@ impl Record {
         if scene.output.vtk {
             let file = format!("{name}.vtu");
             let forces = simulation.electric_forces();
-            let vectors: Vec<_> = forces.iter().map(|forces| ("electric_force_N", &forces[..])).collect();
+            let vectors: Vec<_> = forces.iter().map(|forces| (ELECTRIC_FORCE, &forces[..])).collect();
             write_vtu(&folder.file(&file), &particles, &vectors)?;
             self.series.append(simulation.time_s(), &file)?;
             if let Some(walls) = &mut self.walls {

@@ -3,25 +3,11 @@
 use super::folder::RunFolder;
 use crate::failure::Failure;
 use amberfield_dem::Simulation;
+use amberfield_scene::files::WALL_FORCES;
 use amberfield_scene::{HistoryFile, HistoryValue};
 
 /// Name of the file.
-pub(crate) const FILE: &str = "wall_forces.csv";
-/// Columns of the file; `wall` counts the scene's walls from 0, torques are about the origin.
-const COLUMNS: [&str; 12] = [
-    "step",
-    "time_s",
-    "wall",
-    "normal_x_N",
-    "normal_y_N",
-    "normal_z_N",
-    "tangential_x_N",
-    "tangential_y_N",
-    "tangential_z_N",
-    "torque_x_N_m",
-    "torque_y_N_m",
-    "torque_z_N_m",
-];
+pub(crate) const FILE: &str = WALL_FORCES.path;
 
 /// Open file of forces on walls.
 #[derive(Debug)]
@@ -32,7 +18,7 @@ pub(crate) struct WallForces {
 impl WallForces {
     /// Creates the file of a new run; `None` where the run has no walls.
     pub(crate) fn create(folder: &RunFolder, simulation: &Simulation) -> Result<Option<Self>, Failure> {
-        let create = || HistoryFile::create(&folder.file(FILE), &COLUMNS.map(str::to_owned));
+        let create = || HistoryFile::create(&folder.file(FILE), &WALL_FORCES.heading());
         Ok(simulation.plan().has("walls").then(create).transpose()?.map(|rows| Self { rows }))
     }
 
@@ -42,7 +28,7 @@ impl WallForces {
         simulation: &Simulation,
         is_due: impl Fn(u64) -> bool,
     ) -> Result<Option<Self>, Failure> {
-        let (columns, reached) = (COLUMNS.map(str::to_owned), simulation.step_index());
+        let (columns, reached) = (WALL_FORCES.heading(), simulation.step_index());
         let resume = || HistoryFile::resume(&folder.file(FILE), &columns, reached, is_due);
         Ok(simulation.plan().has("walls").then(resume).transpose()?.map(|rows| Self { rows }))
     }

@@ -1,6 +1,7 @@
 //! Writing of files that are either complete or absent.
 
 use crate::SceneError;
+use crate::files::FileTable;
 use serde::Serialize;
 use serde::de::DeserializeOwned;
 use std::io::{self, BufWriter, Write};
@@ -54,6 +55,35 @@ pub fn write_table<R: Serialize>(path: &Path, rows: &[R]) -> Result<(), SceneErr
         rows.iter().try_for_each(|row| table.serialize(row))?;
         table.flush()
     })
+}
+
+/// Writes the rows of a file of the table of files as CSV, after its heading.
+///
+/// # Errors
+/// As [`write_atomically`].
+///
+/// # Panics
+/// When the rows have other fields than the file has columns.
+pub fn write_rows<R: Serialize>(path: &Path, file: &FileTable, rows: &[R]) -> Result<(), SceneError> {
+    let heading = file.heading();
+    if let Some(first) = rows.first() {
+        assert_eq!(fields(first), heading.join(","), "the fields of a row are the columns of {}", file.path);
+    }
+    write_atomically(path, |writer| {
+        let mut table = csv::WriterBuilder::new().has_headers(false).from_writer(writer);
+        table.write_record(&heading)?;
+        rows.iter().try_for_each(|row| table.serialize(row))?;
+        table.flush()
+    })
+}
+
+/// Names of the fields of a row, with commas between them.
+fn fields(row: &impl Serialize) -> String {
+    let mut table = csv::Writer::from_writer(Vec::new());
+    // Errors show in the result, which is then no heading.
+    let _ = table.serialize(row);
+    let text = table.into_inner().unwrap_or_default();
+    String::from_utf8_lossy(&text).lines().next().unwrap_or_default().to_owned()
 }
 
 /// Reads a table that [`write_table`] wrote.

@@ -2,6 +2,7 @@
 
 use super::atomic::write_atomically;
 use crate::SceneError;
+use crate::files::{FIELD, When};
 use nalgebra::Vector3;
 use serde::Serialize;
 use std::collections::BTreeMap;
@@ -51,21 +52,18 @@ impl<'a> FieldComponents<'a> {
     }
 }
 
-/// Writes the columns `id,ex_V_per_m,ey_V_per_m,ez_V_per_m,potential_V`, and the components if there are any.
+/// Writes the columns of [`FIELD`]: number, E and potential, and the components if there are any.
 ///
 /// Numbers have 17 significant digits, so that they are read back bit for bit. Each component adds three
-/// columns, `near_ex_V_per_m` and so on, in the order of the sum.
+/// columns, in the order of the sum.
 ///
 /// # Errors
 /// Errors of the operating system.
 pub fn write_field_csv(path: &Path, columns: &FieldColumns<'_>) -> Result<(), SceneError> {
     let components = columns.components.map(|components| components.named());
     write_atomically(path, |writer| {
-        write!(writer, "id,ex_V_per_m,ey_V_per_m,ez_V_per_m,potential_V")?;
-        for (part, _) in components.iter().flatten() {
-            write!(writer, ",{part}_ex_V_per_m,{part}_ey_V_per_m,{part}_ez_V_per_m")?;
-        }
-        writeln!(writer)?;
+        let names = FIELD.names(|when| when == When::Always || components.is_some());
+        writeln!(writer, "{}", names.collect::<Vec<_>>().join(","))?;
         for (index, id) in columns.id.iter().enumerate() {
             let e = columns.e[index];
             write!(writer, "{id},{:.16e},{:.16e},{:.16e},{:.16e}", e.x, e.y, e.z, columns.potential[index])?;
@@ -109,4 +107,28 @@ pub struct FieldReport {
     pub threads: usize,
     /// Version of the program.
     pub version: String,
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn columns_of_the_parts_are_named_after_them() {
+        let none = &[][..];
+        let parts = FieldComponents {
+            near: none,
+            middle: none,
+            far: none,
+            correction: none,
+            faces: none,
+            external: none,
+        };
+        let expected = parts
+            .named()
+            .into_iter()
+            .flat_map(|(part, _)| ["x", "y", "z"].map(|x| format!("{part}_e{x}_V_per_m")));
+        let found: Vec<&str> = FIELD.names(|when| when == When::Components).collect();
+        assert_eq!(found, expected.collect::<Vec<_>>());
+    }
 }

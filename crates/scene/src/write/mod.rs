@@ -8,7 +8,7 @@ mod particles_csv;
 mod pvd;
 mod vtu;
 
-pub use atomic::{read_table, write_atomically, write_json, write_table, write_text};
+pub use atomic::{read_table, write_atomically, write_json, write_rows, write_table, write_text};
 pub use checkpoint::{read_checkpoint, write_checkpoint};
 pub use field_csv::{FieldColumns, FieldComponents, FieldReport, FieldReportSeconds, write_field_csv};
 pub use history::{HistoryFile, HistoryValue};

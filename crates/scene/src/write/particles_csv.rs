@@ -2,6 +2,7 @@
 
 use super::atomic::write_atomically;
 use crate::SceneError;
+use crate::files::GRAINS_CSV;
 use amberfield_core::{Material, Particles};
 use std::path::Path;
 
@@ -20,11 +21,7 @@ pub fn write_particles_csv(
     let material_names: Vec<String> = materials.iter().map(|material| quoted(&material.name)).collect();
     let group_names: Vec<String> = groups.iter().map(|group| quoted(group)).collect();
     write_atomically(path, |writer| {
-        writeln!(
-            writer,
-            "id,x_m,y_m,z_m,radius_m,charge_C,vx_m_s,vy_m_s,vz_m_s,wx_rad_s,wy_rad_s,wz_rad_s,\
-             density_kg_m3,material,group"
-        )?;
+        writeln!(writer, "{}", GRAINS_CSV.heading().join(","))?;
         for index in 0..particles.len() {
             let grain = particles.grain(index);
             let (x, v, w) = (grain.position, grain.velocity, grain.angular_velocity);

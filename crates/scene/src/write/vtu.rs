@@ -4,6 +4,7 @@
 
 use super::atomic::write_atomically;
 use crate::SceneError;
+use crate::files::{GRAINS_VTU, WALL_CHARGE, When};
 use amberfield_core::Particles;
 use nalgebra::Vector3;
 use std::io::{self, Write};
@@ -91,6 +92,11 @@ const QUAD: u8 = 9;
 /// Data array with its name.
 type Named<'a> = (&'a str, Values<'a>);
 
+/// Gives arrays the next names of a table, and takes no more than these.
+fn named<'a>(names: &mut impl Iterator<Item = &'static str>, arrays: Vec<Values<'a>>) -> Vec<Named<'a>> {
+    arrays.into_iter().zip(names).map(|(array, name)| (name, array)).collect()
+}
+
 /// Writes grains: position, id, radius, charge, velocities, material and group.
 ///
 /// `vectors` are further vectors with their names, one for each grain.
@@ -103,22 +109,27 @@ pub fn write_vtu(
     vectors: &[(&str, &[Vector3<f64>])],
 ) -> Result<(), SceneError> {
     let count = particles.len();
-    let mut point_data = vec![
-        ("id", Values::Ids(&particles.id)),
-        ("radius_m", Values::Numbers(&particles.radius)),
-        ("charge_C", Values::Numbers(&particles.charge)),
-        ("velocity_m_s", Values::Vectors(&particles.velocity)),
-        ("angular_velocity_rad_s", Values::Vectors(&particles.angular_velocity)),
-        ("material", Values::Groups(particles.material.iter().map(|material| material.0).collect())),
-        ("group", Values::Groups(particles.group.iter().map(|group| group.0).collect())),
-    ];
+    let mut names = GRAINS_VTU.names(|when| when == When::Always);
+    let mut point_data = named(
+        &mut names,
+        vec![
+            Values::Ids(&particles.id),
+            Values::Numbers(&particles.radius),
+            Values::Numbers(&particles.charge),
+            Values::Vectors(&particles.velocity),
+            Values::Vectors(&particles.angular_velocity),
+            Values::Groups(particles.material.iter().map(|material| material.0).collect()),
+            Values::Groups(particles.group.iter().map(|group| group.0).collect()),
+        ],
+    );
     point_data.extend(vectors.iter().map(|(name, values)| (*name, Values::Vectors(values))));
-    let points = [("points_m", Values::Vectors(&particles.position))];
-    let cells = [
-        ("connectivity", Values::Count { from: 0, count }),
-        ("offsets", Values::Count { from: 1, count }),
-        ("types", Values::CellTypes(vec![VERTEX; count])),
+    let points = named(&mut names, vec![Values::Vectors(&particles.position)]);
+    let vertices = vec![
+        Values::Count { from: 0, count },
+        Values::Count { from: 1, count },
+        Values::CellTypes(vec![VERTEX; count]),
     ];
+    let cells = named(&mut names, vertices);
     let sections = [("PointData", &point_data[..]), ("Points", &points), ("Cells", &cells)];
     write_sections(path, &GridSize { points: count, cells: count }, &sections)
 }
@@ -145,21 +156,18 @@ pub fn write_charge_vtu(path: &Path, squares: &[ChargedSquare]) -> Result<(), Sc
     let ends = (1..=squares.len()).map(|square| 4 * square as i64);
     let charges: Vec<f64> = squares.iter().map(|square| square.charge_c).collect();
     let densities: Vec<f64> = squares.iter().map(|square| square.density_c_m2).collect();
-    let cell_data = [
-        ("wall", Values::Integers(squares.iter().map(|square| i64::from(square.wall)).collect())),
-        ("charge_C", Values::Numbers(&charges)),
-        ("charge_density_C_m2", Values::Numbers(&densities)),
+    let mut names = WALL_CHARGE.names(|when| when == When::Always);
+    let walls = squares.iter().map(|square| i64::from(square.wall)).collect();
+    let cell_data = vec![Values::Integers(walls), Values::Numbers(&charges), Values::Numbers(&densities)];
+    let cell_data = named(&mut names, cell_data);
+    let corners = named(&mut names, vec![Values::Vectors(&points)]);
+    let quadrangles = vec![
+        Values::Count { from: 0, count: points.len() },
+        Values::Integers(ends.collect()),
+        Values::CellTypes(vec![QUAD; squares.len()]),
     ];
-    let cells = [
-        ("connectivity", Values::Count { from: 0, count: points.len() }),
-        ("offsets", Values::Integers(ends.collect())),
-        ("types", Values::CellTypes(vec![QUAD; squares.len()])),
-    ];
-    let sections = [
-        ("CellData", &cell_data[..]),
-        ("Points", &[("points_m", Values::Vectors(&points))]),
-        ("Cells", &cells),
-    ];
+    let cells = named(&mut names, quadrangles);
+    let sections = [("CellData", &cell_data[..]), ("Points", &corners), ("Cells", &cells)];
     write_sections(path, &GridSize { points: points.len(), cells: squares.len() }, &sections)
 }
 

@@ -2,7 +2,7 @@
 
 use crate::common::{Folder, SCENE};
 use amberfield_scene::keys::{self, Form, Key, Without};
-use amberfield_scene::{Purpose, check_keys, parse_scene};
+use amberfield_scene::{Purpose, check_keys, files, parse_scene};
 use std::path::{Path, PathBuf};
 
 /// Variable with which the test of the pages writes them.
@@ -14,7 +14,9 @@ fn docs() -> PathBuf {
 
 #[test]
 fn pages_are_those_of_the_table() {
-    for (name, text) in [("scene.md", keys::page()), ("amberfield.schema.json", keys::schema())] {
+    let pages =
+        [("scene.md", keys::page()), ("files.md", files::page()), ("amberfield.schema.json", keys::schema())];
+    for (name, text) in pages {
         let path = docs().join(name);
         if std::env::var_os(WRITE).is_some() {
             std::fs::write(&path, &text).unwrap();

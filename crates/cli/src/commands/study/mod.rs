@@ -13,7 +13,7 @@ use crate::run::{
 use amberfield_core::{Boundary, Domain, FieldSettings, Method, Tuning, Vector3};
 use amberfield_field::{ElectricField, FieldValues, Wanted};
 use amberfield_oracle::field_scale;
-use amberfield_scene::{Purpose, Scene};
+use amberfield_scene::{Purpose, Scene, files};
 use amberfield_study::peers::{PeerProblem, measure_field};
 use amberfield_study::sweep::{
     self, Endured, Evaluation, Exact, Extreme, GroundedBox, Laboratory, Moved, Peer, Provenance, Results,
@@ -89,7 +89,7 @@ fn measured(options: &StudyOptions, study: &Study, store: &Store) -> Result<Resu
             tracing::info!("{}", told(row));
         }
         known.points.extend_from_slice(rows);
-        unwritten = store.save(&name_of(""), &known.points);
+        unwritten = store.save_as(&name_of(""), &files::POINTS, &known.points);
     });
     unwritten.map_err(failed)?;
     let mut unwritten = Ok(());
@@ -97,7 +97,7 @@ fn measured(options: &StudyOptions, study: &Study, store: &Store) -> Result<Resu
         let seconds = row.seconds.unwrap_or(f64::NAN);
         tracing::info!("{}, {} {}: {seconds:.2} s", row.problem, row.method, row.value);
         known.motions.push(row.clone());
-        unwritten = store.save(&name_of("-motions"), &known.motions);
+        unwritten = store.save_as(&name_of("-motions"), &files::MOTIONS, &known.motions);
     });
     unwritten.map_err(failed)?;
     let mut unwritten = Ok(());
@@ -107,8 +107,8 @@ fn measured(options: &StudyOptions, study: &Study, store: &Store) -> Result<Resu
         known.extremes.push(row.clone());
         known.energies.extend_from_slice(energies);
         unwritten = store
-            .save(&name_of("-extremes"), &known.extremes)
-            .and_then(|()| store.save(&name_of("-energies"), &known.energies));
+            .save_as(&name_of("-extremes"), &files::EXTREMES, &known.extremes)
+            .and_then(|()| store.save_as(&name_of("-energies"), &files::ENERGIES, &known.energies));
     });
     unwritten.map_err(failed)?;
     Ok(known)
