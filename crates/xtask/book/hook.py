@@ -138,7 +138,8 @@ def index_of_cases():
     """Page with a row for each case: what it asks, and which number it expects."""
     text = (
         "# Cases\n\nEach case asks one question that has a known number as its answer, and says where that\n"
-        "number comes from. All of them run as tests: `cargo xtask test` runs each at a small size.\n\n"
+        "number comes from. `cargo xtask test` runs each at a small size, but for `goldschmidt`, which\n"
+        "`cargo xtask bench gas` runs.\n\n"
         "| case | question | expected |\n|---|---|---|\n"
     )
     for case in cases():
@@ -148,11 +149,14 @@ def index_of_cases():
 
 
 def expected(page):
-    """First number in bold of a case's answer, with the sentence around it."""
+    """Sentence of a case's answer with the first number in bold; without one the first sentence."""
     _, _, answer = page.partition("**Expected:**")
-    answer = " ".join(answer.split())
-    bold = [text for text in re.findall(r"\*\*([^*]+)\*\*", answer) if re.search(r"\d", text)]
-    return ", ".join(f"**{text}**" for text in bold[:2]) or "see the case"
+    prose = [line for line in answer.splitlines() if not line.startswith(("|", "    ", "!"))]
+    text = re.sub(r"\[([^]]*)\]\([^)]*\)", r"\1", " ".join(" ".join(prose).split()))
+    sentences = re.split(r"(?<=[.])(?<!Phys\.)(?<!Rev\.)(?<!Lett\.)\s+(?=[A-Z*])", text)
+    numbers = [sentence for sentence in sentences if re.search(r"\*\*[^*]*\d[^*]*\*\*", sentence)]
+    sentence = (numbers or sentences)[0].replace("|", "\\|") or "see the case"
+    return sentence[0].upper() + sentence[1:]
 
 
 def linked(text, page):
