@@ -4,6 +4,7 @@
 
 mod any_bytes;
 mod bad_input;
+mod convert;
 mod errors_page;
 mod explain_and_doctor;
 mod faults;

@@ -1,6 +1,7 @@
 //! The command line.
 
 use amberfield_core::Method;
+use amberfield_scene::Units;
 use clap::{ArgAction, Args, Parser, Subcommand, ValueEnum};
 use std::path::PathBuf;
 
@@ -61,6 +62,8 @@ pub(crate) enum Command {
     Study(StudyOptions),
     /// Writes a small scene with comments to start from, or lists such scenes
     New(NewOptions),
+    /// Writes the grains of a file, a checkpoint or a run in another form
+    Convert(ConvertOptions),
     /// Shows the keys of a scene (values, units, defaults, examples) and the columns of files
     Keys(KeysOptions),
     /// Tells what this machine offers and which stale runs it holds
@@ -126,6 +129,28 @@ pub(crate) struct NewOptions {
     /// Folder of the scene [default: named after the scene]
     #[arg(long, value_name = "DIR")]
     pub(crate) out: Option<PathBuf>,
+}
+
+/// Options of `convert`.
+#[derive(Debug, Args)]
+pub(crate) struct ConvertOptions {
+    /// Table, dump of LAMMPS or LIGGGHTS, VTK file, checkpoint, or run folder
+    pub(crate) from: PathBuf,
+    /// File to write; its ending is its form: .csv, .vtu, .lammpstrj or .dump, .data
+    pub(crate) to: PathBuf,
+    /// Step of the frame, in a file or run with several [default: the last]
+    #[arg(long, value_name = "N")]
+    pub(crate) step: Option<u64>,
+    /// Unit style of a dump or data file that is written: si, cgs, micro, nano, real, metal or electron
+    /// [default: si]
+    #[arg(long, value_name = "STYLE", value_parser = Units::named)]
+    pub(crate) units: Option<Units>,
+    /// Unit style of a dump or VTK file that is read and does not name its own
+    #[arg(long, value_name = "STYLE", value_parser = Units::named)]
+    pub(crate) from_units: Option<Units>,
+    /// Names of the materials of types 1, 2, …, separated by commas
+    #[arg(long, value_name = "NAMES", value_delimiter = ',')]
+    pub(crate) materials_by_type: Vec<String>,
 }
 
 /// Options of `keys`.

@@ -42,6 +42,7 @@ fn dispatch(arguments: &Arguments, log: &logging::Log) -> Result<(), Failure> {
         #[cfg(feature = "plots")]
         Command::Study(options) => commands::study(options),
         Command::New(options) => commands::new(options),
+        Command::Convert(options) => commands::convert(options),
         Command::Keys(options) => commands::keys(options),
         Command::Doctor(options) => commands::doctor(options),
     }

@@ -24,11 +24,12 @@ pub use error::SceneError;
 pub use particles::{Snapshot, SnapshotBox, SnapshotOptions, Units};
 pub use scene::{
     ChargeTransferSettings, ElectricFieldSettings, OpenFoamSettings, OutputSettings, Physics, Purpose, Scene,
-    SolverLoss, parse_scene, read_scene, read_scene_with_mesh,
+    SolverLoss, parse_scene, read_material_names, read_scene, read_scene_with_mesh,
 };
 pub use table::check_keys;
 pub use write::{
     ChargedSquare, FieldColumns, FieldComponents, FieldReport, FieldReportSeconds, HistoryFile, HistoryValue,
     PvdSeries, read_checkpoint, read_table, write_atomically, write_charge_vtu, write_checkpoint,
-    write_field_csv, write_json, write_particles_csv, write_rows, write_table, write_text, write_vtu,
+    write_field_csv, write_json, write_particles_csv, write_rows, write_snapshot, write_table, write_text,
+    write_vtu,
 };

@@ -1,5 +1,6 @@
 //! Commands of `amberfield`, one file for each.
 
+mod convert;
 mod doctor;
 mod explain;
 mod field;
@@ -10,6 +11,7 @@ mod run;
 mod study;
 mod tune;
 
+pub(crate) use convert::convert;
 pub(crate) use doctor::doctor;
 pub(crate) use explain::explain;
 pub(crate) use field::field;

@@ -1,10 +1,12 @@
 //! The complete state of a run, for checkpoints: every stage's own, one after another.
 
 use super::exits::WaysOut;
+use crate::DemError;
 use crate::charging::ChargingState;
 use crate::contacts::memory::ContactsState;
 use crate::field_stage::FieldState;
 use crate::motion::grains::GrainsState;
+use amberfield_core::{Domain, Particles};
 use amberfield_field::Choice;
 use amberfield_gas::ExchangeState;
 use serde::{Deserialize, Serialize};
@@ -52,6 +54,41 @@ impl State {
     #[must_use]
     pub fn step_index(&self) -> u64 {
         self.progress.step_index
+    }
+
+    /// Simulated time [s].
+    #[must_use]
+    pub fn time_s(&self) -> f64 {
+        self.progress.time_s()
+    }
+
+    /// Grains that are still there, given those of the set-up, in their order; positions inside the domain.
+    ///
+    /// # Errors
+    /// A state of other grains than those of the set-up.
+    pub fn particles(&self, start: &Particles, domain: &Domain) -> Result<Particles, DemError> {
+        let grains = &self.grains;
+        let arrays = [grains.centre.len(), grains.velocity.len(), grains.angular.len()];
+        let fits = arrays.iter().all(|length| *length == grains.original.len())
+            && grains.original.iter().all(|original| original.index() < start.len())
+            && self.charging.as_ref().is_none_or(|charging| charging.charge.len() == start.len());
+        if !fits {
+            return Err(DemError::State("its grains are not those of the scene".to_owned()));
+        }
+        let mut order: Vec<usize> = (0..grains.original.len()).collect();
+        order.sort_unstable_by_key(|&index| grains.original[index]);
+        let grain = |index: usize| {
+            let original = grains.original[index].index();
+            let mut grain = start.grain(original);
+            grain.position = domain.wrap(grains.centre[index]);
+            grain.velocity = grains.velocity[index];
+            grain.angular_velocity = grains.angular[index];
+            if let Some(charging) = &self.charging {
+                grain.charge = charging.charge[original];
+            }
+            grain
+        };
+        Ok(order.into_iter().map(grain).collect())
     }
 
     /// Whether a field solver that the scene has was lost, and the internal grid goes on.

@@ -237,7 +237,7 @@ pub(super) static KEYS: &[Key] = &[
     Key::new(
         "file",
         Form::Text,
-        "File with the grains: a table (CSV), or a text dump of LAMMPS or LIGGGHTS; also packed by gzip.",
+        "File with the grains: a table (CSV), a dump of LAMMPS or LIGGGHTS, or a VTK file; or its .gz.",
     )
     .without("generate")
     .example("\"grains.csv\"")
@@ -245,8 +245,8 @@ pub(super) static KEYS: &[Key] = &[
     Key::new(
         "units",
         Form::Word(&["si", "cgs", "micro", "nano", "real", "metal", "electron"]),
-        "Unit style of a dump that does not name its own, as the command units of LAMMPS and LIGGGHTS has \
-         it; lj is none, since it has no units.",
+        "Unit style of a dump or VTK file that does not name it, as the command units of LAMMPS has it; \
+         lj is none, since it has no units.",
     )
     .without("the style that the file names")
     .example("\"si\"")
@@ -255,7 +255,7 @@ pub(super) static KEYS: &[Key] = &[
         .without("the last frame")
         .example("100000")
         .also(&["frame", "timestep", "time_step", "snapshot_step"]),
-    Key::new("materials_by_type", Form::Texts, "Names of the materials of types 1, 2, … of a dump.")
+    Key::new("materials_by_type", Form::Texts, "Materials of types 1, 2, … of a dump or VTK file.")
         .without("the scene's only material")
         .example("[\"glass\", \"steel\"]")
         .also(&["types", "type_names", "materials", "material_by_type"]),

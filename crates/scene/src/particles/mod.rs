@@ -11,11 +11,18 @@ mod row;
 mod snapshot;
 mod text_table;
 mod units;
+mod vtk_blocks;
+mod vtk_legacy;
+mod vtk_numbers;
+mod vtk_points;
+mod vtk_xml;
 mod words;
+mod xml_tags;
 
 pub(crate) use grains::GrainContext;
 pub(crate) use names::MaterialNames;
 pub(crate) use open::{read_charges, read_grains};
 pub(crate) use snapshot::{FileChoices, ReadParticles};
 pub use snapshot::{Snapshot, SnapshotBox, SnapshotOptions};
+pub(crate) use units::Factors;
 pub use units::Units;

@@ -5,6 +5,8 @@ use super::grains::GrainContext;
 use super::names::MaterialNames;
 use super::snapshot::{FileChoices, Snapshot, SnapshotOptions};
 use super::text_table::{COMMENT, read_charge_column, read_table};
+use super::vtk_legacy::read_legacy;
+use super::vtk_xml::read_xml;
 use super::words::cut_off;
 use crate::SceneError;
 use crate::source::{open_alone, unpack};
@@ -31,6 +33,10 @@ enum Form {
     Table,
     /// Text dump of LAMMPS or LIGGGHTS.
     Dump,
+    /// Legacy VTK file.
+    VtkLegacy,
+    /// XML file of VTK.
+    VtkXml,
 }
 
 impl Form {
@@ -52,6 +58,12 @@ impl Form {
         let text = head.trim_ascii_start();
         if text.starts_with(b"ITEM:") {
             return Ok(Self::Dump);
+        }
+        if text.starts_with(b"# vtk") {
+            return Ok(Self::VtkLegacy);
+        }
+        if text.starts_with(b"<?xml") || text.starts_with(b"<VTKFile") {
+            return Ok(Self::VtkXml);
         }
         let is_data_file = |line: &[u8]| line.ends_with(b"xlo xhi");
         if text.split(|byte| *byte == b'\n').take(40).any(|line| is_data_file(line.trim_ascii_end())) {
@@ -121,6 +133,17 @@ pub(crate) fn read_grains(
             read_table(file, &head, reader, context)
         }
         Form::Dump => read_dump(file, reader, choices, context),
+        Form::VtkLegacy | Form::VtkXml => {
+            if choices.step.is_some() {
+                let problem = "step is for files with several frames; a VTK file has one; leave it out";
+                return Err(SceneError::file(file, problem));
+            }
+            let mut bytes = Vec::new();
+            { reader }.read_to_end(&mut bytes).map_err(|error| cut_off(file, &error))?;
+            let bytes = bytes.trim_ascii_start();
+            let points = if form == Form::VtkXml { read_xml(file, bytes) } else { read_legacy(file, bytes) }?;
+            points.grains(file, choices, context)
+        }
     }
 }
 
@@ -135,13 +158,13 @@ pub(crate) fn read_charges(file: &str, bytes: &[u8], count: usize) -> Result<Vec
             let (head, reader) = content.parts();
             read_charge_column(file, &head, reader, count)
         }
-        Form::Dump => Err(SceneError::file(file, "it is no table; give one with the column charge_C")),
+        _ => Err(SceneError::file(file, "it is no table; give one with the column charge_C")),
     }
 }
 
 impl Snapshot {
-    /// Reads the grains of a file: a table in text, or a text dump of LAMMPS or LIGGGHTS, also packed by
-    /// gzip. Its content tells the form.
+    /// Reads the grains of a file: a table in text, a text dump of LAMMPS or LIGGGHTS, or a VTK file, also
+    /// packed by gzip. Its content tells the form.
     ///
     /// # Errors
     /// Files that cannot be read, bad values with their place, and units and steps that must be chosen.

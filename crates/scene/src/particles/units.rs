@@ -100,17 +100,14 @@ impl Units {
             Self::Nano => {
                 Factors { velocity: 1.0, density: 1e6, ..Factors::new(1e-9, 1e-21, 1e-9, ELEMENTARY_CHARGE) }
             }
-            // Their density is grams per cubic centimetre, not mass over length cubed.
-            Self::Real => Factors {
-                velocity: 1e5,
-                density: 1e3,
-                ..Factors::new(1e-10, GRAM_PER_MOLE, 1e-15, ELEMENTARY_CHARGE)
-            },
-            Self::Metal => Factors {
-                velocity: 1e2,
-                density: 1e3,
-                ..Factors::new(1e-10, GRAM_PER_MOLE, 1e-12, ELEMENTARY_CHARGE)
-            },
+            // LAMMPS reads and writes a sphere's density as mass over volume in these styles too, though its
+            // manual counts densities of them in grams per cubic centimetre.
+            Self::Real => {
+                Factors { velocity: 1e5, ..Factors::new(1e-10, GRAM_PER_MOLE, 1e-15, ELEMENTARY_CHARGE) }
+            }
+            Self::Metal => {
+                Factors { velocity: 1e2, ..Factors::new(1e-10, GRAM_PER_MOLE, 1e-12, ELEMENTARY_CHARGE) }
+            }
             // Velocities are in Bohr radii per 1.03275 fs, which is a₀ √(u/E_h), and not per femtosecond.
             Self::Electron => Factors {
                 velocity: (HARTREE / ATOMIC_MASS).sqrt(),
@@ -162,7 +159,7 @@ mod tests {
             (Units::Cgs, 1.0),
             (Units::Micro, 1.0),
             (Units::Nano, 1e-3),
-            (Units::Real, 1.0),
+            (Units::Real, 0.602_214_076),
         ] {
             assert!(agrees(water * units.factors().density, 1e3, ROUND_OFF), "{units:?}");
         }

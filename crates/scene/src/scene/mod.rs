@@ -20,4 +20,4 @@ pub use description::{
 };
 pub use physics::Physics;
 pub(crate) use physics::told;
-pub use read::{parse_scene, read_scene, read_scene_with_mesh};
+pub use read::{parse_scene, read_material_names, read_scene, read_scene_with_mesh};

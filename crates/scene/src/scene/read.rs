@@ -62,6 +62,18 @@ pub fn parse_scene(
     parse(text, file, folder, overrides, (purpose, None))
 }
 
+/// Reads the names of the materials of a scene file, and nothing else of it.
+///
+/// # Errors
+/// Files that are no scene, and bad materials.
+pub fn read_material_names(path: &Path) -> Result<Vec<String>, SceneError> {
+    let text = read_text(path)?;
+    let file: Arc<str> = path.display().to_string().into();
+    let entries = parse_document(&file, &text)?;
+    let document = SceneTable::document(&entries, Place::Line { file, line: 0 }, SCENE)?;
+    Ok(read_materials(&document)?.into_iter().map(|material| material.name).collect())
+}
+
 fn parse(
     text: &str,
     file: &str,

@@ -4,8 +4,10 @@ mod atomic;
 mod checkpoint;
 mod field_csv;
 mod history;
+mod lammps;
 mod particles_csv;
 mod pvd;
+mod snapshot;
 mod vtu;
 
 pub use atomic::{read_table, write_atomically, write_json, write_rows, write_table, write_text};
@@ -14,4 +16,5 @@ pub use field_csv::{FieldColumns, FieldComponents, FieldReport, FieldReportSecon
 pub use history::{HistoryFile, HistoryValue};
 pub use particles_csv::write_particles_csv;
 pub use pvd::PvdSeries;
+pub use snapshot::write_snapshot;
 pub use vtu::{ChargedSquare, write_charge_vtu, write_vtu};

@@ -37,7 +37,7 @@ pub fn write_particles_csv(
 }
 
 /// Quotes a name that has separators in it.
-fn quoted(name: &str) -> String {
+pub(super) fn quoted(name: &str) -> String {
     if name.contains([',', '"', '\n', '\r']) {
         format!("\"{}\"", name.replace('"', "\"\""))
     } else {

@@ -11,7 +11,7 @@ use std::io::{self, Write};
 use std::path::Path;
 
 /// Values of a data array.
-enum Values<'a> {
+pub(super) enum Values<'a> {
     Vectors(&'a [Vector3<f64>]),
     Numbers(&'a [f64]),
     Ids(&'a [u64]),
@@ -90,7 +90,7 @@ const VERTEX: u8 = 1;
 const QUAD: u8 = 9;
 
 /// Data array with its name.
-type Named<'a> = (&'a str, Values<'a>);
+pub(super) type Named<'a> = (&'a str, Values<'a>);
 
 /// Gives arrays the next names of a table, and takes no more than these.
 fn named<'a>(names: &mut impl Iterator<Item = &'static str>, arrays: Vec<Values<'a>>) -> Vec<Named<'a>> {
@@ -131,7 +131,25 @@ pub fn write_vtu(
     ];
     let cells = named(&mut names, vertices);
     let sections = [("PointData", &point_data[..]), ("Points", &points), ("Cells", &cells)];
-    write_sections(path, &GridSize { points: count, cells: count }, &sections)
+    write_sections(path, &GridSize { points: count, cells: count, before: "" }, &sections)
+}
+
+/// Writes points with their arrays; `before` is an element that stands before the piece.
+pub(super) fn write_grains(
+    path: &Path,
+    places: &[Vector3<f64>],
+    arrays: &[Named<'_>],
+    before: &str,
+) -> Result<(), SceneError> {
+    let count = places.len();
+    let points = [("points_m", Values::Vectors(places))];
+    let cells = [
+        ("connectivity", Values::Count { from: 0, count }),
+        ("offsets", Values::Count { from: 1, count }),
+        ("types", Values::CellTypes(vec![VERTEX; count])),
+    ];
+    let sections = [("PointData", arrays), ("Points", &points), ("Cells", &cells)];
+    write_sections(path, &GridSize { points: count, cells: count, before }, &sections)
 }
 
 /// Square around a charged place of a wall.
@@ -168,19 +186,25 @@ pub fn write_charge_vtu(path: &Path, squares: &[ChargedSquare]) -> Result<(), Sc
     ];
     let cells = named(&mut names, quadrangles);
     let sections = [("CellData", &cell_data[..]), ("Points", &corners), ("Cells", &cells)];
-    write_sections(path, &GridSize { points: points.len(), cells: squares.len() }, &sections)
+    write_sections(path, &GridSize { points: points.len(), cells: squares.len(), before: "" }, &sections)
 }
 
 /// Size of a grid.
-struct GridSize {
+struct GridSize<'a> {
     /// Number of points.
     points: usize,
     /// Number of cells.
     cells: usize,
+    /// Element before the piece; empty for none.
+    before: &'a str,
 }
 
 /// Writes a grid of the given size.
-fn write_sections(path: &Path, size: &GridSize, sections: &[(&str, &[Named<'_>])]) -> Result<(), SceneError> {
+fn write_sections(
+    path: &Path,
+    size: &GridSize<'_>,
+    sections: &[(&str, &[Named<'_>])],
+) -> Result<(), SceneError> {
     write_atomically(path, |writer| {
         writeln!(
             writer,
@@ -190,8 +214,8 @@ fn write_sections(path: &Path, size: &GridSize, sections: &[(&str, &[Named<'_>])
         )?;
         writeln!(
             writer,
-            "<UnstructuredGrid>\n<Piece NumberOfPoints=\"{}\" NumberOfCells=\"{}\">",
-            size.points, size.cells
+            "<UnstructuredGrid>\n{}<Piece NumberOfPoints=\"{}\" NumberOfCells=\"{}\">",
+            size.before, size.points, size.cells
         )?;
         let mut offset = 0;
         for (section, arrays) in sections {

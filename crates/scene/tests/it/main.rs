@@ -11,3 +11,5 @@ mod generators;
 mod good_scenes;
 mod keys;
 mod outputs;
+mod round_trips;
+mod vtk_files;
