@@ -6,7 +6,10 @@
 use amberfield_core::{Boundary, Domain, Vector3};
 use amberfield_coupling::{GrainsInCells, MeshArrays, MeshPart, Question, assemble};
 use amberfield_field::far::{FarMesh, FarMeshParts};
-use amberfield_scene::{Physics, Purpose, read_checkpoint, read_scene, write_checkpoint};
+use amberfield_scene::{
+    Physics, Purpose, Snapshot, SnapshotOptions, Units, read_checkpoint, read_scene, write_checkpoint,
+    write_snapshot,
+};
 use amberfield_wire::payloads::{
     BoundaryFace, FarAnswer, FarQuestion, FlowAnswer, FlowQuestion, MeshOutline,
 };
@@ -18,13 +21,15 @@ use std::sync::OnceLock;
 pub type Reader = fn(&[u8]);
 
 /// Readers with their names.
-pub const TARGETS: [(&str, Reader); 6] = [
+pub const TARGETS: [(&str, Reader); 8] = [
     ("scene", scene),
     ("grains", grains),
     ("surface", surface),
     ("checkpoint", checkpoint),
     ("message", message),
     ("mesh", mesh),
+    ("dump", snapshot),
+    ("vtk", snapshot),
 ];
 
 /// Good scene with every kind of section.
@@ -102,6 +107,27 @@ fn scene(bytes: &[u8]) {
 /// Reads the bytes as a CSV file of particles.
 fn grains(bytes: &[u8]) {
     read_with("grains.csv", bytes);
+}
+
+/// Reads the bytes as a file of grains of any program; what was read comes back when it is written.
+fn snapshot(bytes: &[u8]) {
+    static FOLDER: OnceLock<tempfile::TempDir> = OnceLock::new();
+    let folder = FOLDER.get_or_init(|| tempfile::tempdir().expect("a folder"));
+    let thread = format!("{:?}", std::thread::current().id());
+    let path = folder.path().join(&thread);
+    std::fs::write(&path, bytes).expect("a file");
+    for units in [None, Some(Units::Cgs)] {
+        let options = SnapshotOptions { units, ..SnapshotOptions::default() };
+        let Ok(read) = Snapshot::read(&path, &options) else { continue };
+        assert!(read.positions_m().iter().flatten().all(|number| number.is_finite()), "places are finite");
+        if read.radii_m().is_some() {
+            let table = folder.path().join(thread.clone() + ".csv");
+            write_snapshot(&table, &read, Units::Si).expect("a table");
+            let again = Snapshot::read(&table, &SnapshotOptions::default()).expect("our own table");
+            assert_eq!((again.ids(), again.positions_m()), (read.ids(), read.positions_m()));
+            assert_eq!((again.radii_m(), again.charges_c()), (read.radii_m(), read.charges_c()));
+        }
+    }
 }
 
 /// Reads the bytes as an STL file.

@@ -5,7 +5,7 @@ use anyhow::{Context as _, Result};
 use std::path::Path;
 
 /// Names of the targets to which bytes are sent.
-const TARGETS: [&str; 6] = ["scene", "grains", "surface", "checkpoint", "message", "mesh"];
+const TARGETS: [&str; 8] = ["scene", "grains", "surface", "checkpoint", "message", "mesh", "dump", "vtk"];
 /// Longest input [bytes].
 const LONGEST: usize = 4096;
 /// Time of a target unless told [s].
