@@ -19,7 +19,7 @@ pub(crate) const EXIT_BUG: u8 = 101;
 
 /// End of a command with a message and an exit code other than 0.
 #[derive(Debug)]
-pub(crate) struct Failure {
+pub struct Failure {
     code: u8,
     message: String,
 }
@@ -69,7 +69,8 @@ impl Failure {
     }
 
     /// Failure of a field that cannot be computed.
-    pub(crate) fn of_field(error: &FieldError) -> Self {
+    #[must_use]
+    pub fn of_field(error: &FieldError) -> Self {
         match error {
             FieldError::Tolerance { .. } | FieldError::NotConverged(_) => {
                 Self::outside_tolerance(error.to_string())
@@ -91,7 +92,8 @@ impl Failure {
     }
 
     /// Message of the failure.
-    pub(crate) fn message(&self) -> &str {
+    #[must_use]
+    pub fn message(&self) -> &str {
         &self.message
     }
 
@@ -103,7 +105,8 @@ impl Failure {
     }
 
     /// Exit code of the failure.
-    pub(crate) fn code(&self) -> u8 {
+    #[must_use]
+    pub fn code(&self) -> u8 {
         self.code
     }
 }

@@ -21,6 +21,16 @@ pub(crate) fn watch() -> Result<(), Failure> {
     .map_err(|error| Failure::bad_input(format!("cannot watch for Ctrl-C: {error}")))
 }
 
+/// Asks the run of this process to stop after its step, with a checkpoint.
+pub fn ask() {
+    ASKED.store(true, Ordering::SeqCst);
+}
+
+/// Forgets that anybody asked, before another run of this process.
+pub fn forget() {
+    ASKED.store(false, Ordering::SeqCst);
+}
+
 /// Tells whether the user asked to stop.
 pub(crate) fn asked() -> bool {
     ASKED.load(Ordering::Relaxed)

@@ -17,13 +17,37 @@ enum Sink {
     Waiting(Vec<u8>),
     /// File in the run folder.
     File(File),
+    /// Nothing: no run goes on.
+    Nowhere,
 }
 
 /// Log file, shared with the subscriber.
 #[derive(Clone, Debug)]
-pub(crate) struct Log(Arc<Mutex<Sink>>);
+pub struct Log(Arc<Mutex<Sink>>);
 
 impl Log {
+    /// Log of a program that hosts runs, and the layer of its subscriber that writes to it: DEBUG and above.
+    /// Between [`Self::restart`] and [`Self::close`] stands a run.
+    #[must_use]
+    pub fn hosted<S>() -> (Self, impl tracing_subscriber::Layer<S>)
+    where
+        S: tracing::Subscriber + for<'a> tracing_subscriber::registry::LookupSpan<'a>,
+    {
+        let log = Self(Arc::new(Mutex::new(Sink::Nowhere)));
+        let layer = tracing_subscriber::fmt::layer().json().with_writer(log.clone());
+        (log, layer.with_filter(LevelFilter::DEBUG))
+    }
+
+    /// Keeps all lines from now on for the file that a run will open.
+    pub fn restart(&self) {
+        *self.0.lock().unwrap_or_else(PoisonError::into_inner) = Sink::Waiting(Vec::new());
+    }
+
+    /// Ends the log of a run.
+    pub fn close(&self) {
+        *self.0.lock().unwrap_or_else(PoisonError::into_inner) = Sink::Nowhere;
+    }
+
     /// Sends the log to a file, with all lines that were written so far.
     pub(crate) fn open(&self, path: &Path) -> io::Result<()> {
         let mut file = File::options().create(true).append(true).open(path)?;
@@ -41,6 +65,7 @@ impl Write for Log {
         match &mut *self.0.lock().unwrap_or_else(PoisonError::into_inner) {
             Sink::Waiting(lines) => lines.write(bytes),
             Sink::File(file) => file.write(bytes),
+            Sink::Nowhere => Ok(bytes.len()),
         }
     }
 

@@ -24,7 +24,7 @@ pub use error::SceneError;
 pub use particles::{Snapshot, SnapshotBox, SnapshotOptions, Units};
 pub use scene::{
     ChargeTransferSettings, ElectricFieldSettings, OpenFoamSettings, OutputSettings, Physics, Purpose, Scene,
-    SolverLoss, parse_scene, read_material_names, read_scene, read_scene_with_mesh,
+    SceneInput, SolverLoss, parse_field_settings, parse_scene, read_material_names, read_scene,
 };
 pub use table::check_keys;
 pub use write::{

@@ -28,7 +28,7 @@ pub(crate) fn run(root: &Path, with_tests: bool) -> Result<()> {
         execute(&mut cargo(root, &["clippy", "--workspace", "--all-targets", "--", "-D", "warnings"]))
     });
     step("clippy without coupling and plots", &|| {
-        let cli = ["clippy", "-p", "amberfield-cli", "--no-default-features", "--bins"];
+        let cli = ["clippy", "-p", "amberfield-cli", "--no-default-features", "--lib", "--bins"];
         execute(cargo(root, &cli).args(["--", "-D", "warnings"]))
     });
     step("docs", &|| documentation(root));

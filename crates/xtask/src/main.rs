@@ -1,5 +1,5 @@
 //! Developer commands: `cargo xtask check`, `tidy`, `test`, `deny`, `bench`, `leaving-out`, `openfoam`,
-//! `images`, `docs`, `fuzz`, `sanitize`, `header`, `keys`.
+//! `images`, `docs`, `fuzz`, `sanitize`, `header`, `keys`, `python`.
 #![expect(clippy::print_stdout, reason = "a program for developers that reports to the terminal")]
 
 mod bench;
@@ -12,11 +12,13 @@ mod images;
 mod leaving_out;
 mod openfoam;
 mod profile;
+mod python;
 mod sanitize;
 mod shell;
 mod test;
 mod tidy;
 
+use crate::profile::Profile;
 use crate::shell::{cargo, run as execute};
 use anyhow::{Result, bail};
 use std::path::Path;
@@ -52,6 +54,9 @@ cargo xtask header
     writes the C library's header
 cargo xtask keys
     writes docs/scene.md, docs/amberfield.schema.json and docs/files.md from the tables of keys and files
+cargo xtask python [--release]
+    builds the Python package, installs it into an environment under target/ and runs its tests; with
+    --release it is the wheel for users, in target/wheels
 cargo xtask leaving-out
     counts what a plain scene pays for all that it does not use: instructions of a run over those of a
     program of motion and contacts alone, under callgrind; installs valgrind where it is missing";
@@ -93,6 +98,8 @@ fn run() -> Result<()> {
             cargo(root, &["test", "-q", "-p", "amberfield-scene", "--test", "it", "keys::pages"])
                 .env("AMBERFIELD_WRITE_KEYS", "1"),
         ),
+        ["python"] => python::run(root, Profile::Dev),
+        ["python", "--release"] => python::run(root, Profile::Release),
         ["bench", rest @ ..] => bench::run(root, rest),
         [] | ["help" | "--help" | "-h"] => {
             println!("{USAGE}");

@@ -48,7 +48,7 @@ pub(crate) struct RunFolder {
 
 impl RunFolder {
     /// Refuses a folder that cannot be used, before any work is done.
-    pub(crate) fn check(path: &Path, existing: Existing, scene: &Path) -> Result<(), Failure> {
+    pub(crate) fn check(path: &Path, existing: Existing, scene: Option<&Path>) -> Result<(), Failure> {
         let refuse = |problem: String| Err(Failure::bad_input(format!("{}: {problem}", path.display())));
         if path.exists() && !path.is_dir() {
             return refuse("not a folder; name another one with --out".to_owned());
@@ -64,7 +64,7 @@ impl RunFolder {
                 "the run folder exists ({name} is there); name another with --out, \
                  continue it with --resume CHECKPOINT, or replace it with --overwrite"
             )),
-            (Existing::Overwrite, _) if is_same(&path.join("scene.toml"), scene) => refuse(
+            (Existing::Overwrite, _) if scene.is_some_and(|scene| is_same(&path.join("scene.toml"), scene)) => refuse(
                 "--overwrite would remove the scene file itself; name another folder with --out".to_owned(),
             ),
             (Existing::Resume, None) => {

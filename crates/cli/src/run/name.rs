@@ -1,6 +1,12 @@
 //! Name of a scene.
 
+use amberfield_scene::SceneInput;
 use std::path::Path;
+
+/// Name of a scene as a user gave it.
+pub(crate) fn name_of(scene: &SceneInput) -> String {
+    scene.path().map_or_else(|| "scene".to_owned(), scene_name)
+}
 
 /// Name of a scene: that of its file without the ending, or that of its folder when the file is `scene.toml`.
 pub(crate) fn scene_name(path: &Path) -> String {

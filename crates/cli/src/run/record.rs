@@ -199,16 +199,16 @@ impl Record {
         Ok(self.history.append(&row)?)
     }
 
-    /// Writes the files of the grains, at most once for each step.
+    /// Writes the files of the grains, at most once for each step. Tells whether it did.
     pub(crate) fn frame(
         &mut self,
         folder: &RunFolder,
         scene: &Scene,
         simulation: &Simulation,
-    ) -> Result<(), Failure> {
+    ) -> Result<bool, Failure> {
         let step = simulation.step_index();
         if self.last_frame.replace(step) == Some(step) {
-            return Ok(());
+            return Ok(false);
         }
         let particles = simulation.particles();
         let name = format!("particles/grains_{step:012}");
@@ -241,7 +241,7 @@ impl Record {
         if let Some(histogram) = &mut self.histogram {
             histogram.append(step, simulation.time_s(), &particles)?;
         }
-        Ok(())
+        Ok(true)
     }
 }
 

@@ -2,13 +2,13 @@
 
 use super::folder::RunFolder;
 use super::health::{Allowed, Health};
+use super::observer::Observer;
 use super::record::{Clock, Record};
 use super::schedule::{Every, Schedule};
 use super::setup::CaseContents;
 use super::summary::{Ending, write_summary};
 use crate::failure::Failure;
 use crate::interrupt;
-use crate::progress::Progress;
 use amberfield_dem::{ElectricEnergy, Energies, Simulation, State};
 use amberfield_scene::{Scene, write_checkpoint};
 use serde::{Deserialize, Serialize};
@@ -99,13 +99,13 @@ impl<'a> Session<'a> {
     /// Makes steps until the end, at most `most` of them, or until the user interrupts.
     ///
     /// It writes the outputs that are due, and all outputs at the end.
-    pub(crate) fn go(&mut self, most: Option<u64>, progress: &mut Progress) -> Result<Ending, Failure> {
+    pub(crate) fn go(&mut self, most: Option<u64>, observer: &mut dyn Observer) -> Result<Ending, Failure> {
         let first = self.simulation.step_index();
         let stop =
             most.map_or(self.schedule.total, |most| self.schedule.total.min(first.saturating_add(most)));
         if first == 0 {
             self.row()?;
-            self.record.frame(self.folder, self.scene, &self.simulation)?;
+            self.frame(observer)?;
         }
         let before = match self.at_resume.take() {
             Some(energies) => energies,
@@ -120,7 +120,7 @@ impl<'a> Session<'a> {
             if interrupt::asked() {
                 break Ending::Interrupted;
             }
-            if let Err(error) = self.step(progress) {
+            if let Err(error) = self.step(observer) {
                 // The step is not complete, so only the state before it can be saved, if it was kept.
                 if let Some(state) = self.simulation.rescued() {
                     let path = self.checkpoint_of(state.step_index());
@@ -139,25 +139,25 @@ impl<'a> Session<'a> {
         };
 
         self.row()?;
-        self.record.frame(self.folder, self.scene, &self.simulation)?;
+        self.frame(observer)?;
         self.checkpoint()?;
         write_summary(self, first, &before, ending, None)?;
         Ok(ending)
     }
 
     /// Makes one step and writes the outputs that are due.
-    fn step(&mut self, progress: &mut Progress) -> Result<(), Failure> {
+    fn step(&mut self, observer: &mut dyn Observer) -> Result<(), Failure> {
         self.simulation.step().map_err(|error| Failure::while_running(&error))?;
-        self.write_what_is_due().map_err(|failure| match self.folder.newest_checkpoint() {
+        self.write_what_is_due(observer).map_err(|failure| match self.folder.newest_checkpoint() {
             Some(path) => failure.with(&format!("; the last checkpoint before that is {}", path.display())),
             None => failure.with("; there is no checkpoint before that"),
         })?;
-        progress.tell(self.simulation.step_index(), self.simulation.time_s());
+        observer.step(self.simulation.step_index(), self.simulation.time_s());
         Ok(())
     }
 
     /// Writes the outputs that are due after a step, and checks that the run is sound.
-    fn write_what_is_due(&mut self) -> Result<(), Failure> {
+    fn write_what_is_due(&mut self, observer: &mut dyn Observer) -> Result<(), Failure> {
         self.record.exits(&mut self.simulation)?;
         let step = self.simulation.step_index();
         let row = self.schedule.history.is_due(step);
@@ -169,15 +169,24 @@ impl<'a> Session<'a> {
                 self.record.row(&self.simulation, &energies, &self.clock())?;
             }
             if let Err(failure) = self.health.check(&mut self.simulation, &energies) {
-                self.record.frame(self.folder, self.scene, &self.simulation)?;
+                self.frame(observer)?;
                 return Err(failure.with("; the last files in particles/ show that moment"));
             }
         }
         if self.schedule.frame_is_due(step) {
-            self.record.frame(self.folder, self.scene, &self.simulation)?;
+            self.frame(observer)?;
         }
         if checkpoint {
             self.checkpoint()?;
+        }
+        Ok(())
+    }
+
+    /// Writes the files of the grains, once for each step, and tells of them.
+    fn frame(&mut self, observer: &mut dyn Observer) -> Result<(), Failure> {
+        let written = self.record.frame(self.folder, self.scene, &self.simulation)?;
+        if written && observer.frame(&self.simulation).is_break() {
+            interrupt::ask();
         }
         Ok(())
     }

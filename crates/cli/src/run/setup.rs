@@ -1,13 +1,27 @@
 //! Set-up of a simulation from the description of a scene.
 
+use super::solver::read_input;
+use super::solver_folder::SolverFolder;
 use crate::failure::Failure;
 use amberfield_core::{ChargeTransfer, Domain, FieldSettings, Vector3};
 use amberfield_dem::{FieldStageSetup, GasSetup, Setup};
 use amberfield_field::far::Connect;
 use amberfield_field::{Choice, ElectricField};
 use amberfield_gas::ConnectFlow;
-use amberfield_scene::{Scene, SolverLoss};
+use amberfield_scene::{Purpose, Scene, SceneInput, SolverLoss};
 use serde_json::{Map, Value, json};
+use std::path::Path;
+
+/// Reads a scene file. Where one of its walls is a patch of a mesh that is not made yet, the mesh is made
+/// first, in the solver's folder.
+pub(crate) fn read_scene(
+    path: &Path,
+    overrides: &[String],
+    purpose: Purpose,
+    folder: &SolverFolder,
+) -> Result<Scene, Failure> {
+    read_input(&SceneInput::File(path.to_path_buf()), overrides, purpose, folder)
+}
 
 /// Box of a scene.
 pub(crate) fn domain_of(scene: &Scene) -> Result<&Domain, Failure> {
@@ -47,7 +61,8 @@ pub(crate) fn charges_of(scene: &Scene) -> Charges {
 }
 
 /// Parameters of a choice as one flat JSON object, in which `built` names its kind.
-pub(crate) fn parameters(choice: &Choice) -> Value {
+#[must_use]
+pub fn parameters(choice: &Choice) -> Value {
     match serde_json::to_value(choice) {
         Ok(Value::Object(kinds)) if kinds.len() == 1 => {
             let (built, inner) = kinds.into_iter().next().expect("there is one");

@@ -11,8 +11,7 @@ use amberfield_coupling::{
 };
 use amberfield_field::far::{Connect, FarField};
 use amberfield_gas::ConnectFlow;
-use amberfield_scene::{ElectricFieldSettings, OpenFoamSettings, Purpose, Scene, SceneError, SolverLoss};
-use std::path::Path;
+use amberfield_scene::{ElectricFieldSettings, OpenFoamSettings, Purpose, Scene, SceneError, SceneInput, SolverLoss};
 use std::sync::{Mutex, PoisonError};
 use std::time::Duration;
 
@@ -22,18 +21,18 @@ const FAR_TOLERANCE: f64 = 1e-4;
 
 /// Reads a scene. Where one of its walls is a patch of a mesh that is not made yet, the mesh is made first,
 /// in the solver's folder.
-pub(crate) fn read_scene(
-    path: &Path,
+pub(crate) fn read_input(
+    scene: &SceneInput,
     overrides: &[String],
     purpose: Purpose,
     folder: &SolverFolder,
 ) -> Result<Scene, Failure> {
-    match amberfield_scene::read_scene(path, overrides, purpose) {
+    match scene.read(overrides, purpose, None) {
         Err(SceneError::NoMesh { case }) => {
             let place = Workplace::open(&case, folder.path()).map_err(of_coupling)?;
             place.provide_mesh(interrupt::asked).map_err(of_coupling)?;
             let mesh = Some(place.folder());
-            Ok(amberfield_scene::read_scene_with_mesh(path, overrides, purpose, mesh)?)
+            Ok(scene.read(overrides, purpose, mesh)?)
         }
         result => Ok(result?),
     }

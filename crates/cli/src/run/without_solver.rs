@@ -3,17 +3,16 @@
 use super::setup::{CaseContents, SolverConnections};
 use super::solver_folder::SolverFolder;
 use crate::failure::Failure;
-use amberfield_scene::{Purpose, Scene};
-use std::path::Path;
+use amberfield_scene::{Purpose, Scene, SceneInput};
 
 /// Reads a scene.
-pub(crate) fn read_scene(
-    path: &Path,
+pub(crate) fn read_input(
+    scene: &SceneInput,
     overrides: &[String],
     purpose: Purpose,
     _: &SolverFolder,
 ) -> Result<Scene, Failure> {
-    Ok(amberfield_scene::read_scene(path, overrides, purpose)?)
+    Ok(scene.read(overrides, purpose, None)?)
 }
 
 /// Refuses a scene with a field solver.

@@ -5,6 +5,7 @@ mod description;
 mod domain;
 mod electric_field;
 mod gas;
+mod input;
 mod others;
 mod particles;
 mod physics;
@@ -20,4 +21,5 @@ pub use description::{
 };
 pub use physics::Physics;
 pub(crate) use physics::told;
-pub use read::{parse_scene, read_material_names, read_scene, read_scene_with_mesh};
+pub use input::SceneInput;
+pub use read::{parse_field_settings, parse_scene, read_material_names, read_scene};

@@ -4,11 +4,12 @@ use super::description::{Purpose, Scene};
 use super::domain::read_domain;
 use super::electric_field::read_electric_field;
 use super::gas::read_gas;
+use super::input::SceneInput;
 use super::others::{read_charge_transfer, read_contacts, read_output, read_solver};
 use super::particles::read_section;
 use super::physics::Physics;
 use super::time::read_time;
-use super::together::{check_sections, check_together};
+use super::together::{check_reach, check_sections, check_together};
 use super::walls::read_walls;
 use crate::SceneError;
 use crate::error::Problems;
@@ -16,42 +17,23 @@ use crate::keys::SCENE;
 use crate::materials::{Materials, read_materials};
 use crate::source::{SceneSource, read_text};
 use crate::table::SceneTable;
-use crate::tree::{Entries, Node, Place, Value, apply_overrides, parse_document};
+use crate::tree::{Entries, Node, Origin, Value, apply_overrides, parse_document};
+use amberfield_core::{Domain, FieldSettings};
 use std::path::Path;
-use std::sync::Arc;
 
 /// Reads a scene file, applies `KEY=VALUE` overrides and reads the files that it names.
 ///
 /// # Errors
 /// All problems of the scene and its files that can be found independently of each other.
 pub fn read_scene(path: &Path, overrides: &[String], purpose: Purpose) -> Result<Scene, SceneError> {
-    read_scene_with_mesh(path, overrides, purpose, None)
-}
-
-/// Reads a scene file whose case may have no mesh of its own: that in another folder counts then.
-///
-/// # Errors
-/// As [`read_scene`].
-pub fn read_scene_with_mesh(
-    path: &Path,
-    overrides: &[String],
-    purpose: Purpose,
-    mesh: Option<&Path>,
-) -> Result<Scene, SceneError> {
-    let text = read_text(path)?;
-    let folder = path.parent().unwrap_or(Path::new(""));
-    let title =
-        path.file_stem().map_or_else(|| "scene".to_owned(), |stem| stem.to_string_lossy().into_owned());
-    let mut scene = parse(&text, &path.display().to_string(), folder, overrides, (purpose, mesh))?;
-    scene.title = title;
-    Ok(scene)
+    SceneInput::File(path.to_path_buf()).read(overrides, purpose, None)
 }
 
 /// Reads a scene from its text. `file` is its name in messages, `folder` the folder of the files that it
 /// names.
 ///
 /// # Errors
-/// As [`read_scene`].
+/// The errors of [`read_scene`].
 pub fn parse_scene(
     text: &str,
     file: &str,
@@ -59,7 +41,7 @@ pub fn parse_scene(
     overrides: &[String],
     purpose: Purpose,
 ) -> Result<Scene, SceneError> {
-    parse(text, file, folder, overrides, (purpose, None))
+    parse(text, &Origin::File(file.into()), folder, overrides, (purpose, None))
 }
 
 /// Reads the names of the materials of a scene file, and nothing else of it.
@@ -68,23 +50,42 @@ pub fn parse_scene(
 /// Files that are no scene, and bad materials.
 pub fn read_material_names(path: &Path) -> Result<Vec<String>, SceneError> {
     let text = read_text(path)?;
-    let file: Arc<str> = path.display().to_string().into();
-    let entries = parse_document(&file, &text)?;
-    let document = SceneTable::document(&entries, Place::Line { file, line: 0 }, SCENE)?;
+    let origin = Origin::File(path.display().to_string().into());
+    let entries = parse_document(&origin, &text)?;
+    let document = SceneTable::document(&entries, origin.line(0), SCENE)?;
     Ok(read_materials(&document)?.into_iter().map(|material| material.name).collect())
 }
 
-fn parse(
+/// Reads the box and the settings of the electric field from a text that a program made: the sections
+/// `[domain]` and `[electric_field]`, for charges that it has in memory.
+///
+/// # Errors
+/// All problems of the two sections, and what they lack.
+pub fn parse_field_settings(text: &str) -> Result<(Domain, FieldSettings), SceneError> {
+    let entries = parse_document(&Origin::Program, text)?;
+    let document = SceneTable::document(&entries, Origin::Program.line(0), SCENE)?;
+    let mut problems = Problems::default();
+    let domain = problems.keep(read_domain(&document));
+    let field = problems.keep(read_electric_field(&document));
+    problems.finish()?;
+    let (Some(Some(domain)), Some(Some(field))) = (domain, field) else {
+        return Err(document.missing("domain", "give the box and the settings of the field"));
+    };
+    check_reach(&document, &domain, &field.field)?;
+    Ok((domain, field.field))
+}
+
+/// Reads a scene from its text, for a purpose, with the mesh of a case that has none of its own.
+pub(super) fn parse(
     text: &str,
-    file: &str,
+    origin: &Origin,
     folder: &Path,
     overrides: &[String],
     (purpose, mesh): (Purpose, Option<&Path>),
 ) -> Result<Scene, SceneError> {
-    let file: Arc<str> = file.into();
-    let mut entries = parse_document(&file, text.strip_prefix('\u{feff}').unwrap_or(text))?;
+    let mut entries = parse_document(origin, text.strip_prefix('\u{feff}').unwrap_or(text))?;
     apply_overrides(&mut entries, overrides)?;
-    let document = SceneTable::document(&entries, Place::Line { file, line: 0 }, SCENE)?;
+    let document = SceneTable::document(&entries, origin.line(0), SCENE)?;
     let mut source = SceneSource::new(folder, mesh);
     let mut scene = read_sections(&document, &mut source, purpose)?;
     scene.physics = Physics::new(&entries, &source);
@@ -171,7 +172,7 @@ fn resolved(entries: &Entries, folder: &Path) -> String {
                 .map_or_else(|_| name.to_owned(), |path| path.to_string_lossy().into_owned())
         });
     }
-    let root = Node { value: Value::Table(entries), place: Place::Line { file: "".into(), line: 0 } };
+    let root = Node { value: Value::Table(entries), place: Origin::Program.line(0) };
     match root.to_toml() {
         toml::Value::Table(table) => toml::to_string(&table).unwrap_or_default(),
         _ => String::new(),

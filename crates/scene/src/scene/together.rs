@@ -6,7 +6,7 @@ use crate::SceneError;
 use crate::error::{Problems, shorten};
 use crate::table::SceneTable;
 use crate::tree::nearest;
-use amberfield_core::{Axis, Boundary, Domain, Method, Vector3, Wall, WallCharging, WallShape};
+use amberfield_core::{Axis, Boundary, Domain, FieldSettings, Method, Vector3, Wall, WallCharging, WallShape};
 
 /// Number of grains beyond which the direct sum causes a warning.
 const MANY_FOR_DIRECT: usize = 100_000;
@@ -24,7 +24,9 @@ pub(super) fn check_together(
 ) -> Result<(), SceneError> {
     let mut problems = Problems::default();
     problems.keep(check_field(document, scene, has_charge));
-    problems.keep(check_reach(document, scene));
+    if let (Some(field), Some(domain)) = (&scene.electric_field, &scene.domain) {
+        problems.keep(check_reach(document, domain, &field.field));
+    }
     problems.keep(check_charge_transfer(document, scene));
     problems.finish()?;
     warn(scene);
@@ -96,9 +98,11 @@ fn check_field(document: &SceneTable<'_>, scene: &Scene, has_charge: bool) -> Re
 }
 
 /// Checks that the cut-off and the grid of the scene fit the box.
-fn check_reach(document: &SceneTable<'_>, scene: &Scene) -> Result<(), SceneError> {
-    let (Some(read), Some(domain)) = (&scene.electric_field, &scene.domain) else { return Ok(()) };
-    let field = &read.field;
+pub(super) fn check_reach(
+    document: &SceneTable<'_>,
+    domain: &Domain,
+    field: &FieldSettings,
+) -> Result<(), SceneError> {
     if field.method == Method::Direct {
         return Ok(());
     }

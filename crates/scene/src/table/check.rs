@@ -4,7 +4,7 @@ use super::SceneTable;
 use crate::SceneError;
 use crate::error::Problems;
 use crate::keys::Key;
-use crate::tree::{Place, parse_document};
+use crate::tree::{Origin, parse_document};
 
 /// Checks the keys of a document, whether they are known, required and of a value that they take; `file` is
 /// its name in messages.
@@ -12,10 +12,10 @@ use crate::tree::{Place, parse_document};
 /// # Errors
 /// All problems that there are, each with its place.
 pub fn check_keys(file: &str, text: &str, keys: &'static [Key]) -> Result<(), SceneError> {
-    let entries = parse_document(&file.into(), text)?;
-    let place = Place::Line { file: file.into(), line: 0 };
+    let origin = Origin::File(file.into());
+    let entries = parse_document(&origin, text)?;
     let mut problems = Problems::default();
-    if let Some(document) = problems.keep(SceneTable::document(&entries, place, keys)) {
+    if let Some(document) = problems.keep(SceneTable::document(&entries, origin.line(0), keys)) {
         check_table(&document, &mut problems);
     }
     problems.finish()

@@ -7,7 +7,7 @@ mod parse;
 mod range;
 
 pub(crate) use nearest::nearest;
-pub(crate) use node::{Entries, Node, Place, Value};
+pub(crate) use node::{Entries, Node, Origin, Place, Value};
 pub(crate) use overrides::apply_overrides;
 pub(crate) use parse::parse_document;
 pub(crate) use range::Range;

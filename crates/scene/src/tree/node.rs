@@ -4,6 +4,25 @@ use crate::error::shorten;
 use std::fmt;
 use std::sync::Arc;
 
+/// Source of a text.
+#[derive(Clone, Debug, PartialEq)]
+pub(crate) enum Origin {
+    /// File, as the user named it.
+    File(Arc<str>),
+    /// Program that made the text: a line of it would tell its user nothing.
+    Program,
+}
+
+impl Origin {
+    /// Place of a line, counted from 1; 0 for the text as a whole.
+    pub(crate) fn line(&self, line: usize) -> Place {
+        match self {
+            Self::File(file) => Place::Line { file: Arc::clone(file), line },
+            Self::Program => Place::Line { file: "the scene".into(), line: 0 },
+        }
+    }
+}
+
 /// Place where a value was written.
 #[derive(Clone, Debug, PartialEq)]
 pub(crate) enum Place {

@@ -1,9 +1,8 @@
 //! Parser from TOML text to the tree.
 
-use super::node::{Entries, Node, Place, Value};
+use super::node::{Entries, Node, Origin, Place, Value};
 use crate::SceneError;
 use crate::error::shorten;
-use std::sync::Arc;
 use toml::de::{DeTable, DeValue};
 
 /// Converter from the library's values to nodes.
@@ -12,18 +11,15 @@ struct Converter<'a> {
     locate: &'a dyn Fn(usize) -> Place,
 }
 
-/// Parses the text of a file.
+/// Parses a document.
 ///
 /// # Errors
 /// Text that is not TOML.
-pub(crate) fn parse_document(file: &Arc<str>, text: &str) -> Result<Entries, SceneError> {
+pub(crate) fn parse_document(origin: &Origin, text: &str) -> Result<Entries, SceneError> {
     let starts: Vec<usize> = std::iter::once(0)
         .chain(text.bytes().enumerate().filter(|(_, b)| *b == b'\n').map(|(k, _)| k + 1))
         .collect();
-    let locate = |offset: usize| Place::Line {
-        file: Arc::clone(file),
-        line: starts.partition_point(|start| *start <= offset),
-    };
+    let locate = |offset: usize| origin.line(starts.partition_point(|start| *start <= offset));
     parse_with(text, &locate)
 }
 

@@ -1,0 +1,72 @@
+//! Threads of the computation, and how Python waits for them.
+
+use crate::errors;
+use pyo3::prelude::*;
+use rayon::{ThreadPool, ThreadPoolBuilder};
+use std::collections::HashMap;
+use std::sync::mpsc::{RecvTimeoutError, sync_channel};
+use std::sync::{Arc, Mutex, PoisonError};
+use std::time::Duration;
+
+/// Time between two looks at Python's signals.
+const LOOK: Duration = Duration::from_millis(50);
+/// Pools by their number of threads; each stays, since to start one takes longer than a small field.
+static POOLS: Mutex<Option<HashMap<usize, Arc<ThreadPool>>>> = Mutex::new(None);
+
+/// Pool of this many threads; `None` means one for each core.
+pub(crate) fn pool(py: Python<'_>, threads: Option<usize>) -> PyResult<Arc<ThreadPool>> {
+    let count = match threads {
+        Some(0) => return Err(errors::bad_input(py, "threads: got 0; give at least 1, or None for all cores")),
+        Some(count) => count,
+        None => 0,
+    };
+    let mut pools = POOLS.lock().unwrap_or_else(PoisonError::into_inner);
+    let pools = pools.get_or_insert_default();
+    if let Some(pool) = pools.get(&count) {
+        return Ok(Arc::clone(pool));
+    }
+    let pool = ThreadPoolBuilder::new()
+        .num_threads(count)
+        .build()
+        .map_err(|error| errors::bad_input(py, &format!("threads: {count}: {error}; give fewer")))?;
+    let pool = Arc::new(pool);
+    pools.insert(count, Arc::clone(&pool));
+    Ok(pool)
+}
+
+/// Does work on a pool while Python's other threads run. Between looks at signals `look` is called, with the
+/// error of a signal (Ctrl-C) if there was one. The work is always waited for.
+pub(crate) fn work<T: Send>(
+    py: Python<'_>,
+    pool: &ThreadPool,
+    work: impl FnOnce() -> T + Send,
+    mut look: impl FnMut(Python<'_>, Option<&PyErr>),
+) -> PyResult<T> {
+    let (send, receive) = sync_channel(1);
+    let receive = Mutex::new(receive);
+    let (done, signal) = std::thread::scope(|scope| {
+        let handle = scope.spawn(|| {
+            let done = pool.install(work);
+            // Nobody may wait any more; what was done is returned below in any case.
+            let _ = send.send(());
+            done
+        });
+        let mut signal = None;
+        loop {
+            let waited =
+                py.detach(|| receive.lock().unwrap_or_else(PoisonError::into_inner).recv_timeout(LOOK));
+            if !matches!(waited, Err(RecvTimeoutError::Timeout)) || handle.is_finished() {
+                break;
+            }
+            let new = py.check_signals().err();
+            look(py, new.as_ref());
+            signal = signal.or(new);
+        }
+        (py.detach(|| handle.join()), signal)
+    });
+    match (done, signal) {
+        (_, Some(signal)) => Err(signal),
+        (Ok(done), None) => Ok(done),
+        (Err(panic), None) => std::panic::resume_unwind(panic),
+    }
+}
