@@ -2,11 +2,8 @@
 
 use crate::arguments::Common;
 use crate::print;
-use crate::run::Observer;
-use amberfield_dem::Simulation;
 use indicatif::{ProgressBar, ProgressDrawTarget, ProgressStyle};
 use std::io::{self, IsTerminal as _, Write};
-use std::ops::ControlFlow;
 use std::sync::{Mutex, PoisonError};
 use std::time::{Duration, Instant};
 
@@ -15,37 +12,9 @@ const LINE_INTERVAL: Duration = Duration::from_secs(10);
 /// Bar that is on the terminal now, so that log lines are written above it.
 static BAR: Mutex<Option<ProgressBar>> = Mutex::new(None);
 
-/// Terminal that shows the progress of a run.
-#[derive(Debug)]
-pub(crate) struct Terminal<'a> {
-    common: &'a Common,
-    progress: Progress,
-}
-
-impl<'a> Terminal<'a> {
-    /// Makes a terminal that shows nothing before the run begins.
-    pub(crate) fn new(common: &'a Common) -> Self {
-        Self { common, progress: Progress::Silent }
-    }
-}
-
-impl Observer for Terminal<'_> {
-    fn begin(&mut self, from: u64, until: u64) {
-        self.progress = Progress::start(self.common, from, until);
-    }
-
-    fn step(&mut self, step: u64, time_s: f64) {
-        self.progress.tell(step, time_s);
-    }
-
-    fn frame(&mut self, _: &Simulation) -> ControlFlow<()> {
-        ControlFlow::Continue(())
-    }
-}
-
 /// Display of the progress of a run.
 #[derive(Debug)]
-enum Progress {
+pub(crate) enum Progress {
     /// Bar on a terminal.
     Bar(ProgressBar),
     /// Plain lines: time of the last one, begin of the run, its first and its last step.
@@ -56,7 +25,7 @@ enum Progress {
 
 impl Progress {
     /// Starts the display at step `from`, for a run to step `until`.
-    fn start(common: &Common, from: u64, until: u64) -> Self {
+    pub(crate) fn start(common: &Common, from: u64, until: u64) -> Self {
         if common.no_progress || common.quiet {
             return Self::Silent;
         }
@@ -75,7 +44,7 @@ impl Progress {
     }
 
     /// Shows the step that is reached and its time [s].
-    fn tell(&mut self, step: u64, time_s: f64) {
+    pub(crate) fn tell(&mut self, step: u64, time_s: f64) {
         match self {
             Self::Bar(bar) => {
                 bar.set_position(step);

@@ -10,7 +10,7 @@ use pyo3::prelude::*;
 use pyo3::types::PyDict;
 
 /// Field of one scene: settings, and, from the first charges on, the parameters that were chosen for them.
-#[pyclass(name = "NativeField")]
+#[pyclass(name = "NativeField", subclass)]
 pub(crate) struct NativeField {
     domain: Domain,
     settings: FieldSettings,
@@ -22,7 +22,8 @@ impl NativeField {
     /// Reads the settings: TOML with `[domain]` and `[electric_field]`.
     #[new]
     fn new(py: Python<'_>, settings: &str) -> PyResult<Self> {
-        let (domain, settings) = parse_field_settings(settings).map_err(|error| errors::of_scene(py, &error))?;
+        let (domain, settings) =
+            parse_field_settings(settings).map_err(|error| errors::of_scene(py, &error))?;
         // For one snapshot there is no other work that could be done beside a solver's.
         Ok(Self { domain, settings: FieldSettings { overlap: false, ..settings }, field: None })
     }

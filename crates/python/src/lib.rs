@@ -3,27 +3,23 @@
 #![forbid(unsafe_code)]
 
 mod arrays;
+mod command;
 mod errors;
 mod field;
 mod host_log;
 mod run;
+mod snapshot;
 mod threads;
 
-use pyo3::prelude::*;
-
 /// Native functions and types of the package.
-#[pymodule(name = "_native")]
+#[pyo3::pymodule(name = "_native")]
 mod native {
     #[pymodule_export]
-    use super::command;
+    use super::command::command;
     #[pymodule_export]
     use super::field::NativeField;
     #[pymodule_export]
     use super::run::run;
-}
-
-/// Exit code of the command `amberfield` with these arguments, of which the first is its name.
-#[pyfunction]
-fn command(py: Python<'_>, arguments: Vec<std::ffi::OsString>) -> u8 {
-    py.detach(|| amberfield_cli::command(arguments))
+    #[pymodule_export]
+    use super::snapshot::read_snapshot;
 }

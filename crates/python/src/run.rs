@@ -1,13 +1,10 @@
 //! Run of a scene.
 
-use crate::{arrays, errors, host_log, threads};
+use crate::{errors, host_log, snapshot, threads};
 use amberfield_cli::{Observer, RunRequest, interrupt, simulate};
-use amberfield_core::Particles;
 use amberfield_dem::Simulation;
 use amberfield_scene::SceneInput;
-use numpy::IntoPyArray as _;
 use pyo3::prelude::*;
-use pyo3::types::PyDict;
 use std::ops::ControlFlow;
 use std::path::PathBuf;
 use std::sync::Mutex;
@@ -18,8 +15,9 @@ static RUNNING: Mutex<()> = Mutex::new(());
 
 /// Runs a scene. Returns its folder and the lines that the command prints.
 ///
-/// `scene` is a path, or a text where `folder` names the folder of the files in it. `frame` is called with the
-/// grains of each output and stops the run by returning False; `progress` with step, last step and time [s].
+/// `scene` is a path, or a text where `folder` names the folder of the files in it. `frame` is called with
+/// the grains of each output and stops the run by returning False; `progress` with step, last step and time
+/// [s].
 #[pyfunction]
 #[expect(clippy::too_many_arguments, reason = "a function of Python, with keywords")]
 pub(crate) fn run(
@@ -123,26 +121,17 @@ impl Observer for Host<'_> {
             return ControlFlow::Continue(());
         };
         let asked = Python::attach(|py| {
-            let grains = grains(py, simulation.particles())?;
+            let grains = snapshot::columns(py, simulation.particles())?;
             let answer = call.bind(py).call1((simulation.step_index(), simulation.time_s(), grains))?;
-            Ok(if answer.extract::<bool>().is_ok_and(|goes_on| !goes_on) { ControlFlow::Break(()) } else { ControlFlow::Continue(()) })
+            Ok(if answer.extract::<bool>().is_ok_and(|goes_on| !goes_on) {
+                ControlFlow::Break(())
+            } else {
+                ControlFlow::Continue(())
+            })
         });
         asked.unwrap_or_else(|failure| {
             self.failure = Some(failure);
             ControlFlow::Break(())
         })
     }
-}
-
-/// Arrays of grains by the names of their columns.
-fn grains(py: Python<'_>, particles: Particles) -> PyResult<Bound<'_, PyDict>> {
-    let dict = PyDict::new(py);
-    dict.set_item("id", particles.id.into_pyarray(py))?;
-    dict.set_item("position_m", arrays::vectors(py, particles.position))?;
-    dict.set_item("velocity_m_s", arrays::vectors(py, particles.velocity))?;
-    dict.set_item("angular_velocity_rad_s", arrays::vectors(py, particles.angular_velocity))?;
-    dict.set_item("radius_m", particles.radius.into_pyarray(py))?;
-    dict.set_item("density_kg_m3", particles.density.into_pyarray(py))?;
-    dict.set_item("charge_C", particles.charge.into_pyarray(py))?;
-    Ok(dict)
 }

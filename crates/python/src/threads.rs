@@ -16,7 +16,9 @@ static POOLS: Mutex<Option<HashMap<usize, Arc<ThreadPool>>>> = Mutex::new(None);
 /// Pool of this many threads; `None` means one for each core.
 pub(crate) fn pool(py: Python<'_>, threads: Option<usize>) -> PyResult<Arc<ThreadPool>> {
     let count = match threads {
-        Some(0) => return Err(errors::bad_input(py, "threads: got 0; give at least 1, or None for all cores")),
+        Some(0) => {
+            return Err(errors::bad_input(py, "threads: got 0; give at least 1, or None for all cores"));
+        }
         Some(count) => count,
         None => 0,
     };

@@ -20,7 +20,9 @@ COULOMB = 1.0 / (4.0 * np.pi * EPSILON_0)
 def command(*arguments, cwd=None, check=True):
     """Run ``amberfield`` of this environment."""
     program = Path(sys.executable).with_name("amberfield")
-    done = subprocess.run([program, *map(os.fspath, map(str, arguments))], cwd=cwd, capture_output=True, text=True)
+    done = subprocess.run(
+        [program, *map(os.fspath, map(str, arguments))], cwd=cwd, capture_output=True, text=True
+    )
     if check and done.returncode != 0:
         raise AssertionError(f"exit code {done.returncode}: {done.stderr}")
     return done
@@ -28,9 +30,9 @@ def command(*arguments, cwd=None, check=True):
 
 @pytest.fixture
 def charges():
-    """300 charges of both signs in a box of 10 mm: positions, charges."""
+    """300 charges in a box of 10 mm, as many of either sign: positions, charges."""
     random = np.random.default_rng(7)
-    return random.uniform(0.0, 0.01, (300, 3)), random.choice([-1e-14, 1e-14], 300)
+    return random.uniform(0.0, 0.01, (300, 3)), random.permutation(np.repeat([-1e-14, 1e-14], 150))
 
 
 @pytest.fixture
@@ -54,7 +56,13 @@ def bed():
         ],
         "walls": [{"plane": {"point_m": [0.0, 0.0, 0.0], "normal": [0.0, 0.0, 1.0]}}],
         "particles": {
-            "generate": {"material": "glass", "count": 200, "radius_m": 4e-4, "charge_C": {"bipolar": 1e-13}, "seed": 3}
+            "generate": {
+                "material": "glass",
+                "count": 200,
+                "radius_m": 4e-4,
+                "charge_C": {"bipolar": 1e-13},
+                "seed": 3,
+            }
         },
         "time": {"step_s": 2e-6, "end_s": 2e-3, "gravity_m_s2": [0.0, 0.0, -9.81]},
         "electric_field": {"tolerance": 1e-2},

@@ -6,10 +6,9 @@ import sys
 import time
 from pathlib import Path
 
+import amberfield
 import tomli_w
 from conftest import command
-
-import amberfield
 
 
 def test_the_command_is_of_the_same_version():
@@ -32,7 +31,9 @@ def test_ctrl_c_stops_the_command_with_a_checkpoint(bed, tmp_path):
     bed["time"]["end_s"] = 10.0
     (tmp_path / "scene.toml").write_text(tomli_w.dumps(bed))
     program = Path(sys.executable).with_name("amberfield")
-    process = subprocess.Popen([program, "run", "scene.toml", "--out", "run"], cwd=tmp_path, stderr=subprocess.PIPE)
+    process = subprocess.Popen(
+        [program, "run", "scene.toml", "--out", "run"], cwd=tmp_path, stderr=subprocess.PIPE
+    )
     while not (tmp_path / "run" / "history.csv").exists():
         time.sleep(0.05)
     time.sleep(0.3)

@@ -1,9 +1,8 @@
 """Pictures."""
 
+import amberfield
 import numpy as np
 import pytest
-
-import amberfield
 
 
 @pytest.fixture

@@ -11,44 +11,66 @@ use std::process::Command;
 const PACKAGE: &str = "crates/python";
 /// Environment in which it is tested, below the root.
 const ENVIRONMENT: &str = "target/python";
-/// What builds and tests it; what it needs itself is in its `pyproject.toml`.
-const TOOLS: [&str; 2] = ["maturin>=1.9,<2", "pytest>=7"];
+/// Packages that build, check and test it; those that it needs itself are in its `pyproject.toml`.
+const TOOLS: [&str; 3] = ["maturin>=1.9,<2", "pytest>=7", "ruff>=0.9,<1"];
 
-/// Builds the wheel, installs it and runs its tests. With the profile of tests, since it is compiled from
-/// the crates that they have compiled.
+/// Makes the package's environment, builds the wheel and runs its tests.
 pub(crate) fn run(root: &Path, profile: Profile) -> Result<()> {
-    let environment = provide(root, ENVIRONMENT)?;
-    let python = environment.join("bin/python");
-    pip(&python, &TOOLS.map(str::to_owned))?;
-    let wheel = build(root, &environment, profile)?;
-    // Its dependencies are fetched once; the package itself is another after each build.
-    pip(&python, &[wheel.display().to_string()])?;
-    execute(Command::new(&python).args(["-m", "pip", "install", "-q", "--force-reinstall", "--no-deps"]).arg(&wheel))?;
-    execute(Command::new(&python).args(["-m", "pytest"]).current_dir(root.join(PACKAGE)))
+    provide(root)?;
+    test(root, profile)
 }
 
-/// Makes an environment of Python's, if it is not there.
-pub(crate) fn provide(root: &Path, name: &str) -> Result<PathBuf> {
-    let environment = root.join(name);
-    if works(Command::new(environment.join("bin/python")).args(["-m", "pip", "--version"])) {
-        return Ok(environment);
+/// Makes the environment of the tests, with all that the package needs.
+pub(crate) fn provide(root: &Path) -> Result<()> {
+    let environment = root.join(ENVIRONMENT);
+    if !works(Command::new(environment.join("bin/python")).args(["-m", "pip", "--version"])) {
+        make_environment(&environment)?;
     }
+    let needed = needed(&root.join(PACKAGE).join("pyproject.toml"))?;
+    pip(&environment, &[], &[TOOLS.map(str::to_owned).as_slice(), &needed].concat())
+}
+
+/// Builds the wheel, installs it into the environment and runs the package's checks and tests there.
+pub(crate) fn test(root: &Path, profile: Profile) -> Result<()> {
+    let environment = root.join(ENVIRONMENT);
+    for check in [&["format", "--check"][..], &["check"]] {
+        let mut ruff = Command::new(environment.join("bin/ruff"));
+        execute(ruff.args(check).arg("-q").current_dir(root.join(PACKAGE)))?;
+    }
+    let wheel = build(root, &environment, profile)?;
+    // It has the version of the one before.
+    pip(&environment, &["--force-reinstall", "--no-deps"], &[wheel.display().to_string()])?;
+    let mut tests = Command::new(environment.join("bin/python"));
+    execute(tests.args(["-m", "pytest"]).current_dir(root.join(PACKAGE)))
+}
+
+/// Makes an environment of Python's.
+pub(crate) fn make_environment(environment: &Path) -> Result<()> {
     let make = || {
         let mut make = Command::new("python3");
-        make.args(["-m", "venv", "--clear"]).arg(&environment);
+        make.args(["-m", "venv", "--clear"]).arg(environment);
         make
     };
-    if !works(&mut make()) {
-        debian::provide(&["python3", "python3-venv"])?;
-        execute(&mut make())?;
+    if works(&mut make()) {
+        return Ok(());
     }
-    Ok(environment)
+    debian::provide(&["python3", "python3-venv"])?;
+    execute(&mut make())
+}
+
+/// Packages that the package says it needs.
+fn needed(manifest: &Path) -> Result<Vec<String>> {
+    let text =
+        std::fs::read_to_string(manifest).with_context(|| format!("cannot read {}", manifest.display()))?;
+    let line = text.lines().find_map(|line| line.strip_prefix("dependencies = ["));
+    let line = line.with_context(|| format!("{}: no line of dependencies", manifest.display()))?;
+    Ok(line.split('"').skip(1).step_by(2).map(str::to_owned).collect())
 }
 
 /// Installs packages from Python's index.
-fn pip(python: &Path, packages: &[String]) -> Result<()> {
-    let mut install = Command::new(python);
-    install.args(["-m", "pip", "install", "-q", "--disable-pip-version-check"]).args(packages);
+fn pip(environment: &Path, options: &[&str], packages: &[String]) -> Result<()> {
+    let mut install = Command::new(environment.join("bin/python"));
+    install.args(["-m", "pip", "install", "-q", "--disable-pip-version-check"]).args(options).args(packages);
     execute(&mut install).with_context(|| format!("cannot install {}", packages.join(", ")))
 }
 
@@ -63,7 +85,11 @@ fn build(root: &Path, environment: &Path, profile: Profile) -> Result<PathBuf> {
     maturin.current_dir(root.join(PACKAGE));
     execute(&mut maturin)?;
     let wheels = std::fs::read_dir(&out).with_context(|| format!("cannot read {}", out.display()))?;
-    match wheels.flatten().map(|entry| entry.path()).find(|path| path.extension().is_some_and(|kind| kind == "whl")) {
+    match wheels
+        .flatten()
+        .map(|entry| entry.path())
+        .find(|path| path.extension().is_some_and(|kind| kind == "whl"))
+    {
         Some(wheel) => Ok(wheel),
         None => bail!("maturin has left no wheel in {}", out.display()),
     }

@@ -3,8 +3,8 @@
 use crate::arguments::{Common, RunOptions};
 use crate::failure::Failure;
 use crate::logging::Log;
-use crate::progress::Terminal;
 use crate::run::{RunRequest, simulate};
+use crate::terminal::Terminal;
 use crate::{interrupt, print};
 use amberfield_scene::SceneInput;
 

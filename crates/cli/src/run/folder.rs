@@ -64,9 +64,14 @@ impl RunFolder {
                 "the run folder exists ({name} is there); name another with --out, \
                  continue it with --resume CHECKPOINT, or replace it with --overwrite"
             )),
-            (Existing::Overwrite, _) if scene.is_some_and(|scene| is_same(&path.join("scene.toml"), scene)) => refuse(
-                "--overwrite would remove the scene file itself; name another folder with --out".to_owned(),
-            ),
+            (Existing::Overwrite, _)
+                if scene.is_some_and(|scene| is_same(&path.join("scene.toml"), scene)) =>
+            {
+                refuse(
+                    "--overwrite would remove the scene file itself; name another folder with --out"
+                        .to_owned(),
+                )
+            }
             (Existing::Resume, None) => {
                 refuse("there is no run to continue; name its folder with --out".to_owned())
             }

@@ -3,7 +3,7 @@
 use amberfield_dem::Simulation;
 use std::ops::ControlFlow;
 
-/// Who watches a run: a terminal, or a program that hosts it.
+/// Observer of a run: a terminal, or a program that hosts it.
 pub trait Observer {
     /// Hears that a run begins at step `from`, and that its last step is `until`.
     fn begin(&mut self, from: u64, until: u64);

@@ -22,7 +22,7 @@ use std::path::{Path, PathBuf};
 /// Share of the steps with limited grains above which a run ends with a warning.
 const LIMITED_SHARE: f64 = 0.1;
 
-/// What is to be run.
+/// Scene that is to be run, and how.
 #[derive(Clone, Debug)]
 pub struct RunRequest {
     /// Scene.

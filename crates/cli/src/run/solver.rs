@@ -11,7 +11,9 @@ use amberfield_coupling::{
 };
 use amberfield_field::far::{Connect, FarField};
 use amberfield_gas::ConnectFlow;
-use amberfield_scene::{ElectricFieldSettings, OpenFoamSettings, Purpose, Scene, SceneError, SceneInput, SolverLoss};
+use amberfield_scene::{
+    ElectricFieldSettings, OpenFoamSettings, Purpose, Scene, SceneError, SceneInput, SolverLoss,
+};
 use std::sync::{Mutex, PoisonError};
 use std::time::Duration;
 

@@ -4,8 +4,9 @@ from __future__ import annotations
 
 import json
 from collections.abc import Mapping
-from dataclasses import dataclass, field as dataclass_field
-from typing import Any, Union
+from dataclasses import dataclass
+from dataclasses import field as dataclass_field
+from typing import Any
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
@@ -14,11 +15,11 @@ from . import _native
 from ._errors import InputError, ToleranceError
 from ._scene_text import text_of
 
-#: Condition on a face: ``"grounded"``, ``"insulating"``, ``"periodic"``, ``"open"``, ``{"potential_V": 1000.0}`` or
-#: ``{"normal_field_V_m": 0.0}``.
-Condition = Union[str, Mapping[str, float]]
+#: Condition on a face: ``"grounded"``, ``"insulating"``, ``"periodic"``, ``"open"``, ``{"potential_V":
+#: 1000.0}`` or ``{"normal_field_V_m": 0.0}``.
+Condition = str | Mapping[str, float]
 #: Conditions on all faces: one for all, or one for each of ``x``, ``y``, ``z``, ``x_min``, ``x_max``, …
-Faces = Union[Condition, Mapping[str, Condition]]
+Faces = Condition | Mapping[str, Condition]
 
 _AXES = ("x", "y", "z")
 _ENDS = tuple(f"{axis}_{side}" for axis in _AXES for side in ("min", "max"))
@@ -33,10 +34,11 @@ class FieldValues:
     e: NDArray[np.float64]
     #: Potential [V], shape (n,); None where it was not asked for.
     potential: NDArray[np.float64] | None = None
-    #: Parts of the field [V/m], each of shape (n, 3): near, middle, far, correction, faces, external. Empty where
-    #: they were not asked for.
+    #: Parts of the field [V/m], each of shape (n, 3): near, middle, far, correction, faces, external. Empty
+    #: where they were not asked for.
     components: dict[str, NDArray[np.float64]] = dataclass_field(default_factory=dict)
-    #: Measured error: root mean square of the error of E over that of E. None for methods that make no promise.
+    #: Measured error: root mean square of the error of E over that of E. None for methods that make no
+    #: promise.
     error: float | None = None
     #: Wall time of each stage [s].
     seconds: dict[str, float] = dataclass_field(default_factory=dict)
@@ -45,10 +47,11 @@ class FieldValues:
 class Field:
     """Electric field in a box, which keeps its parameters and its memory from one evaluation to the next.
 
-    The parameters are chosen for the first charges, to meet the tolerance. Later charges may be elsewhere and of
-    another number: :meth:`measure_error` tells the error for them.
+    The parameters are chosen for the first charges, to meet the tolerance. Later charges may be elsewhere and
+    of another number: :meth:`measure_error` tells the error for them.
 
-    :param box: edge lengths [m], shape (3,), of a box with a corner at 0; or its two corners [m], shape (2, 3)
+    :param box: edge lengths [m], shape (3,), of a box with a corner at 0; or its two corners [m],
+        shape (2, 3)
     :param faces: condition on all faces, or a dict of conditions for ``x``, ``y``, ``z``, or for single faces
         ``x_min``, ``x_max`` and so on
     :param tolerance: error of E that is allowed, relative to the root mean square of E
@@ -90,7 +93,8 @@ class Field:
         :param charges: charges [C], shape (n,)
         :param potential: whether the potential is wanted
         :param components: whether the parts of the field are wanted
-        :raises InputError: values that are not finite, charges outside of the box, a net charge that no face takes
+        :raises InputError: values that are not finite, charges outside of the box, a net charge that no face
+            takes
         """
         positions, charges = _charges(positions, charges)
         arrays = self._native.evaluate(positions, charges, potential, components, self._threads)
@@ -104,7 +108,8 @@ class Field:
 
     def measure_error(self, positions: ArrayLike, charges: ArrayLike) -> float | None:
         """Relative root mean square error of E for these charges, on a sample; None for methods that make no
-        promise and for sums that are exact. The field must have been evaluated once."""
+        promise and for sums that are exact. The field must have been evaluated once.
+        """
         positions, charges = _charges(positions, charges)
         return self._native.measure_error(positions, charges, self._threads)
 
@@ -155,8 +160,8 @@ def field(
     limit = made._native.tolerance
     if values.error is not None and limit is not None and values.error > limit:
         failure = ToleranceError(
-            f"measured error {values.error:.2e} is above the tolerance {limit:g}; ask for a smaller tolerance or set "
-            'tuning="timed"'
+            f"measured error {values.error:.2e} is above the tolerance {limit:g}; ask for a smaller "
+            'tolerance or set tuning="timed"'
         )
         failure.values = values
         raise failure
@@ -194,7 +199,8 @@ def _corners(box: ArrayLike) -> tuple[list[float], list[float]]:
         return array[0].tolist(), array[1].tolist()
     advice = "; its transpose has the right shape" if array.shape == (3, 2) else ""
     raise InputError(
-        f"box: its shape is {array.shape}; give three edge lengths, shape (3,), or two corners, shape (2, 3){advice}"
+        f"box: its shape is {array.shape}; give three edge lengths, shape (3,), or two corners, "
+        f"shape (2, 3){advice}"
     )
 
 
@@ -209,7 +215,9 @@ def _boundary(faces: Faces) -> dict[str, Any]:
         for key, condition in faces.items():
             if isinstance(condition, (tuple, list)):
                 if key not in _AXES or len(condition) != 2:
-                    raise InputError(f"faces: {key}: give one condition, or for an axis a pair: lower face, upper face")
+                    raise InputError(
+                        f"faces: {key}: give one condition, or for an axis a pair: lower face, upper face"
+                    )
                 table[f"{key}_min"], table[f"{key}_max"] = condition
             else:
                 table[key] = condition

@@ -3,14 +3,14 @@
 from __future__ import annotations
 
 import os
-from collections.abc import Iterator
+from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
 from numpy.typing import NDArray
 
-from ._errors import InputError
+from . import _native
 
 if TYPE_CHECKING:
     import pandas
@@ -19,42 +19,50 @@ if TYPE_CHECKING:
 
 @dataclass
 class Grains:
-    """Grains at one time, as arrays of equal length and order."""
+    """Grains at one time, as arrays of equal length and order. What a file does not have is None."""
 
     #: Ids, shape (n,).
     id: NDArray[np.uint64]
     #: Centres [m], shape (n, 3).
     position_m: NDArray[np.float64]
     #: Velocities [m/s], shape (n, 3).
-    velocity_m_s: NDArray[np.float64]
+    velocity_m_s: NDArray[np.float64] | None = None
     #: Angular velocities [rad/s], shape (n, 3).
-    angular_velocity_rad_s: NDArray[np.float64]
+    angular_velocity_rad_s: NDArray[np.float64] | None = None
     #: Radii [m], shape (n,).
-    radius_m: NDArray[np.float64]
+    radius_m: NDArray[np.float64] | None = None
     #: Densities [kg/m³], shape (n,).
-    density_kg_m3: NDArray[np.float64]
+    density_kg_m3: NDArray[np.float64] | None = None
     #: Charges [C], shape (n,).
-    charge_C: NDArray[np.float64]
-    #: Time [s]; None where it is not known.
+    charge_C: NDArray[np.float64] | None = None
+    #: Index of each grain's material in :attr:`materials`, shape (n,).
+    material: NDArray[np.uint16] | None = None
+    #: Names of the materials.
+    materials: list[str] | None = None
+    #: Time [s].
     time_s: float | None = None
-    #: Step of the run; None where it is not known.
+    #: Step of the program that wrote the grains.
     step: int | None = None
+    #: Corners of the box [m], shape (2, 3).
+    box_m: NDArray[np.float64] | None = None
+    #: Whether the box repeats along x, y and z.
+    is_periodic: tuple[bool, bool, bool] | None = None
 
     def __len__(self) -> int:
         return len(self.id)
 
     def columns(self) -> Iterator[tuple[str, NDArray[Any]]]:
-        """Names and arrays of all columns, vectors as one column for each component."""
+        """Names and arrays of all columns that there are, vectors as one column for each component."""
         yield "id", self.id
-        for name, array in (
-            ("position_m", self.position_m),
-            ("velocity_m_s", self.velocity_m_s),
-            ("angular_velocity_rad_s", self.angular_velocity_rad_s),
-        ):
-            for axis, letter in enumerate("xyz"):
-                yield _COMPONENT[name].format(letter), array[:, axis]
-        for name in ("radius_m", "density_kg_m3", "charge_C"):
-            yield name, getattr(self, name)
+        for name, column in _VECTORS.items():
+            array = getattr(self, name)
+            if array is not None:
+                for axis, letter in enumerate("xyz"):
+                    yield column.format(letter), array[:, axis]
+        for name in _NUMBERS:
+            array = getattr(self, name)
+            if array is not None:
+                yield name, array
 
     def to_pandas(self) -> pandas.DataFrame:
         """Table with a row for each grain and the columns of a particle file."""
@@ -62,30 +70,68 @@ class Grains:
 
         return pandas.DataFrame(dict(self.columns()))
 
-    def plot(self, color: str | NDArray[np.float64] = "charge_C", *, plane: str = "xz", ax: Axes | None = None, **style: Any) -> Axes:
+    def plot(
+        self,
+        color: str | NDArray[np.float64] = "charge_C",
+        *,
+        plane: str = "xz",
+        label: str | None = None,
+        ax: Axes | None = None,
+        **style: Any,
+    ) -> Axes:
         """Draw the grains as discs of their size, seen along the third axis, the nearest in front.
 
         :param color: name of an array of numbers, or numbers of shape (n,)
         :param plane: two of x, y, z: the axes to the right and upwards
+        :param label: text beside the scale of colours; None for that of the array
         :param ax: axes of matplotlib; None for new ones
         :param style: ``cmap``, ``norm``, ``clim`` and other properties of matplotlib's ``EllipseCollection``
         """
         from ._plots import plot_grains
 
-        return plot_grains(self, color, plane, ax, style)
+        return plot_grains(self, color, plane, label, ax, style)
 
     def to_pyvista(self) -> Any:
         """Points of pyvista with all columns, to show with ``.glyph(scale="radius_m")`` or as they are."""
         from ._plots import pyvista
 
         points = pyvista().PolyData(np.ascontiguousarray(self.position_m))
-        for name in ("id", "velocity_m_s", "angular_velocity_rad_s", "radius_m", "density_kg_m3", "charge_C"):
-            points.point_data[name] = getattr(self, name)
+        for name in ("id", *list(_VECTORS)[1:], *_NUMBERS):
+            array = getattr(self, name)
+            if array is not None:
+                points.point_data[name] = array
         return points
 
 
-_COMPONENT = {
+#: Arrays of vectors, with the names of their columns.
+_VECTORS = {
     "position_m": "{}_m",
     "velocity_m_s": "v{}_m_s",
     "angular_velocity_rad_s": "w{}_rad_s",
 }
+#: Arrays of numbers.
+_NUMBERS = ("radius_m", "density_kg_m3", "charge_C")
+
+
+def read(
+    path: str | os.PathLike[str],
+    *,
+    units: str | None = None,
+    step: int | None = None,
+    materials_by_type: Sequence[str] = (),
+) -> Grains:
+    """Grains of a file at one time, whichever program wrote it: CSV and other tables of text, dumps of LAMMPS
+    and LIGGGHTS, VTK, files of amberfield's runs; packed by gzip or not. Numbers are in SI units.
+
+    :param path: file; its content tells what it is
+    :param units: unit style of LAMMPS or LIGGGHTS in which a dump is, where it does not say so: ``"si"``,
+        ``"cgs"``, ``"micro"``, ``"nano"``, ``"real"``, ``"metal"`` or ``"electron"``
+    :param step: step of the frame in a file with several; None for the last
+    :param materials_by_type: names of the materials of types 1, 2, …
+    :raises InputError: what is wrong, and where
+    """
+    found = _native.read_snapshot(os.fspath(path), units, step, list(materials_by_type))
+    if "box_m" in found:
+        found["box_m"] = np.array(found["box_m"])
+        found["is_periodic"] = tuple(found["is_periodic"])
+    return Grains(**found)

@@ -27,11 +27,15 @@ def pyvista() -> Any:
     try:
         import pyvista as module
     except ImportError:
-        raise ImportError("pyvista is not installed; install it with: pip install 'amberfield[pyvista]'") from None
+        raise ImportError(
+            "pyvista is not installed; install it with: pip install 'amberfield[pyvista]'"
+        ) from None
     return module
 
 
-def plot_grains(grains: Grains, color: Any, plane: str, ax: Axes | None, style: dict[str, Any]) -> Axes:
+def plot_grains(
+    grains: Grains, color: Any, plane: str, label: str | None, ax: Axes | None, style: dict[str, Any]
+) -> Axes:
     """Draw grains as discs of their size."""
     from matplotlib import pyplot
     from matplotlib.collections import EllipseCollection
@@ -43,10 +47,17 @@ def plot_grains(grains: Grains, color: Any, plane: str, ax: Axes | None, style: 
     # Seen against the third axis of a right-handed frame: who is nearer is drawn later.
     towards = 1.0 if (right + 1) % 3 == up else -1.0
     order = np.argsort(towards * grains.position_m[:, depth], kind="stable")
-    label = _LABELS.get(color, color) if isinstance(color, str) else None
+    if grains.radius_m is None:
+        raise InputError("the grains have no radius; set radius_m to numbers [m]")
+    if label is None and isinstance(color, str):
+        label = _LABELS.get(color, color)
     values = getattr(grains, color) if isinstance(color, str) else np.asarray(color)
+    if values is None:
+        raise InputError(f"color: the grains have no {color}; give numbers, or the name of another array")
     if values.shape != (len(grains),):
-        raise InputError(f"color: its shape is {values.shape}; give one number for each of {len(grains)} grains")
+        raise InputError(
+            f"color: its shape is {values.shape}; give one number for each of {len(grains)} grains"
+        )
 
     if ax is None:
         _, ax = pyplot.subplots(layout="constrained")

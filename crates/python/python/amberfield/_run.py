@@ -5,9 +5,8 @@ from __future__ import annotations
 import json
 import os
 from collections.abc import Callable, Mapping, Sequence
-from functools import cached_property
 from pathlib import Path
-from typing import TYPE_CHECKING, Any, Union
+from typing import TYPE_CHECKING, Any
 from xml.etree import ElementTree
 
 import numpy as np
@@ -15,14 +14,15 @@ from numpy.typing import NDArray
 
 from . import _native
 from ._errors import InputError
-from ._grains import Grains
+from ._grains import Grains, read
 from ._scene_text import text_of
+from ._vtu import arrays_of
 
 if TYPE_CHECKING:
     import pandas
     from matplotlib.axes import Axes
 
-PathLike = Union[str, "os.PathLike[str]"]
+PathLike = str | os.PathLike[str]
 
 
 def run(
@@ -41,14 +41,14 @@ def run(
     """Simulate a scene and write its results, as ``amberfield run`` does.
 
     Python's other threads go on meanwhile. Ctrl-C stops the run after its step, with a checkpoint, and raises
-    KeyboardInterrupt. There is one run at a time in a process. The log goes to the logger ``amberfield`` and to
-    the file ``log.jsonl`` of the run.
+    KeyboardInterrupt. There is one run at a time in a process. The log goes to the logger ``amberfield`` and
+    to the file ``log.jsonl`` of the run.
 
     :param scene: scene file, or a dict with the keys of one; paths in a dict start in the current folder
     :param out: folder of the results; None for one named after the scene, or that of the checkpoint
     :param progress: whether to show a bar
-    :param callback: function of the :class:`Grains` that were just written; it stops the run by returning False,
-        and by an exception, which ``run`` raises
+    :param callback: function of the :class:`Grains` that were just written; it stops the run by returning
+        False, and by an exception, which ``run`` raises
     :param set: overrides of keys, for example ``{"electric_field.tolerance": 1e-3}``
     :param steps: number of steps after which to stop
     :param resume: checkpoint from which to continue
@@ -100,7 +100,7 @@ class Run:
 
     @property
     def history(self) -> pandas.DataFrame:
-        """Rows of ``history.csv``: energies, charges, contacts and times, indexed by nothing."""
+        """Rows of ``history.csv``: energies, charges, contacts and times."""
         return self._table("history.csv")
 
     @property
@@ -155,14 +155,23 @@ class Run:
     def grains(self, frame: int = -1) -> Grains:
         """Grains of a frame; -1 is the last."""
         time_s, path = self._frame("particles.pvd", frame)
-        grains = Grains.read(path)
+        grains = read(path)
         grains.time_s, grains.step = time_s, int(path.stem.rsplit("_", 1)[1])
         return grains
 
     def walls(self, frame: int = -1) -> pandas.DataFrame:
-        """Charge on walls at a frame: a row for each charged square with its wall, centre, charge and density."""
+        """Charge on walls at a frame: a row for each charged place with the number of its wall, its centre,
+        its charge, and the charge per area there.
+        """
+        import pandas
+
         _, path = self._frame("walls.pvd", frame)
-        return _read_walls(path)
+        arrays = arrays_of(path)
+        centres = arrays["points_m"].reshape(-1, 4, 3).mean(axis=1)
+        columns = {"wall": arrays["wall"]}
+        columns |= {f"{letter}_m": centres[:, axis] for axis, letter in enumerate("xyz")}
+        columns |= {name: arrays[name] for name in ("charge_C", "charge_density_C_m2")}
+        return pandas.DataFrame(columns)
 
     def plot(self, columns: Sequence[str] | None = None, *, ax: Axes | None = None) -> Axes:
         """Draw columns of the history over time; None for all energies."""
@@ -181,7 +190,9 @@ class Run:
     def _frames(self, series: str) -> list[tuple[float, Path]]:
         path = self.path / series
         if not path.is_file():
-            raise InputError(f"{path}: the run has written no such file; set output.formats to have \"vtk\" in it")
+            raise InputError(
+                f'{path}: the run has written no such file; set output.formats to have "vtk" in it'
+            )
         sets = ElementTree.parse(path).getroot().iter("DataSet")
         return [(float(one.attrib["timestep"]), self.path / one.attrib["file"]) for one in sets]
 
@@ -190,7 +201,9 @@ class Run:
         try:
             return frames[frame]
         except IndexError:
-            raise InputError(f"frame {frame}: there are {len(frames)}; give 0 to {len(frames) - 1}, or -1") from None
+            raise InputError(
+                f"frame {frame}: there are {len(frames)}; give 0 to {len(frames) - 1}, or -1"
+            ) from None
 
 
 class _Bar:
@@ -218,4 +231,10 @@ class _Bar:
 
 def _overrides(set: Mapping[str, Any]) -> list[str]:
     """Overrides as the command line has them."""
-    return [f"{key}={text_of({'value': value}).strip().removeprefix('value = ')}" for key, value in set.items()]
+    overrides = []
+    for key, value in set.items():
+        if isinstance(value, Mapping):
+            overrides += _overrides({f"{key}.{inner}": of_inner for inner, of_inner in value.items()})
+        else:
+            overrides.append(f"{key}={text_of({'value': value}).strip().removeprefix('value = ')}")
+    return overrides

@@ -31,5 +31,9 @@ def _plain(value: Any, path: str) -> Any:
         return os.fspath(value)
     if isinstance(value, Sequence):
         return [_plain(inner, f"{path}[{index}]") for index, inner in enumerate(value)]
-    what = "None; leave the key out" if value is None else f"a {type(value).__name__}; give a number, text, list or dict"
+    what = (
+        "None; leave the key out"
+        if value is None
+        else f"a {type(value).__name__}; give a number, text, list or dict"
+    )
     raise InputError(f"{path}: the value is {what}")

@@ -22,8 +22,8 @@ pub enum SceneInput {
 }
 
 impl SceneInput {
-    /// Reads the scene, applies `KEY=VALUE` overrides and reads the files that it names. The mesh in the folder
-    /// `mesh` counts where the scene's case has none of its own.
+    /// Reads the scene, applies `KEY=VALUE` overrides and reads the files that it names. The mesh in the
+    /// folder `mesh` counts where the scene's case has none of its own.
     ///
     /// # Errors
     /// All problems of the scene and its files that can be found independently of each other.

@@ -6,7 +6,9 @@ use crate::SceneError;
 use crate::error::{Problems, shorten};
 use crate::table::SceneTable;
 use crate::tree::nearest;
-use amberfield_core::{Axis, Boundary, Domain, FieldSettings, Method, Vector3, Wall, WallCharging, WallShape};
+use amberfield_core::{
+    Axis, Boundary, Domain, FieldSettings, Method, Vector3, Wall, WallCharging, WallShape,
+};
 
 /// Number of grains beyond which the direct sum causes a warning.
 const MANY_FOR_DIRECT: usize = 100_000;

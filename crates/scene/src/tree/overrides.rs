@@ -94,10 +94,11 @@ fn set_node(node: &mut Node, rest: &[&str], value: Node, place: &Place, key: &st
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::tree::Origin;
     use crate::tree::parse_document;
 
     fn apply(text: &str, set: &str) -> Result<Entries, SceneError> {
-        let mut document = parse_document(&"s.toml".into(), text)?;
+        let mut document = parse_document(&Origin::File("s.toml".into()), text)?;
         apply_overrides(&mut document, &[set.to_owned()])?;
         Ok(document)
     }
