@@ -1,9 +1,9 @@
-//! Grains of a file.
+//! Grains from files and to files.
 
 use crate::{arrays, errors};
-use amberfield_core::Particles;
-use amberfield_scene::{Snapshot, SnapshotOptions, Units};
-use numpy::IntoPyArray as _;
+use amberfield_core::{GroupId, MaterialId, Particles, Vector3};
+use amberfield_scene::{Given, Snapshot, SnapshotBox, SnapshotOptions, Units};
+use numpy::{IntoPyArray as _, PyReadonlyArray2};
 use pyo3::prelude::*;
 use pyo3::types::PyDict;
 use std::path::PathBuf;
@@ -70,4 +70,84 @@ pub(crate) fn columns(py: Python<'_>, particles: Particles) -> PyResult<Bound<'_
     dict.set_item("density_kg_m3", particles.density.into_pyarray(py))?;
     dict.set_item("charge_C", particles.charge.into_pyarray(py))?;
     Ok(dict)
+}
+
+/// Writes grains in the form that the file's ending names. Arrays that are `None` are left out.
+#[pyfunction]
+pub(crate) fn write_snapshot(
+    py: Python<'_>,
+    path: PathBuf,
+    units: &str,
+    grains: &Bound<'_, PyDict>,
+) -> PyResult<()> {
+    let units = Units::named(units).map_err(|reason| errors::bad_input(py, &format!("units: {reason}")))?;
+    let snapshot = Columns { grains }.snapshot()?;
+    py.detach(|| amberfield_scene::write_snapshot(&path, &snapshot, units))
+        .map_err(|error| errors::of_scene(py, &error))
+}
+
+/// Arrays of grains, checked and made contiguous by the other half of the package.
+struct Columns<'a, 'py> {
+    grains: &'a Bound<'py, PyDict>,
+}
+
+impl<'py> Columns<'_, 'py> {
+    /// Snapshot with what is there.
+    fn snapshot(&self) -> PyResult<Snapshot> {
+        let id: Vec<u64> = self.value("id")?.unwrap_or_default();
+        let count = id.len();
+        let position = self.vectors("position_m")?;
+        let velocity = self.vectors("velocity_m_s")?;
+        let angular_velocity = self.vectors("angular_velocity_rad_s")?;
+        let radius: Option<Vec<f64>> = self.value("radius_m")?;
+        let density: Option<Vec<f64>> = self.value("density_kg_m3")?;
+        let charge: Option<Vec<f64>> = self.value("charge_C")?;
+        let material: Option<Vec<u16>> = self.value("material")?;
+        let given = Given {
+            radius: radius.is_some(),
+            charge: charge.is_some(),
+            velocity: velocity.is_some(),
+            angular_velocity: angular_velocity.is_some(),
+            density: density.is_some(),
+            material: material.is_some(),
+        };
+        let material = material.map(|ids| ids.into_iter().map(MaterialId).collect());
+        let zeros = || vec![0.0; count];
+        let still = || vec![Vector3::zeros(); count];
+        let particles = Particles {
+            id,
+            position: position.unwrap_or_else(still),
+            velocity: velocity.unwrap_or_else(still),
+            angular_velocity: angular_velocity.unwrap_or_else(still),
+            radius: radius.unwrap_or_else(zeros),
+            density: density.unwrap_or_else(zeros),
+            charge: charge.unwrap_or_else(zeros),
+            material: material.unwrap_or_else(|| vec![MaterialId(0); count]),
+            group: vec![GroupId(0); count],
+        };
+        let mut snapshot = Snapshot::with(particles, given);
+        snapshot.step = self.value("step")?;
+        snapshot.time_s = self.value("time_s")?;
+        snapshot.materials = self.value("materials")?.unwrap_or_default();
+        let corners: Option<[[f64; 3]; 2]> = self.value("box_m")?;
+        let is_periodic = self.value("is_periodic")?.unwrap_or_default();
+        snapshot.bounds =
+            corners.map(|[low, high]| SnapshotBox { min_m: low.into(), max_m: high.into(), is_periodic });
+        Ok(snapshot)
+    }
+
+    /// Value of a name; `None` where there is none.
+    fn value<T: for<'a> FromPyObject<'a, 'py>>(&self, name: &str) -> PyResult<Option<T>> {
+        let found = self.grains.get_item(name)?.filter(|value| !value.is_none());
+        found.map(|value| value.extract().map_err(Into::into)).transpose()
+    }
+
+    /// Vectors of a name.
+    fn vectors(&self, name: &str) -> PyResult<Option<Vec<Vector3<f64>>>> {
+        let Some(found) = self.grains.get_item(name)?.filter(|value| !value.is_none()) else {
+            return Ok(None);
+        };
+        let array: PyReadonlyArray2<'_, f64> = found.extract()?;
+        Ok(Some(arrays::rows(self.grains.py(), name, &array)?.to_vec()))
+    }
 }

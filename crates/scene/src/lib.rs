@@ -21,7 +21,7 @@ mod weld;
 mod write;
 
 pub use error::SceneError;
-pub use particles::{Snapshot, SnapshotBox, SnapshotOptions, Units};
+pub use particles::{Given, Snapshot, SnapshotBox, SnapshotOptions, Units};
 pub use scene::{
     ChargeTransferSettings, ElectricFieldSettings, OpenFoamSettings, OutputSettings, Physics, Purpose, Scene,
     SceneInput, SolverLoss, parse_field_settings, parse_scene, read_material_names, read_scene,

@@ -23,6 +23,7 @@ mod wall_forces;
 pub(crate) use folder::{is_stale, remove_leftovers};
 pub(crate) use name::scene_name;
 pub use observer::Observer;
+pub(crate) use session::Saved;
 pub use setup::parameters;
 pub(crate) use setup::{Charges, SolverConnections, charges_of, domain_of, field_of, read_scene, setup_of};
 pub use simulate::{Outcome, RunRequest, simulate};

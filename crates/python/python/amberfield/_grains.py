@@ -11,6 +11,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from . import _native
+from ._errors import InputError
 
 if TYPE_CHECKING:
     import pandas
@@ -63,6 +64,31 @@ class Grains:
             array = getattr(self, name)
             if array is not None:
                 yield name, array
+
+    def write(self, path: str | os.PathLike[str], *, units: str = "si") -> None:
+        """Write the grains in the form that the file's ending names: ``.csv``, ``.vtu``, ``.lammpstrj`` or
+        ``.dump`` (text dump of LAMMPS), ``.data`` (data file of LAMMPS). What is None is left out.
+
+        :param units: unit style of a file of LAMMPS
+        :raises InputError: what the form lacks, or what is wrong with the arrays
+        """
+        count = len(self.id)
+        grains: dict[str, Any] = {}
+        for name in ("id", *_VECTORS, *_NUMBERS, "material"):
+            array = getattr(self, name)
+            if array is None:
+                continue
+            kind = {"id": np.uint64, "material": np.uint16}.get(name, np.float64)
+            array = np.ascontiguousarray(array, dtype=kind)
+            shape = (count, 3) if name in _VECTORS else (count,)
+            if array.shape != shape:
+                raise InputError(f"{name}: its shape is {array.shape}, beside {count} ids; give {shape}")
+            grains[name] = array
+        grains |= {"step": self.step, "time_s": self.time_s, "materials": self.materials}
+        if self.box_m is not None:
+            grains["box_m"] = np.asarray(self.box_m, dtype=np.float64).tolist()
+            grains["is_periodic"] = list(self.is_periodic or (False, False, False))
+        _native.write_snapshot(os.fspath(path), units, grains)
 
     def to_pandas(self) -> pandas.DataFrame:
         """Table with a row for each grain and the columns of a particle file."""

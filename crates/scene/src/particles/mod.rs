@@ -23,6 +23,6 @@ pub(crate) use grains::GrainContext;
 pub(crate) use names::MaterialNames;
 pub(crate) use open::{read_charges, read_grains};
 pub(crate) use snapshot::{FileChoices, ReadParticles};
-pub use snapshot::{Snapshot, SnapshotBox, SnapshotOptions};
+pub use snapshot::{Given, Snapshot, SnapshotBox, SnapshotOptions};
 pub(crate) use units::Factors;
 pub use units::Units;

@@ -73,15 +73,21 @@ pub struct Snapshot {
     pub(super) given: Given,
 }
 
-/// Flags of what a file has beside places.
+/// Flags of what a snapshot has beside places.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub(super) struct Given {
-    pub(super) radius: bool,
-    pub(super) charge: bool,
-    pub(super) velocity: bool,
-    pub(super) angular_velocity: bool,
-    pub(super) density: bool,
-    pub(super) material: bool,
+pub struct Given {
+    /// Radii.
+    pub radius: bool,
+    /// Charges.
+    pub charge: bool,
+    /// Velocities.
+    pub velocity: bool,
+    /// Angular velocities.
+    pub angular_velocity: bool,
+    /// Densities.
+    pub density: bool,
+    /// Materials.
+    pub material: bool,
 }
 
 impl Given {
@@ -110,6 +116,12 @@ impl Snapshot {
             particles,
             given: Given::ALL,
         }
+    }
+
+    /// Snapshot of grains that have only what is given; their other numbers do not count.
+    #[must_use]
+    pub fn with(particles: Particles, given: Given) -> Self {
+        Self { given, ..Self::of(particles) }
     }
 
     /// Number of grains.

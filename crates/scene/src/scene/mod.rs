@@ -22,9 +22,4 @@ pub use description::{
 pub use input::SceneInput;
 pub use physics::Physics;
 pub(crate) use physics::told;
-<<<<<<< HEAD
-pub use input::SceneInput;
 pub use read::{parse_field_settings, parse_scene, read_material_names, read_scene};
-=======
-pub use read::{parse_field_settings, parse_scene, read_scene};
->>>>>>> 0223fae (A Python package: fields, runs and snapshots as numpy arrays, with the command in its wheel)
