@@ -5,6 +5,7 @@
 
 use super::columns::Columns;
 use super::grains::{Gathering, GrainContext};
+use super::names::MaterialNames;
 use super::row::{DecimalSign, TextRow, line};
 use super::snapshot::Snapshot;
 use super::words::{Lines, Words, cut_off, other_count};
@@ -33,8 +34,10 @@ const COLUMNS: [&str; 16] = [
     "material",
     "group",
 ];
-/// Columns that are required.
-const REQUIRED: [&str; 5] = ["id", "x_m", "y_m", "z_m", "radius_m"];
+/// Columns that the grains of a scene need.
+const OF_SCENE: [&str; 5] = ["id", "x_m", "y_m", "z_m", "radius_m"];
+/// Columns that a snapshot needs.
+const OF_SNAPSHOT: [&str; 3] = ["x_m", "y_m", "z_m"];
 
 /// Sign that begins a comment.
 pub(super) const COMMENT: u8 = b'#';
@@ -136,7 +139,11 @@ pub(super) fn read_table(
     context: &GrainContext<'_>,
 ) -> Result<Snapshot, SceneError> {
     let mut table = TextTable::open(file, head, reader)?;
-    let columns = table.columns(file, &REQUIRED)?;
+    let required = match context.materials {
+        MaterialNames::Scene { .. } => &OF_SCENE[..],
+        MaterialNames::File { .. } => &OF_SNAPSHOT,
+    };
+    let columns = table.columns(file, required)?;
     if let (Some(_), Some(mass)) = (columns.find("density_kg_m3"), columns.find("mass_kg")) {
         let name = table.header.get(mass).unwrap_or_default();
         let problem = format!("column {name} is there beside the density; remove one of them");
