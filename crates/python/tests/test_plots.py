@@ -1,5 +1,9 @@
 """Pictures."""
 
+import subprocess
+import sys
+from pathlib import Path
+
 import amberfield
 import numpy as np
 import pytest
@@ -67,3 +71,11 @@ def test_a_history_is_drawn(bed, tmp_path):
     assert [line.get_label() for line in ax.lines] == ["kinetic_J", "contact_J", "gravity_J", "electric_J"]
     with pytest.raises(amberfield.InputError, match="there is no 'speed'"):
         run.plot(["speed"])
+
+
+def test_the_example_draws_its_picture(tmp_path):
+    example = Path(__file__).parents[1] / "examples" / "field_of_a_snapshot.py"
+    picture = tmp_path / "field.png"
+    done = subprocess.run([sys.executable, example, picture], capture_output=True, text=True, check=True)
+    assert done.stdout.startswith("1000 grains")
+    assert picture.read_bytes().startswith(b"\x89PNG")

@@ -24,7 +24,7 @@ pub use error::SceneError;
 pub use particles::{Given, Snapshot, SnapshotBox, SnapshotOptions, Units};
 pub use scene::{
     ChargeTransferSettings, ElectricFieldSettings, OpenFoamSettings, OutputSettings, Physics, Purpose, Scene,
-    SceneInput, SolverLoss, parse_field_settings, parse_scene, read_material_names, read_scene,
+    SceneInput, SceneOutline, SolverLoss, parse_field_settings, parse_scene, read_outline, read_scene,
 };
 pub use table::check_keys;
 pub use write::{

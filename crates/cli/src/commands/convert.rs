@@ -4,10 +4,9 @@ use crate::arguments::ConvertOptions;
 use crate::failure::Failure;
 use crate::print;
 use crate::run::{Saved, SolverFolder, read_scene};
-use amberfield_core::Axis;
+use amberfield_core::{Axis, Domain};
 use amberfield_scene::{
-    Purpose, Snapshot, SnapshotBox, SnapshotOptions, Units, read_checkpoint, read_material_names,
-    write_snapshot,
+    Purpose, Snapshot, SnapshotBox, SnapshotOptions, Units, read_checkpoint, read_outline, write_snapshot,
 };
 use std::path::{Path, PathBuf};
 
@@ -61,14 +60,16 @@ fn of_run(folder: &Path, choices: SnapshotOptions) -> Result<Snapshot, Failure> 
             frames.len()
         )));
     };
+    let outline = read_outline(&folder.join("scene.toml"))?;
     let is_table = path.extension().is_some_and(|ending| ending == "csv");
     let materials_by_type = match is_table || !choices.materials_by_type.is_empty() {
         true => choices.materials_by_type,
-        false => read_material_names(&folder.join("scene.toml"))?,
+        false => outline.materials,
     };
     let choices = SnapshotOptions { step: None, materials_by_type, ..choices };
     let mut snapshot = Snapshot::read(path, &choices)?;
     snapshot.step = Some(step);
+    snapshot.bounds = outline.domain.as_ref().map(bounds_of);
     Ok(snapshot)
 }
 
@@ -99,12 +100,17 @@ fn of_checkpoint(path: &Path, choices: &SnapshotOptions) -> Result<Snapshot, Fai
     let mut snapshot = Snapshot::of(particles);
     snapshot.step = Some(saved.state.step_index());
     snapshot.time_s = Some(saved.state.time_s());
-    snapshot.bounds = Some(SnapshotBox {
-        min_m: domain.min(),
-        max_m: domain.max(),
-        is_periodic: Axis::ALL.map(|axis| domain.is_periodic(axis)),
-    });
+    snapshot.bounds = Some(bounds_of(domain));
     snapshot.materials = scene.materials.into_iter().map(|material| material.name).collect();
     snapshot.groups = scene.groups;
     Ok(snapshot)
+}
+
+/// Box of a domain.
+fn bounds_of(domain: &Domain) -> SnapshotBox {
+    SnapshotBox {
+        min_m: domain.min(),
+        max_m: domain.max(),
+        is_periodic: Axis::ALL.map(|axis| domain.is_periodic(axis)),
+    }
 }

@@ -74,7 +74,7 @@ def plot_grains(
         offsets=grains.position_m[order][:, (right, up)],
         offset_transform=ax.transData,
         array=values[order],
-        **{"edgecolors": "none", **style},
+        **{"edgecolors": (0.0, 0.0, 0.0, 0.4), "linewidths": 0.4, **style},
     )
     if clim is not None:
         discs.set_clim(*clim)
@@ -87,7 +87,8 @@ def plot_grains(
     ax.set_aspect("equal")
     ax.set_xlabel(f"{plane[0]} [m]")
     ax.set_ylabel(f"{plane[1]} [m]")
-    ax.figure.colorbar(discs, ax=ax, label=label)
+    # The scale is as high as the picture, whatever its form.
+    ax.figure.colorbar(discs, cax=ax.inset_axes((1.02, 0.0, 0.03, 1.0)), label=label)
     if grains.time_s is not None:
         ax.set_title(f"t = {grains.time_s:g} s")
     return ax

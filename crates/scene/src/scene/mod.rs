@@ -22,4 +22,4 @@ pub use description::{
 pub use input::SceneInput;
 pub use physics::Physics;
 pub(crate) use physics::told;
-pub use read::{parse_field_settings, parse_scene, read_material_names, read_scene};
+pub use read::{SceneOutline, parse_field_settings, parse_scene, read_outline, read_scene};

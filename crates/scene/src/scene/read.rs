@@ -44,16 +44,26 @@ pub fn parse_scene(
     parse(text, &Origin::File(file.into()), folder, overrides, (purpose, None))
 }
 
-/// Reads the names of the materials of a scene file, and nothing else of it.
+/// Parts of a scene that give names and a box to the grains of its frames.
+#[derive(Clone, Debug, PartialEq)]
+pub struct SceneOutline {
+    /// Names of the materials.
+    pub materials: Vec<String>,
+    /// Box; `None` where the mesh of a solver gives it.
+    pub domain: Option<Domain>,
+}
+
+/// Reads the names of the materials and the box of a scene file, and nothing else of it.
 ///
 /// # Errors
-/// Files that are no scene, and bad materials.
-pub fn read_material_names(path: &Path) -> Result<Vec<String>, SceneError> {
+/// Files that are no scene, bad materials and bad boxes.
+pub fn read_outline(path: &Path) -> Result<SceneOutline, SceneError> {
     let text = read_text(path)?;
     let origin = Origin::File(path.display().to_string().into());
     let entries = parse_document(&origin, &text)?;
     let document = SceneTable::document(&entries, origin.line(0), SCENE)?;
-    Ok(read_materials(&document)?.into_iter().map(|material| material.name).collect())
+    let materials = read_materials(&document)?.into_iter().map(|material| material.name).collect();
+    Ok(SceneOutline { materials, domain: read_domain(&document)? })
 }
 
 /// Reads the box and the settings of the electric field from a text that a program made: the sections
