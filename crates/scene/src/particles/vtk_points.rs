@@ -80,9 +80,13 @@ const OWN_VECTORS: [(&str, [&str; 3]); 2] = [
     ("angular_velocity_rad_s", ["wx_rad_s", "wy_rad_s", "wz_rad_s"]),
 ];
 
-/// Vectors of LAMMPS and LIGGGHTS, and the columns of dumps that they stand for.
-const VECTORS: [(&str, [&str; 3]); 2] =
-    [("v", ["vx", "vy", "vz"]), ("omega", ["omegax", "omegay", "omegaz"])];
+/// Vectors of LAMMPS, LIGGGHTS and converters of their dumps, and the columns of dumps that they stand for.
+const VECTORS: [(&str, [&str; 3]); 4] = [
+    ("v", ["vx", "vy", "vz"]),
+    ("velocity", ["vx", "vy", "vz"]),
+    ("omega", ["omegax", "omegay", "omegaz"]),
+    ("angular_velocity", ["omegax", "omegay", "omegaz"]),
+];
 
 /// Cells of a column: a component of an array.
 #[derive(Clone, Copy, Debug)]

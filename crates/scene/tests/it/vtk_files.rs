@@ -99,6 +99,7 @@ fn the_form_of_a_legacy_file_does_not_matter() {
                 "CELL_DATA 3\nSCALARS q float\nLOOKUP_TABLE default\n9 9 9\nPOINT_DATA",
             ),
         ),
+        ("names of converters", LEGACY.replace("VECTORS v ", "VECTORS velocity ")),
         ("doubles", LEGACY.replace("float", "double")),
     ] {
         assert_eq!(read(&folder, text).map(Snapshot::into_particles).as_ref(), Ok(&expected), "{name}");
