@@ -178,7 +178,7 @@ def _numbers(name: str, values: ArrayLike, dimensions: int) -> NDArray[np.float6
         array = np.asarray(values)
         if array.dtype.kind not in "iufb":
             raise TypeError(f"its numbers are {array.dtype}")
-        array = np.ascontiguousarray(array, dtype=np.float64)
+        array = np.require(array, np.float64, "CA")
     except (TypeError, ValueError) as error:
         raise InputError(f"{name}: {error}; give an array of real numbers") from None
     if array.ndim != dimensions:

@@ -79,7 +79,7 @@ class Grains:
             if array is None:
                 continue
             kind = {"id": np.uint64, "material": np.uint16}.get(name, np.float64)
-            array = np.ascontiguousarray(array, dtype=kind)
+            array = np.require(array, kind, "CA")
             shape = (count, 3) if name in _VECTORS else (count,)
             if array.shape != shape:
                 raise InputError(f"{name}: its shape is {array.shape}, beside {count} ids; give {shape}")
