@@ -18,7 +18,9 @@ fn binary() -> &'static Path {
             folder.pop();
         }
         let mut build = Command::new(std::env::var_os("CARGO").unwrap_or_else(|| "cargo".into()));
-        build.args(["build", "--quiet", "--package", "amberfield-cli", "--bin", "amberfield"]);
+        // The whole workspace is named, as where the tests were built: for a part of it, crates would be
+        // compiled once more, with other features.
+        build.args(["build", "--quiet", "--workspace", "--all-targets"]);
         if folder.ends_with("release") {
             build.arg("--release");
         }

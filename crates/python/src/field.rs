@@ -8,6 +8,7 @@ use amberfield_scene::parse_field_settings;
 use numpy::{IntoPyArray as _, PyReadonlyArray1, PyReadonlyArray2};
 use pyo3::prelude::*;
 use pyo3::types::PyDict;
+use rayon::prelude::*;
 
 /// Field of one scene: settings, and, from the first charges on, the parameters that were chosen for them.
 #[pyclass(name = "NativeField", subclass)]
@@ -48,10 +49,10 @@ impl NativeField {
         let (domain, settings, slot) = (&self.domain, &self.settings, &mut self.field);
         let work = || -> Result<FieldValues, FieldError> {
             let wrapped: Vec<_>;
-            let positions = if positions.iter().all(|place| domain.wrap(*place) == *place) {
+            let positions = if positions.par_iter().all(|place| domain.wrap(*place) == *place) {
                 positions
             } else {
-                wrapped = positions.iter().map(|place| domain.wrap(*place)).collect();
+                wrapped = positions.par_iter().map(|place| domain.wrap(*place)).collect();
                 &wrapped
             };
             let field = match slot {
@@ -84,7 +85,7 @@ impl NativeField {
         let pool = threads::pool(py, thread_count)?;
         let domain = &self.domain;
         let work = || {
-            let positions: Vec<_> = positions.iter().map(|place| domain.wrap(*place)).collect();
+            let positions: Vec<_> = positions.par_iter().map(|place| domain.wrap(*place)).collect();
             field.measure_error(&positions, charges)
         };
         let done = threads::work(py, &pool, work, |_, _| {})?;

@@ -51,8 +51,14 @@ fn openfoam() -> Option<PathBuf> {
 #[cfg(feature = "coupling")]
 fn solver(clean: bool) {
     let [field, gas] = [false, true].map(amberfield_coupling::solver_program);
-    line(format_args!("field solver: {}", field.display()));
-    line(format_args!("gas solver: {}", gas.display()));
+    for (what, program) in [("field solver", &field), ("gas solver", &gas)] {
+        if program.is_file() {
+            line(format_args!("{what}: {}", program.display()));
+        } else {
+            let advice = "only runs with [solver] need it; docs/openfoam.md tells how it is built";
+            line(format_args!("{what}: {} is not there ({advice})", program.display()));
+        }
+    }
     let surroundings = amberfield_coupling::Surroundings::of(&field);
     for fact in &surroundings.found {
         line(format_args!("{fact}"));

@@ -4,6 +4,7 @@ use crate::arguments::NewOptions;
 use crate::failure::Failure;
 use crate::print::line;
 use std::fs;
+use std::io::ErrorKind;
 use std::path::Path;
 
 /// Scene to start from.
@@ -97,6 +98,14 @@ fn write(path: &Path, text: &str) -> Result<(), Failure> {
     if let Some(folder) = path.parent() {
         fs::create_dir_all(folder).map_err(|error| cannot(&error))?;
     }
-    let file = fs::File::create_new(path).map_err(|error| cannot(&error))?;
+    let file = match fs::File::create_new(path) {
+        Err(error) if error.kind() == ErrorKind::AlreadyExists => {
+            return Err(Failure::bad_input(format!(
+                "{}: is there already, and is left as it is; name another folder with --out",
+                path.display()
+            )));
+        }
+        file => file.map_err(|error| cannot(&error))?,
+    };
     std::io::Write::write_all(&mut &file, text.as_bytes()).map_err(|error| cannot(&error))
 }

@@ -27,6 +27,8 @@ pub(crate) struct Health {
     released: f64,
     /// Charge of grains and walls at the start [C].
     charge: f64,
+    /// Largest sum of the sizes of all charges so far [C]: charges that cancel may all leave.
+    sizes: f64,
     allowed: Allowed,
 }
 
@@ -59,13 +61,15 @@ impl Allowed {
 impl Health {
     /// Quantities of a run that begins now.
     pub(crate) fn new(simulation: &Simulation, energies: &Energies, allowed: Allowed) -> Self {
+        let ChargeBalance { net, sizes } = charge(simulation);
         Self {
             left: simulation.left().grains,
             electric: energies.electric.unwrap_or(0.0),
             kinetic: energies.kinetic,
             highest: potential(simulation, energies),
             released: energies.kinetic,
-            charge: charge(simulation).net,
+            charge: net,
+            sizes,
             allowed,
         }
     }
@@ -106,7 +110,8 @@ impl Health {
             }
         }
         let now = charge(simulation);
-        if (now.net - self.charge).abs() > CHARGE * now.sizes {
+        self.sizes = self.sizes.max(now.sizes);
+        if (now.net - self.charge).abs() > CHARGE * self.sizes {
             return Err(unsound(
                 format!(
                     "the charge of grains and walls has changed from {:e} C to {:e} C",

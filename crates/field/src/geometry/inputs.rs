@@ -57,7 +57,8 @@ fn check_in_box(domain: &Domain, positions: &[Vector3<f64>]) -> Result<(), Field
     match positions.iter().position(outside) {
         None => Ok(()),
         Some(index) => Err(FieldError::Settings(format!(
-            "grain at index {index} has its centre at {:?} m, outside the domain; enlarge the domain",
+            "grain at index {index} has its centre at {:?} m, outside the domain; enlarge the domain, \
+             or check that places and box are both in metres",
             positions[index].as_slice()
         ))),
     }

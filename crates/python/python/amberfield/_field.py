@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import json
+import re
 from collections.abc import Mapping
 from dataclasses import dataclass
 from dataclasses import field as dataclass_field
@@ -26,7 +27,7 @@ _ENDS = tuple(f"{axis}_{side}" for axis in _AXES for side in ("min", "max"))
 _COMPONENTS = ("near", "middle", "far", "correction", "faces", "external")
 
 
-@dataclass
+@dataclass(repr=False)
 class FieldValues:
     """Electric field at n charges."""
 
@@ -42,6 +43,10 @@ class FieldValues:
     error: float | None = None
     #: Wall time of each stage [s].
     seconds: dict[str, float] = dataclass_field(default_factory=dict)
+
+    def __repr__(self) -> str:
+        error = "" if self.error is None else f", error {self.error:.2e}"
+        return f"<FieldValues: E at {len(self.e)} charges{error}>"
 
 
 class Field:
@@ -76,7 +81,10 @@ class Field:
         if tolerance is not None:
             asked["tolerance"] = float(tolerance)
         domain = {"min_m": low, "max_m": high, "boundary": _boundary(faces)}
-        self._native = _native.NativeField(text_of({"domain": domain, "electric_field": asked}))
+        try:
+            self._native = _native.NativeField(text_of({"domain": domain, "electric_field": asked}))
+        except InputError as error:
+            raise InputError(_in_these_words(str(error))) from None
         self._threads = threads
 
     def __call__(
@@ -202,6 +210,19 @@ def _corners(box: ArrayLike) -> tuple[list[float], list[float]]:
         f"box: its shape is {array.shape}; give three edge lengths, shape (3,), or two corners, "
         f"shape (2, 3){advice}"
     )
+
+
+def _in_these_words(message: str) -> str:
+    """Message about keys of a scene in the words of the arguments that they were made of."""
+    for pattern, word in (
+        (r"the scene: ", ""),
+        (r"\bdomain\.boundary\.(\w+)", r"faces['\1']"),
+        (r"\bdomain\.boundary\b", "faces"),
+        (r"\bdomain\.(min_m|max_m)\b", "box"),
+        (r"\belectric_field\.", ""),
+    ):
+        message = re.sub(pattern, word, message)
+    return message
 
 
 def _boundary(faces: Faces) -> dict[str, Any]:

@@ -18,7 +18,7 @@ if TYPE_CHECKING:
     from matplotlib.axes import Axes
 
 
-@dataclass
+@dataclass(repr=False)
 class Grains:
     """Grains at one time, as arrays of equal length and order. What a file does not have is None."""
 
@@ -51,6 +51,11 @@ class Grains:
 
     def __len__(self) -> int:
         return len(self.id)
+
+    def __repr__(self) -> str:
+        known = [name for name in ("id", *_VECTORS, *_NUMBERS, "material") if getattr(self, name) is not None]
+        when = "" if self.time_s is None else f" at t = {self.time_s:g} s"
+        return f"<Grains: {len(self)}{when}, with {', '.join(known)}>"
 
     def columns(self) -> Iterator[tuple[str, NDArray[Any]]]:
         """Names and arrays of all columns that there are, vectors as one column for each component."""

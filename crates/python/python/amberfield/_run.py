@@ -14,7 +14,7 @@ from numpy.typing import NDArray
 
 from . import _native
 from ._errors import InputError
-from ._grains import Grains, read
+from ._grains import Grains
 from ._scene_text import text_of
 from ._vtu import arrays_of
 
@@ -23,6 +23,17 @@ if TYPE_CHECKING:
     from matplotlib.axes import Axes
 
 PathLike = str | os.PathLike[str]
+
+#: Arrays of a frame of the grains.
+_OF_A_FRAME = (
+    "id",
+    "radius_m",
+    "density_kg_m3",
+    "charge_C",
+    "velocity_m_s",
+    "angular_velocity_rad_s",
+    "material",
+)
 
 
 def run(
@@ -155,8 +166,20 @@ class Run:
     def grains(self, frame: int = -1) -> Grains:
         """Grains of a frame; -1 is the last."""
         time_s, path = self._frame("particles.pvd", frame)
-        grains = read(path)
-        grains.time_s, grains.step = time_s, int(path.stem.rsplit("_", 1)[1])
+        arrays = arrays_of(path)
+        scene = self.scene
+        grains = Grains(
+            position_m=arrays["points_m"],
+            **{name: arrays[name] for name in _OF_A_FRAME},
+            materials=[material["name"] for material in scene.get("materials", [])],
+            time_s=time_s,
+            step=int(path.stem.rsplit("_", 1)[1]),
+        )
+        domain = scene.get("domain", {})
+        if "min_m" in domain:
+            grains.box_m = np.array([domain["min_m"], domain["max_m"]], dtype=np.float64)
+            boundary = domain.get("boundary", {})
+            grains.is_periodic = tuple(boundary.get(axis) == "periodic" for axis in "xyz")
         return grains
 
     def walls(self, frame: int = -1) -> pandas.DataFrame:
@@ -173,10 +196,12 @@ class Run:
         columns |= {name: arrays[name] for name in ("charge_C", "charge_density_C_m2")}
         return pandas.DataFrame(columns)
 
-    def plot(self, columns: Sequence[str] | None = None, *, ax: Axes | None = None) -> Axes:
-        """Draw columns of the history over time; None for all energies."""
+    def plot(self, columns: str | Sequence[str] | None = None, *, ax: Axes | None = None) -> Axes:
+        """Draw a column of the history over time, or several; None for all energies."""
         from ._plots import plot_history
 
+        if isinstance(columns, str):
+            columns = [columns]
         return plot_history(self.history, None if columns is None else list(columns), ax)
 
     def _table(self, name: str) -> pandas.DataFrame:

@@ -28,7 +28,8 @@ def arrays_of(path: Path) -> dict[str, NDArray[Any]]:
         offset = begin + int(array.attrib["offset"])
         size = int(np.frombuffer(data, "<u8", 1, offset)[0])
         kind = np.dtype(_TYPES[array.attrib["type"]])
-        values = np.frombuffer(data, kind, size // kind.itemsize, offset + 8)
+        # A copy, which is aligned and may be written to.
+        values = np.frombuffer(data, kind, size // kind.itemsize, offset + 8).copy()
         components = int(array.attrib["NumberOfComponents"])
         arrays[array.attrib["Name"]] = values.reshape(-1, components) if components > 1 else values
     return arrays

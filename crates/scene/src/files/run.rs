@@ -157,6 +157,7 @@ pub static GRAINS_VTU: FileTable = FileTable::csv(
     &[
         Column::new(&["id"], "", "Number of the grain."),
         Column::new(&["radius_m"], "m", "Radius."),
+        Column::new(&["density_kg_m3"], "kg/m³", "Density."),
         Column::new(&["charge_C"], "C", "Charge."),
         Column::new(&["velocity_m_s"], "m/s", "Velocity."),
         Column::new(&["angular_velocity_rad_s"], "rad/s", "Angular velocity."),

@@ -79,11 +79,13 @@ impl Units {
     /// # Errors
     /// The style `lj`, and names that are none.
     pub fn named(name: &str) -> Result<Self, String> {
-        match Self::ALL.into_iter().find(|units| units.name() == name) {
+        match Self::ALL.into_iter().find(|units| name.eq_ignore_ascii_case(units.name())) {
             Some(units) => Ok(units),
-            None if name == "lj" => Err("lj has no units, so lengths and charges cannot be known; \
+            None if name.eq_ignore_ascii_case("lj") => {
+                Err("lj has no units, so lengths and charges cannot be known; \
                                          write the file in another style"
-                .to_owned()),
+                    .to_owned())
+            }
             None => Err(format!("no unit style; give one of {}", Self::NAMES.join(", "))),
         }
     }
@@ -183,6 +185,7 @@ mod tests {
             assert_eq!((Units::named(name), units.name()), (Ok(units), name));
         }
         assert!(Units::named("lj").unwrap_err().contains("has no units"));
-        assert!(Units::named("SI").unwrap_err().contains("si, cgs, micro"));
+        assert_eq!(Units::named("SI"), Ok(Units::Si));
+        assert!(Units::named("metric").unwrap_err().contains("si, cgs, micro"));
     }
 }

@@ -2,7 +2,7 @@
 
 use super::description::Scene;
 use amberfield_core::constants::VACUUM_PERMITTIVITY;
-use amberfield_core::{Domain, Wall, WallShape};
+use amberfield_core::{Axis, Domain, OnExit, Wall, WallShape};
 use std::f64::consts::PI;
 use std::ops::RangeInclusive;
 
@@ -33,11 +33,37 @@ pub(super) fn unusual_values(scene: &Scene) -> Vec<String> {
     if let Some(domain) = &scene.domain {
         found.extend(scene.walls.iter().filter_map(|wall| unusual_size(wall, domain)));
     }
+    found.extend(no_floor(scene));
     // Scenes without motion may have points of unit charge.
     if scene.time.is_some() {
         found.extend(unusual_grains(scene));
     }
     found
+}
+
+/// Warning about a scene in which gravity pulls grains out of the domain, which ends the run.
+fn no_floor(scene: &Scene) -> Option<String> {
+    let (domain, time) = (scene.domain.as_ref()?, scene.time.as_ref()?);
+    if !scene.walls.is_empty() || time.on_exit != OnExit::Stop {
+        return None;
+    }
+    let pull = |axis: &Axis| time.gravity_m_s2[axis.index()];
+    let down = Axis::ALL.into_iter().max_by(|a, b| pull(a).abs().total_cmp(&pull(b).abs()))?;
+    if pull(&down) == 0.0 || domain.is_periodic(down) {
+        return None;
+    }
+    let (side, place, towards) = match pull(&down) < 0.0 {
+        true => ("min", domain.min(), 1),
+        false => ("max", domain.max(), -1),
+    };
+    let floor = |axis: Axis, at: f64| if axis == down { at } else { 0.0 };
+    let point = Axis::ALL.map(|axis| floor(axis, place[axis.index()]));
+    let normal = Axis::ALL.map(|axis| if axis == down { towards } else { 0 });
+    Some(format!(
+        "gravity pulls the grains to the face {down}_{side}, which no wall holds them from: faces bound the \
+         field, walls hold grains; add [[walls]] with plane = {{ point_m = {point:?}, normal = {normal:?} }}, \
+         or let grains leave with particles.on_exit = \"delete\""
+    ))
 }
 
 /// Warning about a wall that misses the domain or is far larger.
@@ -68,7 +94,11 @@ fn unusual_grains(scene: &Scene) -> Vec<String> {
     };
     let density = |i: usize| particles.density[i];
     let speed = |i: usize| particles.velocity[i].norm();
-    let charge = |i: usize| particles.charge[i].abs() / breakdown(i);
+    let charge = |i: usize| match particles.radius[i] > 0.0 {
+        true => particles.charge[i].abs() / breakdown(i),
+        // A point has no surface.
+        false => 0.0,
+    };
     let mut found = Vec::new();
     let mut tell = |what: &str, value: &dyn Fn(usize) -> f64, is_unusual: &dyn Fn(f64) -> bool| {
         let unusual: Vec<usize> = (0..particles.len()).filter(|&i| is_unusual(value(i))).collect();
@@ -117,6 +147,33 @@ mod tests {
         let path = folder.path();
         let scene = parse_scene(&text, "scene.toml", path, &[], Purpose::Run).expect("a good scene");
         scene.warnings
+    }
+
+    #[test]
+    fn gravity_without_a_wall_is_named_with_the_wall_that_is_missing() {
+        let scene = |z: &str, gravity: &str, exit: &str| {
+            let text = format!(
+                "[domain]\nmin_m = [0, 0, -0.1]\nmax_m = [0.1, 0.1, 0.1]\n\
+                 boundary = {{ x = \"open\", y = \"open\", z = \"{z}\" }}\n\
+                 [[materials]]\nname = \"m\"\ndensity_kg_m3 = 2500\nyoung_Pa = 1e6\npoisson = 0.3\n\
+                 restitution = 0.5\nfriction = 0.0\n[particles]\non_exit = \"{exit}\"\n\
+                 generate = {{ material = \"m\", count = 1, radius_m = 1e-3 }}\n\
+                 [time]\nstep_s = 1e-6\nend_s = 1e-3\ngravity_m_s2 = {gravity}\n"
+            );
+            let folder = std::path::Path::new("");
+            parse_scene(&text, "scene.toml", folder, &[], Purpose::Run).expect("a good scene").warnings
+        };
+        let found = scene("grounded", "[0, 0, -9.81]", "stop");
+        assert!(found.len() == 1 && found[0].contains("z_min"), "{found:?}");
+        assert!(found[0].contains("point_m = [0.0, 0.0, -0.1], normal = [0, 0, 1]"), "{found:?}");
+        assert!(scene("open", "[0, 2, 1]", "stop")[0].contains("normal = [0, -1, 0]"));
+        for (z, gravity, exit) in [
+            ("periodic", "[0, 0, -9.81]", "stop"),
+            ("open", "[0, 0, 0]", "stop"),
+            ("open", "[0, 0, -9.81]", "delete"),
+        ] {
+            assert_eq!(scene(z, gravity, exit), Vec::<String>::new());
+        }
     }
 
     #[test]

@@ -25,12 +25,29 @@ pub(crate) fn parse_document(origin: &Origin, text: &str) -> Result<Entries, Sce
 
 /// Parses a text; `locate` gives the place of a byte offset.
 pub(super) fn parse_with(text: &str, locate: &dyn Fn(usize) -> Place) -> Result<Entries, SceneError> {
-    let table = DeTable::parse(text).map_err(|error| SceneError::Syntax {
-        place: locate(error.span().map_or(0, |span| span.start)).to_string(),
-        message: shorten(error.message()),
+    let table = DeTable::parse(text).map_err(|error| {
+        let at = error.span().map_or(0, |span| span.start);
+        let advice = match has_decimal_comma(text, at) {
+            true => "; a number has a decimal point: 0.3, not 0,3",
+            false => "",
+        };
+        SceneError::Syntax {
+            place: locate(at).to_string(),
+            message: format!("{}{advice}", shorten(error.message())),
+        }
     })?;
     let converter = Converter { locate };
     Ok(converter.entries(table.get_ref()))
+}
+
+/// Whether a comma between digits stands where a text cannot be read further, at a byte offset.
+fn has_decimal_comma(text: &str, at: usize) -> bool {
+    let bytes = text.as_bytes();
+    let is_digit = |place: usize| bytes.get(place).is_some_and(u8::is_ascii_digit);
+    // The library names the comma, or what stands beside it.
+    (at.saturating_sub(1)..=at + 1).any(|comma| {
+        comma > 0 && bytes.get(comma) == Some(&b',') && is_digit(comma - 1) && is_digit(comma + 1)
+    })
 }
 
 impl Converter<'_> {

@@ -97,7 +97,7 @@ fn named<'a>(names: &mut impl Iterator<Item = &'static str>, arrays: Vec<Values<
     arrays.into_iter().zip(names).map(|(array, name)| (name, array)).collect()
 }
 
-/// Writes grains: position, id, radius, charge, velocities, material and group.
+/// Writes grains: position, id, radius, density, charge, velocities, material and group.
 ///
 /// `vectors` are further vectors with their names, one for each grain.
 ///
@@ -115,6 +115,7 @@ pub fn write_vtu(
         vec![
             Values::Ids(&particles.id),
             Values::Numbers(&particles.radius),
+            Values::Numbers(&particles.density),
             Values::Numbers(&particles.charge),
             Values::Vectors(&particles.velocity),
             Values::Vectors(&particles.angular_velocity),

@@ -196,7 +196,7 @@ fn what_a_dump_does_not_say_is_asked_for() {
             "it says units si, but units = \"micro\" was given",
         ),
         (DUMP.replace("\nsi", "\nlj"), &[TYPES], "lj has no units"),
-        (DUMP.replace("\nsi", "\nSI"), &[TYPES], "no unit style; give one of si, cgs"),
+        (DUMP.replace("\nsi", "\nmetric"), &[TYPES], "no unit style; give one of si, cgs"),
         (
             DUMP.to_owned(),
             &[],
