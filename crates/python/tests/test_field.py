@@ -68,15 +68,17 @@ def test_what_must_not_matter(charges):
     field = amberfield.Field(box, faces, tolerance=1e-4)
     e = field(positions, charge).e
     same = dict(rtol=0, atol=1e-9 * rms(e))
+    # Near pairs are summed in single precision: another order of the sum rounds a large field otherwise.
+    rounded = dict(rtol=4e-7, atol=1e-6 * rms(e))
     # Layout, type and container of the arrays.
     np.testing.assert_array_equal(field(np.asfortranarray(positions), charge).e, e)
     np.testing.assert_array_equal(field(np.repeat(positions, 2, axis=0)[::2], np.repeat(charge, 2)[::2]).e, e)
     np.testing.assert_array_equal(field(positions.tolist(), charge.tolist()).e, e)
     # Whole periods, order, units of charge.
     moved = positions + [0.01, -0.03, 0.0]
-    np.testing.assert_allclose(field(moved, charge).e, e, rtol=0, atol=1e-6 * rms(e))
+    np.testing.assert_allclose(field(moved, charge).e, e, **rounded)
     order = np.random.default_rng(1).permutation(len(charge))
-    np.testing.assert_allclose(field(positions[order], charge[order]).e, e[order], rtol=0, atol=1e-6 * rms(e))
+    np.testing.assert_allclose(field(positions[order], charge[order]).e, e[order], **rounded)
     np.testing.assert_allclose(field(positions, -4.0 * charge).e, -4.0 * e, **same)
     # Number of threads.
     for threads in (1, 2, 3):
@@ -180,7 +182,7 @@ def test_an_error_above_the_tolerance_is_raised_with_the_field(charges, monkeypa
         (dict(faces="groundd"), "nearest"),
         (dict(faces={"w": "open"}), "faces: 'w' is no face"),
         (dict(faces={"x_min": ("open", "open")}), "faces: x_min: give one condition"),
-        (dict(faces={"x": PERIODIC}), "boundary"),
+        (dict(faces={"x": PERIODIC}), "faces['y_min']"),
         (dict(faces={"x": {"potential_v": 3.0}, "y": "open", "z": "open"}), "potential_V"),
         (dict(tolerance=-1.0), "tolerance"),
         (dict(method="pppm"), "p3m"),

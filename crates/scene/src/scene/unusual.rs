@@ -60,9 +60,9 @@ fn no_floor(scene: &Scene) -> Option<String> {
     let point = Axis::ALL.map(|axis| floor(axis, place[axis.index()]));
     let normal = Axis::ALL.map(|axis| if axis == down { towards } else { 0 });
     Some(format!(
-        "gravity pulls the grains to the face {down}_{side}, which no wall holds them from: faces bound the \
-         field, walls hold grains; add [[walls]] with plane = {{ point_m = {point:?}, normal = {normal:?} }}, \
-         or let grains leave with particles.on_exit = \"delete\""
+        "gravity pulls the grains to the face {down}_{side}, which no wall holds them from: faces \
+         bound the field, walls hold grains; add [[walls]] with plane = {{ point_m = {point:?}, \
+         normal = {normal:?} }}, or let grains leave with particles.on_exit = \"delete\""
     ))
 }
 
