@@ -14,7 +14,7 @@ mod stand_in;
 
 pub use case::{CaseContents, Stop, Workplace, foam_command};
 pub use dem_side::{
-    Announced, PatientSolver, RemoteFlow, RemoteSolver, SolverSettings, Surroundings, program_name,
+    Announced, PatientSolver, RemoteFlow, RemoteSolver, SolverSettings, Surroundings, existing, program_name,
     solver_program,
 };
 pub use error::CouplingError;

@@ -52,11 +52,12 @@ fn openfoam() -> Option<PathBuf> {
 fn solver(clean: bool) {
     let [field, gas] = [false, true].map(amberfield_coupling::solver_program);
     for (what, program) in [("field solver", &field), ("gas solver", &gas)] {
-        if program.is_file() {
-            line(format_args!("{what}: {}", program.display()));
-        } else {
-            let advice = "only runs with [solver] need it; docs/openfoam.md tells how it is built";
-            line(format_args!("{what}: {} is not there ({advice})", program.display()));
+        match amberfield_coupling::existing(program) {
+            Some(path) => line(format_args!("{what}: {}", path.display())),
+            None => line(format_args!(
+                "{what}: {} not found (only runs with [solver] need it; docs/openfoam.md has the way to it)",
+                program.display()
+            )),
         }
     }
     let surroundings = amberfield_coupling::Surroundings::of(&field);

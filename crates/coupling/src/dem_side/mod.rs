@@ -17,4 +17,4 @@ pub use flow::RemoteFlow;
 pub use launch::{program_name, solver_program};
 pub use patient::PatientSolver;
 pub use settings::SolverSettings;
-pub use surroundings::Surroundings;
+pub use surroundings::{Surroundings, existing};

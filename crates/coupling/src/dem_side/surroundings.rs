@@ -132,7 +132,8 @@ fn printed(program: &str, options: &[impl AsRef<std::ffi::OsStr>]) -> String {
     output.map(|output| String::from_utf8_lossy(&output.stdout).into_owned()).unwrap_or_default()
 }
 
-/// Path of a program: of a name alone, that on the PATH.
-pub(super) fn existing(program: &Path) -> Option<PathBuf> {
+/// Path of a program: of a name alone, that on the PATH. `None` where there is none.
+#[must_use]
+pub fn existing(program: &Path) -> Option<PathBuf> {
     if program.components().count() == 1 { on_path(program.to_str()?) } else { program.canonicalize().ok() }
 }
