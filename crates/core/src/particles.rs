@@ -80,6 +80,11 @@ impl Particles {
         self.group.push(grain.group);
     }
 
+    /// Appends all grains of other arrays.
+    pub fn append(&mut self, others: &Self) {
+        (0..others.len()).for_each(|index| self.push(others.grain(index)));
+    }
+
     /// The grain at an index.
     ///
     /// # Panics

@@ -94,6 +94,21 @@ pub enum DemError {
         /// Simulated time [s].
         time_s: f64,
     },
+    /// A feed finds no place for a grain.
+    #[error(
+        "feed \"{feed}\" finds no place for grain {id} at t = {time_s:e} s, and {owed} of its grains are due; \
+         make its region larger, its rate smaller or velocity_m_s faster, or set on_blocked = \"wait\""
+    )]
+    Blocked {
+        /// Name of the feed.
+        feed: String,
+        /// Id of the first grain that waits.
+        id: u64,
+        /// Number of grains that are due.
+        owed: u64,
+        /// Simulated time [s].
+        time_s: f64,
+    },
     /// A grain's position is no longer finite.
     #[error("grain {id} has a position that is not finite at t = {time_s:e} s; use a smaller step_s")]
     NotFinite {

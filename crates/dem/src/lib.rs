@@ -7,6 +7,7 @@
 mod charging;
 mod contacts;
 mod error;
+mod feeding;
 mod field_stage;
 mod gas_stage;
 mod motion;
@@ -17,8 +18,10 @@ mod wall_cover;
 pub use charging::{ChargedSpot, Ledger};
 pub use contacts::walls::WallLoad;
 pub use error::DemError;
+pub use feeding::{Brought, FeedAccount, Tally};
 pub use field_stage::{Intervals, Limited};
 pub use setup::{FieldStageSetup, GasSetup, Setup};
+pub use simulation::books::Book;
 pub use simulation::energy::{ElectricEnergy, Energies};
 pub use simulation::exits::{Exit, Left};
 pub use simulation::guards::{Guard, StepRestitution};

@@ -1,7 +1,7 @@
 //! Parts of a simulation.
 
 use amberfield_core::{
-    ChargeTransfer, Domain, FieldSettings, Gas, Material, Particles, RollingModel, TimeSettings, Wall,
+    ChargeTransfer, Domain, Feeds, FieldSettings, Gas, Material, Particles, RollingModel, TimeSettings, Wall,
 };
 use amberfield_field::Choice;
 use amberfield_field::far::Connect;
@@ -12,7 +12,8 @@ use amberfield_gas::ConnectFlow;
 pub struct FieldStageSetup {
     /// Settings of the field.
     pub settings: FieldSettings,
-    /// Whether each grain, in the order of `Setup::particles`, makes and feels the field.
+    /// Whether each grain, in the order of `Setup::particles` and then of `Setup::feeds`, makes and feels the
+    /// field.
     pub member: Vec<bool>,
     /// Parameters chosen earlier; `None` lets the field choose.
     pub choice: Option<Choice>,
@@ -67,4 +68,6 @@ pub struct Setup {
     pub gas: Option<GasSetup>,
     /// Electric field; `None`: plain DEM.
     pub field: Option<FieldStageSetup>,
+    /// Grains that come while the run goes on.
+    pub feeds: Feeds,
 }

@@ -101,6 +101,16 @@ pub enum SceneError {
         /// Numbers that do not fit together, and what to do.
         problem: String,
     },
+    /// Feed whose grains cannot be drawn.
+    #[error("{place}: feed \"{name}\": {problem}")]
+    Feed {
+        /// File and line.
+        place: String,
+        /// Name of the feed.
+        name: String,
+        /// Numbers that do not fit together, and what to do.
+        problem: String,
+    },
     /// Output that cannot be written.
     #[error("{}: cannot be written: {reason}", path.display())]
     Unwritable {

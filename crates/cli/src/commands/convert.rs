@@ -95,8 +95,10 @@ fn of_checkpoint(path: &Path, choices: &SnapshotOptions) -> Result<Snapshot, Fai
         let problem = "its domain is the mesh of a solver; convert a frame of the run instead";
         return Err(Failure::bad_input(format!("{}: {problem}", path.display())));
     };
+    let mut all = scene.particles.clone();
+    all.append(&scene.feeds.grains);
     let particles =
-        saved.state.particles(&scene.particles, domain).map_err(|error| Failure::at_start(&error))?;
+        saved.state.particles(&all, domain).map_err(|error| Failure::at_start(&error))?;
     let mut snapshot = Snapshot::of(particles);
     snapshot.step = Some(saved.state.step_index());
     snapshot.time_s = Some(saved.state.time_s());

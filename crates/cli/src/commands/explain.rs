@@ -44,6 +44,9 @@ pub(crate) fn explain(options: &ExplainOptions) -> Result<(), Failure> {
 fn print_scene(name: &str, scene: &Scene) {
     let particles = &scene.particles;
     let range = |values: &[f64]| {
+        if values.is_empty() {
+            return "-".to_owned();
+        }
         let low = values.iter().copied().fold(f64::INFINITY, f64::min);
         let high = values.iter().copied().fold(f64::NEG_INFINITY, f64::max);
         format!("{low:.4e} to {high:.4e}")
@@ -56,6 +59,13 @@ fn print_scene(name: &str, scene: &Scene) {
         range(&particles.charge),
         particles.net_charge()
     ));
+    for (number, feed) in (0..).zip(&scene.feeds.list) {
+        let (mut count, mut mass) = (0, 0.0);
+        for k in (0..scene.feeds.due_s.len()).filter(|k| scene.feeds.feed[*k] == number) {
+            (count, mass) = (count + 1, mass + scene.feeds.grains.mass(k));
+        }
+        line(format_args!("feed \"{}\": {count} grains, {mass:.4e} kg, up to the end", feed.name));
+    }
     line(format_args!("walls: {}, materials: {}", scene.walls.len(), scene.materials.len()));
     for wall in plan_text::walls(scene) {
         line(format_args!("  {wall}"));

@@ -129,7 +129,8 @@ impl Health {
     fn is_too_fast(&mut self, simulation: &Simulation, energies: &Energies) -> bool {
         let potential = potential(simulation, energies);
         self.highest = self.highest.max(potential);
-        self.released = self.released.max(self.kinetic + self.highest - potential);
+        let kinetic = self.kinetic + simulation.brought().kinetic;
+        self.released = self.released.max(kinetic + self.highest - potential);
         !self.allowed.work && energies.kinetic > ENERGY * self.released + energies.error
     }
 }
@@ -155,9 +156,11 @@ fn whereabouts(simulation: &Simulation, id: u64) -> String {
     })
 }
 
-/// Potential energy [J], with the gravity of the grains that have left.
+/// Potential energy [J], with the gravity of the grains that have left; zero for each grain where a feed
+/// brought it.
 fn potential(simulation: &Simulation, energies: &Energies) -> f64 {
-    energies.gravity + simulation.left().gravity + energies.contact + energies.electric.unwrap_or(0.0)
+    let gravity = energies.gravity + simulation.left().gravity - simulation.brought().gravity;
+    gravity + energies.contact + energies.electric.unwrap_or(0.0)
 }
 
 /// Charges of a run.
@@ -168,12 +171,15 @@ struct ChargeBalance {
     sizes: f64,
 }
 
-/// Charges of grains and walls, and of the grains that have left.
+/// Charges of grains and walls, and of the grains that have left, less what feeds brought.
 fn charge(simulation: &Simulation) -> ChargeBalance {
     let particles = simulation.particles();
     let (walls, moved) =
         simulation.ledger().map_or((0.0, 0.0), |ledger| (ledger.walls.iter().sum(), ledger.moved));
     let sizes: f64 = particles.charge.iter().map(|charge| charge.abs()).sum();
-    let left = simulation.left().charge;
-    ChargeBalance { net: particles.net_charge() + walls + left, sizes: sizes + moved + left.abs() }
+    let (left, fed) = (simulation.left().charge, simulation.brought().charge);
+    ChargeBalance {
+        net: particles.net_charge() + walls + left - fed,
+        sizes: sizes + moved + left.abs() + fed.abs(),
+    }
 }

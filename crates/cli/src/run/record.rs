@@ -8,7 +8,7 @@ use super::schedule::Schedule;
 use super::wall_forces::WallForces;
 use crate::failure::Failure;
 use amberfield_core::WallCharging;
-use amberfield_dem::{ChargedSpot, Energies, Simulation};
+use amberfield_dem::{Book, ChargedSpot, Energies, FeedAccount, Simulation, Tally};
 use amberfield_scene::files::{ELECTRIC_FORCE, HISTORY, When};
 use amberfield_scene::{
     ChargedSquare, HistoryFile, HistoryValue, PvdSeries, Scene, write_charge_vtu, write_particles_csv,
@@ -45,6 +45,8 @@ struct HistoryColumns {
     walls: bool,
     limited: bool,
     solver: bool,
+    /// Names of the materials, as they stand in columns, where there are feeds; else none.
+    materials: Vec<String>,
     /// Names of the stages that are timed.
     stages: Vec<&'static str>,
 }
@@ -60,6 +62,7 @@ impl HistoryColumns {
             limited: simulation.plan().has("field")
                 && scene.electric_field.as_ref().is_some_and(|field| field.limit_field_force),
             solver: simulation.plan().has("field") && scene.solver.is_some(),
+            materials: if simulation.books().is_some() { materials_of(scene) } else { Vec::new() },
             stages: simulation.stage_seconds().into_iter().map(|(name, _)| name).collect(),
         }
     }
@@ -67,8 +70,13 @@ impl HistoryColumns {
     /// Names of all columns, in the order of the table of files.
     fn names(&self) -> Vec<String> {
         let names = HISTORY.names(|when| self.holds(when)).flat_map(|name| {
-            let stages: &[&str] = if name.contains("STAGE") { &self.stages } else { &[""] };
-            stages.iter().map(move |stage| name.replace("STAGE", stage))
+            let of_stages = || self.stages.iter().map(|stage| name.replace("STAGE", stage)).collect();
+            let of_materials = || self.materials.iter().map(|of| name.replace("NAME", of)).collect();
+            match name {
+                name if name.contains("STAGE") => of_stages(),
+                name if name.contains("NAME") => of_materials(),
+                name => vec![name.to_owned()],
+            }
         });
         names.collect()
     }
@@ -83,6 +91,7 @@ impl HistoryColumns {
             When::ChargedWalls => self.walls,
             When::Limit => self.limited,
             When::Solver => self.solver,
+            When::Feeds => !self.materials.is_empty(),
             When::Components => false,
         }
     }
@@ -187,6 +196,9 @@ impl Record {
         }
         row.push(HistoryValue::Count(simulation.contacts() as u64));
         row.extend(simulation.ledger().map(|ledger| HistoryValue::Count(ledger.collisions)));
+        if let Some(books) = simulation.books() {
+            books_of(&books, &simulation.feeds(), &mut row);
+        }
         row.extend(self.columns.solver.then(|| HistoryValue::Count(simulation.solver_iterations())));
         row.push(HistoryValue::Number(clock.wall_s));
         row.extend(clock.stages.iter().map(|seconds| HistoryValue::Number(*seconds)));
@@ -243,6 +255,28 @@ impl Record {
         }
         Ok(true)
     }
+}
+
+/// Names of a scene's materials, without what would part columns.
+fn materials_of(scene: &Scene) -> Vec<String> {
+    let plain = |name: &str| name.replace([',', '"', '\n', '\r'], "_");
+    scene.materials.iter().map(|material| plain(&material.name)).collect()
+}
+
+/// Adds the books of a run with feeds to a row of the history.
+fn books_of(books: &[Book], feeds: &[FeedAccount], row: &mut Vec<HistoryValue>) {
+    let Book { fed, left, inside, .. } = Book::sum(books);
+    let owed = Tally::sum(feeds.iter().map(|feed| &feed.owed));
+    let (count, number) = (HistoryValue::Count, HistoryValue::Number);
+    row.extend([count(inside.grains), number(inside.mass)]);
+    row.extend([count(fed.grains), number(fed.mass), number(fed.charge)]);
+    row.extend([count(owed.grains), number(owed.mass)]);
+    row.extend([count(left.grains), number(left.mass), number(left.charge)]);
+    let tallies: [fn(&Book) -> Tally; 3] = [|book| book.inside, |book| book.fed, |book| book.left];
+    row.extend(tallies.iter().flat_map(|of| books.iter().map(|book| count(of(book).grains))));
+    row.extend(tallies.iter().flat_map(|of| books.iter().map(|book| number(of(book).mass))));
+    row.extend(tallies.iter().flat_map(|of| books.iter().map(|book| number(of(book).charge))));
+    row.extend(books.iter().map(|book| number(book.gained)));
 }
 
 /// Step in the name of a file.

@@ -28,11 +28,12 @@ pub(crate) fn domain_of(scene: &Scene) -> Result<&Domain, Failure> {
     scene.domain.as_ref().ok_or_else(|| Failure::bad_input("the scene has no [domain]; add it"))
 }
 
-/// Flags of the grains that make and feel the field.
+/// Flags of the grains that make and feel the field: those at the start, then those of feeds.
 pub(crate) fn members(scene: &Scene) -> Vec<bool> {
     let group = scene.electric_field.as_ref().map_or("all", |field| &field.particle_group);
     let index = scene.groups.iter().position(|name| name == group);
-    scene.particles.group.iter().map(|id| group == "all" || index == Some(usize::from(id.0))).collect()
+    let all = scene.particles.group.iter().chain(&scene.feeds.grains.group);
+    all.map(|id| group == "all" || index == Some(usize::from(id.0))).collect()
 }
 
 /// Grains that make and feel the field.
@@ -131,6 +132,7 @@ pub(crate) fn setup_of(
         time,
         gas: scene.gas.map(|gas| GasSetup { gas, solver: solver.flow }),
         field,
+        feeds: std::mem::take(&mut scene.feeds),
     })
 }
 

@@ -15,7 +15,7 @@ use crate::failure::Failure;
 use crate::logging::Log;
 use crate::plan_text;
 use amberfield_core::Tuning;
-use amberfield_dem::Simulation;
+use amberfield_dem::{FeedAccount, Simulation};
 use amberfield_scene::{Physics, Purpose, Scene, SceneInput, read_checkpoint, write_json, write_text};
 use std::path::{Path, PathBuf};
 
@@ -223,6 +223,7 @@ fn finish(session: &Session<'_>, first: u64, ending: Ending) -> Outcome {
     if simulation.ledger().is_some() {
         histogram::plot(session.folder);
     }
+    tell_feeds(simulation);
     tell_charges(simulation);
     tell_gas(simulation);
 
@@ -303,6 +304,26 @@ fn tell_gas(simulation: &Simulation) {
             extremes.least_void,
             extremes.most_drag
         );
+    }
+}
+
+/// Logs what feeds have brought, as a warning where they owe some.
+fn tell_feeds(simulation: &Simulation) {
+    for FeedAccount { name, fed, owed } in simulation.feeds() {
+        let text = format!(
+            "feed \"{name}\": {} grains came, {:.4e} kg with {:.3e} C",
+            fed.grains, fed.mass, fed.charge
+        );
+        if owed.grains > 0 {
+            tracing::warn!(
+                "{text}; {} grains, {:.4e} kg, were due and found no place: make its region larger, its rate \
+                 smaller or its grains faster",
+                owed.grains,
+                owed.mass
+            );
+        } else {
+            tracing::info!("{text}");
+        }
     }
 }
 

@@ -4,7 +4,7 @@ use super::session::Session;
 use super::setup::parameters;
 use crate::failure::Failure;
 use crate::machine;
-use amberfield_dem::Energies;
+use amberfield_dem::{Book, Energies, Tally};
 use amberfield_scene::write_json;
 use serde_json::{Map, Value, json};
 
@@ -40,6 +40,27 @@ fn energies(energies: &Energies) -> Value {
         "gravity_J": energies.gravity,
         "electric_J": energies.electric,
     })
+}
+
+/// Books as JSON: of all grains, by material and by feed.
+fn books(session: &Session<'_>, books: &[Book]) -> Value {
+    let tally = |tally: &Tally| json!({ "grains": tally.grains, "kg": tally.mass, "C": tally.charge });
+    let book = |book: &Book| {
+        json!({
+            "start": tally(&book.start),
+            "fed": tally(&book.fed),
+            "left": tally(&book.left),
+            "inside": tally(&book.inside),
+            "gained_C": book.gained,
+        })
+    };
+    let materials = session.scene.materials.iter().zip(books);
+    let materials: Map<String, Value> =
+        materials.map(|(material, of)| (material.name.clone(), book(of))).collect();
+    let feeds = session.simulation.feeds().into_iter();
+    let feeds: Map<String, Value> =
+        feeds.map(|feed| (feed.name, json!({ "fed": tally(&feed.fed), "owed": tally(&feed.owed) }))).collect();
+    json!({ "all": book(&Book::sum(books)), "materials": materials, "feeds": feeds })
 }
 
 /// Writes the summary of a run that began at step `first` with energies `before`.
@@ -90,6 +111,7 @@ pub(crate) fn write_summary(
         "contacts": simulation.contacts(),
         "energies_at_start": energies(before),
         "energies_at_end": after.as_ref().map(energies),
+        "books": simulation.books().map(|books| self::books(session, &books)),
         "field": field,
         "field_intervals": simulation.intervals().map(|intervals| json!({
             "evaluations": intervals.evaluations,

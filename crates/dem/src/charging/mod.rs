@@ -59,6 +59,8 @@ pub struct Ledger {
     pub collisions: u64,
     /// Charge given to each wall [C].
     pub walls: Vec<f64>,
+    /// Charge that the grains of each material gained [C].
+    pub gained: Vec<f64>,
 }
 
 /// Things that a trade reads.
@@ -124,7 +126,11 @@ impl Charging {
             coulomb: field.permittivity.coulomb(),
             table: ChargingTable::new(materials, &settings, permittivity),
             spots: Spots::new(largest),
-            ledger: Ledger { walls: vec![0.0; walls], ..Ledger::default() },
+            ledger: Ledger {
+                walls: vec![0.0; walls],
+                gained: vec![0.0; materials.len()],
+                ..Ledger::default()
+            },
             backwards: false,
             lag: 0.0,
             evaluated: particles.charge.clone(),
@@ -185,6 +191,7 @@ impl Charging {
             (list.growth[entry], list.foreseen[entry]) = (pair.growth, pair.foreseen);
         }
         if state.ledger.walls.len() != self.ledger.walls.len()
+            || state.ledger.gained.len() != self.ledger.gained.len()
             || state.evaluated.len() != self.evaluated.len()
         {
             return Err("charging of other walls or grains".to_owned());

@@ -76,9 +76,11 @@ impl Charging {
             traded = self.trade_mild(traders, shifts, 0, &mut neighbours.lists, &mut held);
         }
         traded = traded.and(self.trade_stiff(traders, neighbours, &mut held));
-        for (held, &original) in held.iter().zip(original) {
+        for ((held, &original), material) in held.iter().zip(original).zip(&traders.grains.material) {
             if let Some(held) = held {
-                charge[original.index()] = *held;
+                let charge = &mut charge[original.index()];
+                self.ledger.gained[usize::from(*material)] += *held - *charge;
+                *charge = *held;
             }
         }
         self.held = held;

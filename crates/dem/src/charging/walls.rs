@@ -68,6 +68,7 @@ impl Charging {
         let moved = self.allowed(drive, work, drive.transfer(growth));
         // Positive is from the grain to the wall.
         charge[a] -= moved;
+        self.ledger.gained[usize::from(grains.material[touch.grain])] -= moved;
         self.spots.leave(traders.domain, number, &contact, moved);
         self.ledger.walls[touch.wall as usize] += moved;
         self.ledger.moved += moved.abs();

@@ -335,11 +335,12 @@ impl ChunkList {
     }
 }
 
-/// Entry of `j` in the list of `i`.
+/// Entry of `j` in the list of `i`; none of a grain that came after the lists were built.
 fn find(lists: &[ChunkList], i: u32, j: u32) -> Option<(&ChunkList, usize)> {
-    let list = &lists[i as usize / CHUNK];
+    let list = lists.get(i as usize / CHUNK)?;
     let local = i as usize % CHUNK;
-    (list.start[local] as usize..list.start[local + 1] as usize)
+    let (first, end) = (*list.start.get(local)?, *list.start.get(local + 1)?);
+    (first as usize..end as usize)
         .find(|&entry| list.partner[entry] & INDEX_MASK == j)
         .map(|entry| (list, entry))
 }

@@ -14,6 +14,9 @@ use serde::{Deserialize, Serialize};
 /// Factor of the jump of E at a grain whose charge jumps: contacts overlap, and a jump that is taken for too
 /// small leaves a rest that looks like drift.
 const SPARE: f64 = 1.2;
+/// Share of a newcomer's charge that counts as a jump since the last evaluation: its images, and what has
+/// moved since it came, are not known before the next one.
+const UNKNOWN: f64 = 0.1;
 
 /// E, its change and the charge of every grain, in sorted order; zero for grains that are no members.
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
@@ -48,6 +51,20 @@ impl Forecast {
     #[inline(always)]
     pub(crate) fn force(&self, grain: usize, age: f64) -> Vector3<f64> {
         self.at(grain, age) * self.charge[grain]
+    }
+
+    /// Takes in a grain that has come, with E [V/m] and its charge [C].
+    pub(super) fn admit(&mut self, e: Vector3<f64>, charge: f64) {
+        self.e.push(e);
+        self.slope.push(Vector3::zeros());
+        self.charge.push(charge);
+        self.evaluated.push((1.0 - UNKNOWN) * charge);
+        self.jumps = None;
+    }
+
+    /// Adds a field [V/m] at a grain.
+    pub(super) fn add(&mut self, grain: usize, e: Vector3<f64>) {
+        self.e[grain] += e;
     }
 
     /// Charge of a grain [C]; zero before the first evaluation.

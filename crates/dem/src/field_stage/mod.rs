@@ -18,6 +18,7 @@ mod forecast;
 mod impacts;
 mod interval;
 mod members;
+mod newcomers;
 mod source;
 mod state;
 

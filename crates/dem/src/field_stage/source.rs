@@ -70,6 +70,11 @@ impl Source {
         values: &mut FieldValues,
     ) -> Result<(), DemError> {
         let Members { position, charge, time_s, .. } = members;
+        if position.is_empty() {
+            // Nothing has come yet, or all has left.
+            (values.e.clear(), values.potential.clear());
+            return Ok(());
+        }
         let lost = match self.field.evaluate_at(*time_s, position, charge, WANTED, values) {
             Err(error) if error.is_of_solver() => error,
             answer => return Ok(answer?),
@@ -90,7 +95,8 @@ impl Source {
         members: &Members,
         evaluations: u64,
     ) -> Result<(), DemError> {
-        if evaluations != RECHECK[0] && !evaluations.is_multiple_of(RECHECK[1]) {
+        let is_time = evaluations == RECHECK[0] || evaluations.is_multiple_of(RECHECK[1]);
+        if !is_time || members.index.is_empty() {
             return Ok(());
         }
         let Members { index, position, charge, .. } = members;

@@ -90,6 +90,11 @@ impl FlowingGas {
         self.exchange.add_forces(&grains.forecast, step, total);
     }
 
+    /// Takes in grains that have come.
+    pub(crate) fn admit(&mut self, count: usize) {
+        self.exchange.admit(count);
+    }
+
     /// Takes in a new order of the grains.
     pub(crate) fn reorder(&mut self, order: &[u32]) {
         self.exchange.reorder(order);

@@ -47,6 +47,21 @@ pub(crate) struct Grains {
     pub(crate) spare: Spare,
 }
 
+/// A grain about to come.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Newcomer {
+    /// Index in the set-up's order.
+    pub(crate) original: u32,
+    /// Level of the cells.
+    pub(crate) level: u8,
+    /// Place of the centre [m].
+    pub(crate) position: Vector3<f64>,
+    /// Velocity in the middle of the step [m/s].
+    pub(crate) middle: Vector3<f64>,
+    /// Velocity at the end of the step, without forces but gravity [m/s].
+    pub(crate) end: Vector3<f64>,
+}
+
 /// State of the grains, for checkpoints, in the order of the last sort.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub(crate) struct GrainsState {
@@ -158,6 +173,27 @@ impl Grains {
     pub(crate) fn take_order(&mut self, original: &[Original]) {
         let order: Vec<u32> = original.iter().map(|original| original.0).collect();
         self.reorder(&order);
+    }
+
+    /// Appends a grain of the set-up that was not there, on a level of the cells, at a position [m]. Its
+    /// velocity is that of the middle of a step, with its forecast for the end [m/s]. `turns`: whether
+    /// anything can turn a grain.
+    pub(crate) fn admit(&mut self, particles: &Particles, newcomer: &Newcomer, turns: bool) {
+        let Newcomer { original, level, position, middle, end } = *newcomer;
+        self.original.push(Original(original));
+        let radius = particles.radius[original as usize];
+        self.centre.push([position.x, position.y, position.z, radius]);
+        self.velocity.push(middle);
+        self.forecast.push(end);
+        self.angular.push(particles.angular_velocity[original as usize]);
+        self.force.push(Vector3::zeros());
+        if turns {
+            self.torque.push(Vector3::zeros());
+        }
+        self.slowing.push(0.0);
+        self.inverse_mass.push(1.0 / particles.mass(original as usize));
+        self.material.push(particles.material[original as usize].0);
+        self.level.push(level);
     }
 
     /// Reorders to `order[new] = old`; grains that are not named are dropped.

@@ -6,6 +6,7 @@ use crate::contacts::cells::INDEX_MASK;
 use crate::contacts::material_pairs::PairTable;
 use crate::contacts::neighbours::Listed;
 use crate::error::DemError;
+use crate::feeding;
 use crate::motion::grains::Grains;
 use crate::setup::Setup;
 use amberfield_core::{Axis, Material, Particles, Skin, Step};
@@ -22,6 +23,7 @@ fn bad(text: String) -> DemError {
 /// Checks everything that can be checked without neighbours.
 pub(crate) fn check(setup: &Setup) -> Result<(), DemError> {
     check_particles(&setup.particles, setup)?;
+    feeding::check(setup)?;
     for material in &setup.materials {
         check_material(material)?;
     }
@@ -177,7 +179,10 @@ pub(crate) fn check_centres(
 /// Whether a state belongs to a set-up.
 pub(crate) fn check_state(setup: &Setup, state: &State) -> Result<(), DemError> {
     let misfit = |text: &str| Err(DemError::State(text.to_owned()));
-    let State { grains, contacts, field, charging, gas, .. } = state;
+    let State { grains, contacts, field, charging, gas, feeding, .. } = state;
+    if feeding.is_some() == setup.feeds.is_empty() {
+        return misfit("its feeds are not those of the scene");
+    }
     let count = grains.original.len();
     let total = setup.particles.len();
     let mut seen = vec![false; total];

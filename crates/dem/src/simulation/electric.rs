@@ -1,11 +1,12 @@
 //! Charges in a step: contacts that trade them, the field that they make, and the guards that they set.
 
 use super::Simulation;
-use super::guards::{Stiffness, electric_stiffness, electric_stiffness_bound};
+use super::guards::{Stiffness, electric_stiffness, electric_stiffness_bound, electric_stiffness_of};
 use super::state::Progress;
 use super::timing::Stage;
 use crate::charging::{ChargedSpot, Charging, Ledger, Round};
 use crate::error::DemError;
+use crate::feeding::Feeding;
 use crate::field_stage::{FieldStage, Moment};
 
 impl Simulation {
@@ -154,17 +155,20 @@ impl Simulation {
         }
     }
 
-    /// Stiffness limits of the present pairs; `None` without a field.
+    /// Stiffness limits of the present pairs, and of grains that have yet to come with their like; `None` without a field.
     pub(super) fn electric_stiffness(&self) -> Option<Stiffness> {
         let field = self.field.as_ref()?;
-        Some(electric_stiffness(
+        let now = electric_stiffness(
             &self.domain,
             &self.grains,
             &self.particles,
             &field.member,
             field.permittivity(),
             self.contacts.neighbours.pairs().map(|pair| (pair.i, pair.j)),
-        ))
+        );
+        let later = self.feeding.iter().flat_map(Feeding::still_to_come).filter(|grain| field.member[*grain]);
+        let like = later.map(|grain| electric_stiffness_of(&self.domain, &self.particles, grain, field.permittivity()));
+        Some(like.fold(now, Stiffness::tighter))
     }
 
     /// Charge that charge transfer has moved, walls by their number; `None` without it.

@@ -170,6 +170,9 @@ impl Simulation {
             left.grains += 1;
             left.charge += exit.charge;
             left.gravity -= exit.position.dot(&self.time.gravity_m_s2) / self.grains.inverse_mass[i];
+            if let Some(feeding) = &mut self.feeding {
+                feeding.book_exit(self.grains.material[i], 1.0 / self.grains.inverse_mass[i], exit.charge);
+            }
             self.exits.push(exit);
         }
         self.remove(&gone);

@@ -204,6 +204,30 @@ pub(crate) struct Stiffness {
     pub(crate) wall_image: f64,
 }
 
+impl Stiffness {
+    /// Tighter limits of two.
+    pub(crate) fn tighter(self, other: Self) -> Self {
+        Self { pair: self.pair.min(other.pair), wall_image: self.wall_image.min(other.wall_image) }
+    }
+}
+
+/// Stiffness limits of a grain of the set-up with its like, at contact.
+pub(crate) fn electric_stiffness_of(
+    domain: &Domain,
+    particles: &Particles,
+    grain: usize,
+    permittivity: f64,
+) -> Stiffness {
+    let (charge, radius, mass) = (particles.charge[grain], particles.radius[grain], particles.mass(grain));
+    let mirror = domain.faces().iter().flatten().any(|face| face.is_conductor() || face.is_insulating());
+    let pair = time_step_limits::pair_stiffness(charge, charge, permittivity, 2.0 * radius);
+    let wall = time_step_limits::wall_image_stiffness(charge, permittivity, radius);
+    Stiffness {
+        pair: time_step_limits::stiffness_limit(0.5 * mass, pair),
+        wall_image: if mirror { time_step_limits::stiffness_limit(mass, wall) } else { f64::INFINITY },
+    }
+}
+
 /// Lower bounds of the stiffness limits: the lightest, smallest and most charged grain in one.
 pub(crate) fn electric_stiffness_bound(
     grains: &Grains,

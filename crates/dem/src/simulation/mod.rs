@@ -1,9 +1,11 @@
 //! One run: the stages of a scene and the order in which they act.
 
+pub(crate) mod books;
 pub(crate) mod checks;
 mod electric;
 pub(crate) mod energy;
 pub(crate) mod exits;
+mod feeds;
 pub(crate) mod guards;
 mod observe;
 pub(crate) mod outlook;
@@ -18,6 +20,7 @@ pub use overlaps::Deepest;
 use crate::charging::Charging;
 use crate::contacts::{Contacts, Depths};
 use crate::error::DemError;
+use crate::feeding::Feeding;
 use crate::field_stage::{Extras, FieldStage};
 use crate::gas_stage::GasStage;
 use crate::motion::chunks::{Loads, chunk_count};
@@ -40,15 +43,16 @@ const HALF_SKIN: f64 = 0.499_999;
 /// 1. *Begin*: count the step; keep the state where another process may be lost in it.
 /// 2. *Drift*: first half of velocity Verlet ("Motion").
 /// 3. *Exits*: grains beyond an open face, or at a face that mirrors charges, end the run or are removed.
-/// 4. *Lists*: wrap periodic axes, sort grains in space, list neighbours anew, where a grain may have used
+/// 4. *Feeds*: grains that are due come where there is room for them, every few steps.
+/// 5. *Lists*: wrap periodic axes, sort grains in space, list neighbours anew, where a grain may have used
 ///    up half the skin; look at the guards ("Time step").
-/// 5. *Grains*: contact forces of grains on each other, F_n and F_t ("Motion").
-/// 6. *Walls*: contact forces of walls, by the same law; overlaps are watched.
-/// 7. *Gas*: drag, buoyancy and lift, after an exchange with a gas that flows where one is due ("Gas").
-/// 8. *Charging*: contact areas A are followed; what they grew by moves charge, dT/dA ("Charge transfer").
-/// 9. *Field*: E is evaluated where it is due ("Electric field"), else extrapolated; qE is added.
-/// 10. *Guards*: are looked at again where gas or field are new ("Time step").
-/// 11. *Kick*: second half of velocity Verlet ("Motion").
+/// 6. *Grains*: contact forces of grains on each other, F_n and F_t ("Motion").
+/// 7. *Walls*: contact forces of walls, by the same law; overlaps are watched.
+/// 8. *Gas*: drag, buoyancy and lift, after an exchange with a gas that flows where one is due ("Gas").
+/// 9. *Charging*: contact areas A are followed; what they grew by moves charge, dT/dA ("Charge transfer").
+/// 10. *Field*: E is evaluated where it is due ("Electric field"), else extrapolated; qE is added.
+/// 11. *Guards*: are looked at again where gas or field are new ("Time step").
+/// 12. *Kick*: second half of velocity Verlet ("Motion").
 ///
 /// After an error of [`Self::step`] the grains are between two steps: do not step on.
 #[derive(Debug)]
@@ -68,6 +72,7 @@ pub struct Simulation {
     gas: Option<GasStage>,
     charging: Option<Charging>,
     field: Option<FieldStage>,
+    feeding: Option<Feeding>,
     limits: Limits,
     /// Largest overlaps that the run may have at present.
     allowed: Depths,
@@ -106,7 +111,8 @@ impl Simulation {
         self.begin_step();
         let outside = self.drift();
         let removed = outside && self.handle_exits()?;
-        self.renew_lists(removed)?;
+        let admitted = self.admit_grains()?;
+        self.renew_lists(removed || admitted)?;
         self.push_grains(step_s);
         self.push_off_walls(step_s);
         self.watch_overlaps()?;
@@ -147,16 +153,16 @@ impl Simulation {
         motion.outside || self.touches_face()
     }
 
-    /// Lists anew who is near whom where that may have changed: grains have been removed, or one may have
+    /// Lists anew who is near whom where that may have changed: grains have left or come, or one may have
     /// moved by half the skin.
-    fn renew_lists(&mut self, removed: bool) -> Result<(), DemError> {
+    fn renew_lists(&mut self, others: bool) -> Result<(), DemError> {
         self.watch.lap(Stage::Integrate);
         self.progress.travel += self.progress.step_s * self.progress.speed;
         let used_up = self.has_used_up_skin();
-        if removed || used_up {
+        if others || used_up {
             self.rebuild();
         }
-        if removed || used_up || self.limits.is_too_fast(self.progress.step_s, self.progress.pace) {
+        if others || used_up || self.limits.is_too_fast(self.progress.step_s, self.progress.pace) {
             self.watch_guards()?;
         }
         self.watch.lap(Stage::Neighbours);

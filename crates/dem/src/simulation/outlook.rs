@@ -9,6 +9,7 @@ use crate::contacts::cells::{LinkedCells, levels_of, shifts};
 use crate::contacts::material_pairs::{Features, PairTable};
 use crate::contacts::walls::ContactWalls;
 use crate::error::DemError;
+use crate::feeding::{self, Feeding};
 use crate::setup::Setup;
 use amberfield_core::{Material, Plan, Step};
 use amberfield_laws::{damped_step, restitution};
@@ -44,20 +45,25 @@ impl Outlook {
         if setup.field.is_some() || setup.gas.is_some() {
             return Ok(None);
         }
+        let mut merged = (!setup.feeds.is_empty()).then(|| setup.clone());
+        merged.iter_mut().for_each(feeding::merge);
+        let setup = merged.as_ref().unwrap_or(setup);
         checks::check(setup)?;
         let skin_m = checks::skin(setup);
         checks::check_periods(setup, skin_m)?;
         let Setup { domain, materials, particles, walls, time, .. } = setup;
         let table = PairTable::new(materials);
-        let (_, level_radius) = levels_of(particles.radius.iter().copied());
+        let (level, level_radius) = levels_of(particles.radius.iter().copied());
         if !walls.is_empty() {
             ContactWalls::new(walls, shifts(domain), false).map_err(DemError::Setup)?;
         }
+        let feeding = Feeding::new(setup.feeds.clone(), particles, materials.len(), &level);
         let plan = plan(&Planned {
             features: Features { rolling_model: setup.rolling_model, ..table.features() },
             periodic: bounds(domain).is_periodic(),
             walls: walls.len(),
             levels: LinkedCells::new(level_radius, skin_m).level_count(),
+            feeding: feeding.as_ref(),
             gas: None,
             transfer: None,
             field_asked: false,
@@ -73,7 +79,7 @@ impl Outlook {
         };
         limits.watch(&progress, time.allow_unstable)?;
         Ok(Some(Self {
-            grains: particles.len(),
+            grains: particles.len() - setup.feeds.due_s.len(),
             plan,
             step_s: progress.step_s,
             skin_m,

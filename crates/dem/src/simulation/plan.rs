@@ -1,6 +1,7 @@
 //! Stages that a scene has, and why.
 
 use crate::contacts::material_pairs::Features;
+use crate::feeding::Feeding;
 use crate::field_stage::FieldStage;
 use crate::gas_stage::GasStage;
 use amberfield_core::{ChargeTransfer, Plan};
@@ -14,6 +15,7 @@ pub(super) struct Planned<'a> {
     pub(super) walls: usize,
     /// Levels of size of the neighbour search.
     pub(super) levels: usize,
+    pub(super) feeding: Option<&'a Feeding>,
     pub(super) gas: Option<&'a GasStage>,
     pub(super) transfer: Option<&'a ChargeTransfer>,
     /// Whether the scene asks for a field, which is left out where nothing is charged.
@@ -23,7 +25,7 @@ pub(super) struct Planned<'a> {
 
 /// The plan of a run, with the field's own plan at its end.
 pub(super) fn plan(planned: &Planned<'_>) -> Plan {
-    let &Planned { features, periodic, walls, levels, gas, transfer, field_asked, field } = planned;
+    let &Planned { features, periodic, walls, levels, feeding, gas, transfer, field_asked, field } = planned;
     let mut plan = Plan::new();
     plan.decide(true, "integrate", "velocity Verlet, every step".to_owned(), "");
     let grids = format!("linked cells on {levels} level(s) of size, Verlet lists rebuilt by displacement");
@@ -55,6 +57,8 @@ pub(super) fn plan(planned: &Planned<'_>) -> Plan {
         "nothing can turn a grain",
     );
     plan.decide(periodic, "periodic images", "an axis is periodic".to_owned(), "no axis is periodic");
+    let [feeds, fed] = feeding.map_or([0; 2], Feeding::size);
+    plan.decide(feeds > 0, "feeds", format!("{feeds} feed(s) with {fed} grains"), "no [[feeds]]");
     plan.decide(gas.is_some(), "gas", gas.map_or(String::new(), GasStage::about), "no [gas]");
     plan_charging(&mut plan, transfer);
     let reason = if field_asked {

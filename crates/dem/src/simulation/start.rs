@@ -12,6 +12,7 @@ use crate::contacts::neighbours::Neighbours;
 use crate::contacts::walls::ContactWalls;
 use crate::contacts::{Contacts, Depths};
 use crate::error::DemError;
+use crate::feeding::{self, Feeding};
 use crate::field_stage::FieldStage;
 use crate::gas_stage::GasStage;
 use crate::motion::grains::Grains;
@@ -29,11 +30,13 @@ impl Simulation {
     /// # Errors
     /// Values that are impossible, overlaps, a step beyond a stability guard, a field that cannot be
     /// computed.
-    pub fn new(setup: Setup) -> Result<Self, DemError> {
+    pub fn new(mut setup: Setup) -> Result<Self, DemError> {
+        feeding::merge(&mut setup);
         checks::check(&setup)?;
         let skin = checks::skin(&setup);
         checks::check_periods(&setup, skin)?;
         let mut run = Self::assemble(setup, skin, None)?;
+        run.leave_out_what_has_yet_to_come();
         run.rebuild();
         checks::check_centres(&run.grains, &run.contacts, &run.particles)?;
         run.contacts.push_grains(&run.grains, AT_START, None, &mut run.scratch.loads);
@@ -48,7 +51,9 @@ impl Simulation {
     ///
     /// # Errors
     /// As [`Self::new`], and a state that does not fit the scene.
-    pub fn resume(mut setup: Setup, state: State) -> Result<Self, DemError> {
+    pub fn resume(mut setup: Setup, mut state: State) -> Result<Self, DemError> {
+        feeding::merge(&mut setup);
+        state.follow_end(&setup);
         checks::check(&setup)?;
         checks::check_state(&setup, &state)?;
         if let Some(charging) = &state.charging {
@@ -60,6 +65,9 @@ impl Simulation {
         // Lists are built from the centres from which they were built before.
         run.grains.place(&state.contacts.reference);
         run.contacts.restore(&run.domain, &run.grains, skin, &state.contacts).map_err(DemError::State)?;
+        if let (Some(feeding), Some(saved)) = (&mut run.feeding, &state.feeding) {
+            feeding.restore(saved).map_err(DemError::State)?;
+        }
         if let (Some(charging), Some(saved)) = (&mut run.charging, &state.charging) {
             charging.restore(&run.domain, saved, &mut run.contacts.neighbours).map_err(DemError::State)?;
         }
@@ -93,17 +101,19 @@ impl Simulation {
             charging: self.charging.as_ref().map(|c| c.state(&self.particles, &self.contacts.neighbours)),
             gas: None,
             ways_out: self.ways_out,
+            feeding: self.feeding.as_ref().map(|feeding| feeding.state.clone()),
         }
     }
 
     /// Builds the stages that a scene needs; grains are in the set-up's order, nothing is listed yet.
     fn assemble(setup: Setup, skin_m: f64, state: Option<&State>) -> Result<Self, DemError> {
         let ways_out = state.map_or_else(|| WaysOut::new(&setup), |state| state.ways_out);
-        let Setup { domain, materials, rolling_model, particles, walls, time, gas, field } = setup;
+        let Setup { domain, materials, rolling_model, particles, walls, time, gas, field, feeds } = setup;
         let table = PairTable::new(&materials);
         let transfer = field.as_ref().and_then(|field| field.transfer);
         let features = Features { charging: transfer.is_some(), rolling_model, ..table.features() };
         let (level, level_radius) = levels_of(particles.radius.iter().copied());
+        let feeding = Feeding::new(feeds, &particles, materials.len(), &level);
         let shifts = shifts(&domain);
         let (wall_count, field_asked) = (walls.len(), field.is_some());
         let walls = match wall_count {
@@ -124,6 +134,7 @@ impl Simulation {
             periodic: bounds.is_periodic(),
             walls: wall_count,
             levels: contacts.neighbours.level_count(),
+            feeding: feeding.as_ref(),
             gas: gas.as_ref(),
             transfer: transfer.as_ref(),
             field_asked,
@@ -150,6 +161,7 @@ impl Simulation {
             gas,
             charging,
             field,
+            feeding,
             allowed: Depths { grains: f64::INFINITY, walls: f64::INFINITY },
             scratch: Scratch::default(),
             ways_out,
@@ -159,6 +171,15 @@ impl Simulation {
         };
         run.resize_scratch();
         Ok(run)
+    }
+
+    /// Drops the grains that feeds have yet to bring; they come by their index in the set-up.
+    fn leave_out_what_has_yet_to_come(&mut self) {
+        if let Some(feeding) = &self.feeding {
+            let starters: Vec<u32> = (0..feeding.starters as u32).collect();
+            self.grains.reorder(&starters);
+            self.resize_scratch();
+        }
     }
 
     /// Fixes the step and evaluates the field for the first time: its plasma limit needs a step and the
@@ -303,6 +324,7 @@ mod tests {
             },
             gas: None,
             field: None,
+            feeds: Default::default(),
         };
         let mut run = Simulation::new(setup).expect("a good scene");
         (0..50).for_each(|_| run.step().expect("a good scene"));

@@ -4,8 +4,10 @@ use super::exits::WaysOut;
 use crate::DemError;
 use crate::charging::ChargingState;
 use crate::contacts::memory::ContactsState;
+use crate::feeding::FeedingState;
 use crate::field_stage::FieldState;
 use crate::motion::grains::GrainsState;
+use crate::setup::Setup;
 use amberfield_core::{Domain, Particles};
 use amberfield_field::Choice;
 use amberfield_gas::ExchangeState;
@@ -47,6 +49,7 @@ pub struct State {
     /// State of a gas that flows; not in a [`crate::Simulation::state`].
     pub(crate) gas: Option<ExchangeState>,
     pub(crate) ways_out: WaysOut,
+    pub(crate) feeding: Option<FeedingState>,
 }
 
 impl State {
@@ -89,6 +92,18 @@ impl State {
             grain
         };
         Ok(order.into_iter().map(grain).collect())
+    }
+
+    /// Fits the charges to the grains of a merged set-up that ends at another time: feeds bring more, or
+    /// fewer of those that have not come yet.
+    pub(crate) fn follow_end(&mut self, setup: &Setup) {
+        let (Some(charging), Some(_)) = (&mut self.charging, &self.feeding) else { return };
+        let total = setup.particles.len();
+        for charges in [&mut charging.charge, &mut charging.evaluated] {
+            charges.truncate(total);
+            let known = charges.len();
+            charges.extend(&setup.particles.charge[known..]);
+        }
     }
 
     /// Whether a field solver that the scene has was lost, and the internal grid goes on.

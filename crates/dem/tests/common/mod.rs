@@ -68,6 +68,7 @@ pub(crate) fn setup(grains: Vec<Grain>, material: Material, step_s: f64) -> Setu
         time: time(step_s),
         gas: None,
         field: None,
+        feeds: Default::default(),
     }
 }
 

@@ -1,6 +1,6 @@
 //! Booking of what grains got of the gas, by the cells whose gas they got it of.
 
-use super::{Exchange, Held};
+use super::{Exchange, Held, NEW};
 use crate::mapping::CHUNK;
 use amberfield_core::Vector3;
 use rayon::prelude::*;
@@ -28,7 +28,8 @@ impl Exchange {
         let all: Vec<[f64; 4]> =
             (0..self.held.len()).into_par_iter().with_min_len(CHUNK).map(|i| self.got(i)).collect();
         let mut got = vec![[0.0; 4]; self.placed.len()];
-        self.held.iter().zip(all).for_each(|(held, of_grain)| got[held.slot as usize] = of_grain);
+        let known = self.held.iter().zip(all).filter(|(held, _)| held.slot != NEW);
+        known.for_each(|(held, of_grain)| got[held.slot as usize] = of_grain);
         for gone in self.gone.drain(..) {
             got[gone.slot as usize] = gone.got;
         }

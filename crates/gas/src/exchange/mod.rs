@@ -47,6 +47,8 @@ use std::time::Instant;
 /// Least void fraction ε of a cell. Ergun's drag grows without bound as ε goes to 0, and the shares of a
 /// few grains may fill a small cell.
 const LEAST_VOID: f64 = 0.2;
+/// Number of a grain that was not there at the exchange.
+const NEW: u32 = u32::MAX;
 
 /// Grains as they are now, in the order of the forces asked for.
 #[derive(Clone, Copy, Debug)]
@@ -204,6 +206,12 @@ impl Exchange {
         grains.with_min_len(CHUNK).for_each(one);
     }
 
+    /// Takes in grains that have come since the exchange; the gas acts on them from the next one on.
+    pub fn admit(&mut self, count: usize) {
+        let held = self.held.len() + count;
+        self.held.resize(held, Held { slot: NEW, ..Held::default() });
+    }
+
     /// Takes in a new order of the grains: the i-th is the one that was the `order[i]`-th.
     ///
     /// What grains got that are gone stays booked.
@@ -214,7 +222,8 @@ impl Exchange {
         if order.len() < self.held.len() {
             let mut stays = vec![false; self.held.len()];
             order.iter().for_each(|&i| stays[i as usize] = true);
-            for (i, _) in stays.iter().enumerate().filter(|(_, stays)| !**stays) {
+            let gone = stays.iter().enumerate().filter(|(_, stays)| !**stays);
+            for (i, _) in gone.filter(|(i, _)| self.held[*i].slot != NEW) {
                 let got = self.got(i);
                 let Held { slot, impulse, .. } = self.held[i];
                 self.booked += impulse;
@@ -288,7 +297,8 @@ impl Exchange {
         let (held, placed) = (&self.held, &self.placed);
         let one = |(i, &[x, y, z, radius]): (usize, &[f64; 4])| {
             let centre = domain.wrap(Vector3::new(x, y, z));
-            let last = held.get(i).map(|held| placed[held.slot as usize].cell);
+            let known = held.get(i).filter(|held| held.slot != NEW);
+            let last = known.map(|held| placed[held.slot as usize].cell);
             Placed { centre, diameter: 2.0 * radius, cell: mesh.locate(&centre, last).0 }
         };
         self.placed = grains.centre.par_iter().with_min_len(CHUNK).enumerate().map(one).collect();

@@ -1,7 +1,7 @@
 //! State from which an exchange goes on.
 
 use super::ledger::Gone;
-use super::{Exchange, Held};
+use super::{Exchange, Held, NEW};
 use crate::mapping::Placed;
 use crate::{FlowValues, GasError};
 use amberfield_core::Vector3;
@@ -34,7 +34,7 @@ impl ExchangeState {
     /// Whether this is a state of `count` grains.
     #[must_use]
     pub fn fits(&self, count: usize) -> bool {
-        let known = |slot: u32| (slot as usize) < self.places.len();
+        let known = |slot: u32| slot == NEW || (slot as usize) < self.places.len();
         self.held.len() == count
             && self.held.iter().all(|held| known(held.slot))
             && self.gone.iter().all(|gone| known(gone.slot))

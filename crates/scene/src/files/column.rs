@@ -32,6 +32,8 @@ pub enum When {
     Solver,
     /// Stage of the scene's plan: a column for each.
     Stage,
+    /// Feed of grains.
+    Feeds,
     /// Option `--components`.
     Components,
 }
@@ -49,6 +51,7 @@ impl When {
             Self::Limit => "`limit_field_force`",
             Self::Solver => "`[solver]` for the field",
             Self::Stage => "a stage of the scene's plan",
+            Self::Feeds => "`[[feeds]]`",
             Self::Components => "`--components`",
         }
     }

@@ -69,6 +69,35 @@ pub static HISTORY: FileTable = FileTable::csv(
             "Number of contacts that have begun since the start, those with walls included.",
         )
         .when(When::Transfer),
+        Column::new(&["grains"], "", "Number of grains that are there.").when(When::Feeds),
+        Column::new(&["grains_kg"], "kg", "Their mass.").when(When::Feeds),
+        Column::new(&["fed_grains"], "", "Number of grains that feeds have brought.").when(When::Feeds),
+        Column::new(&["fed_kg"], "kg", "Their mass.").when(When::Feeds),
+        Column::new(&["fed_C"], "C", "Charge with which they came.").when(When::Feeds),
+        Column::new(&["owed_grains"], "", "Number of grains that were due and have found no place yet.")
+            .when(When::Feeds),
+        Column::new(&["owed_kg"], "kg", "Their mass, the feeds' shortfall.").when(When::Feeds),
+        Column::new(&["left_grains"], "", "Number of grains that have left.").when(When::Feeds),
+        Column::new(&["left_kg"], "kg", "Their mass.").when(When::Feeds),
+        Column::new(&["left_C"], "C", "Charge that they took along.").when(When::Feeds),
+        Column::new(
+            &["grains_NAME", "fed_grains_NAME", "left_grains_NAME"],
+            "",
+            "Numbers of grains of a material that are there, came and left.",
+        )
+        .when(When::Feeds),
+        Column::new(
+            &["grains_kg_NAME", "fed_kg_NAME", "left_kg_NAME"],
+            "kg",
+            "Masses of grains of a material that are there, came and left.",
+        )
+        .when(When::Feeds),
+        Column::new(
+            &["grains_C_NAME", "fed_C_NAME", "left_C_NAME", "gained_C_NAME"],
+            "C",
+            "Charges of grains of a material that are there, came and left, and what they gained at contacts.",
+        )
+        .when(When::Feeds),
         Column::new(&["solver_iterations"], "", "Iterations of the field solver's last solve.")
             .when(When::Solver),
         Column::new(&["wall_s"], "s", "Wall-clock time since the start of the run, earlier parts included."),
@@ -280,6 +309,36 @@ pub static SUMMARY: FileTable = FileTable::csv(
             "Energies at its end; `energies_at_end` is null where it failed.",
         ),
         Column::new(&["energies_at_end"], "", "Null in a run that failed."),
+        Column::new(&["books"], "", "Null without feeds, else the keys below."),
+        Column::new(
+            &[
+                "books.NAME.start.grains",
+                "books.NAME.fed.grains",
+                "books.NAME.left.grains",
+                "books.NAME.inside.grains",
+            ],
+            "",
+            "Numbers of grains of all materials (`all`) or of one (`materials.NAME`): inside is start and fed \
+             less left.",
+        ),
+        Column::new(
+            &["books.NAME.start.kg", "books.NAME.fed.kg", "books.NAME.left.kg", "books.NAME.inside.kg"],
+            "kg",
+            "Their masses.",
+        ),
+        Column::new(
+            &["books.NAME.start.C", "books.NAME.fed.C", "books.NAME.left.C", "books.NAME.inside.C"],
+            "C",
+            "Their charges.",
+        ),
+        Column::new(&["books.NAME.gained_C"], "C", "Charge that they gained at contacts."),
+        Column::new(
+            &["books.feeds.NAME.fed.grains", "books.feeds.NAME.owed.grains"],
+            "",
+            "Numbers of grains that a feed brought, and that found no place.",
+        ),
+        Column::new(&["books.feeds.NAME.fed.kg", "books.feeds.NAME.owed.kg"], "kg", "Their masses."),
+        Column::new(&["books.feeds.NAME.fed.C", "books.feeds.NAME.owed.C"], "C", "Their charges."),
         Column::new(&["field"], "", "Null without a field, else the keys below."),
         Column::new(
             &["field.parameters"],

@@ -2,7 +2,7 @@
 
 use super::spec::GenerateContext;
 use crate::SceneError;
-use crate::limits::{CHARGE, RADIUS, RADIUS_OR_POINT};
+use crate::limits::{RADIUS, RADIUS_OR_POINT};
 use crate::particles::read_charges;
 use crate::table::SceneTable;
 use crate::tree::Range;
@@ -18,7 +18,7 @@ const MOST_DRAWS: usize = 10_000;
 
 /// Distribution of radii [m].
 #[derive(Clone, Debug, PartialEq)]
-pub(super) enum RadiusDistribution {
+pub(crate) enum RadiusDistribution {
     Constant(f64),
     Uniform(Limits),
     Normal { mean: f64, std: f64, limits: Limits },
@@ -28,14 +28,14 @@ pub(super) enum RadiusDistribution {
 
 /// Smallest and largest value of a distribution.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub(super) struct Limits {
+pub(crate) struct Limits {
     min: f64,
     max: f64,
 }
 
 /// Distribution of charges [C].
 #[derive(Clone, Debug, PartialEq)]
-pub(super) enum ChargeDistribution {
+pub(crate) enum ChargeDistribution {
     Constant(f64),
     Uniform(Limits),
     Normal {
@@ -72,7 +72,7 @@ fn min_max(table: &SceneTable<'_>, range: Range) -> Result<Limits, SceneError> {
 }
 
 /// Reads the key `radius_m`.
-pub(super) fn read_radii(
+pub(crate) fn read_radii(
     parent: &SceneTable<'_>,
     allow_points: bool,
 ) -> Result<RadiusDistribution, SceneError> {
@@ -110,6 +110,14 @@ pub(super) fn read_radii(
             check_limits(&inner, median, limits)?;
             Ok(RadiusDistribution::LogNormal { median, sigma, limits })
         }
+        "by_mass" => {
+            let pairs = table.pairs("by_mass")?;
+            let pairs = table.need(pairs, "by_mass", "give pairs [radius, share]")?;
+            // Of one density: the number of grains in a mass goes with 1/r³.
+            let (radii, fractions) =
+                pairs.into_iter().map(|[radius, share]| (radius, share / radius.powi(3))).unzip();
+            Ok(RadiusDistribution::Sizes { radii, fractions })
+        }
         _ => read_sizes(&table, range),
     }
 }
@@ -138,6 +146,40 @@ fn read_sizes(table: &SceneTable<'_>, range: Range) -> Result<RadiusDistribution
     Ok(RadiusDistribution::Sizes { radii, fractions })
 }
 
+/// Reads a key with charges [C], or charges over masses [C/kg], of a feed; zero where it is absent.
+pub(crate) fn read_charges_of_feed(
+    parent: &SceneTable<'_>,
+    key: &str,
+) -> Result<ChargeDistribution, SceneError> {
+    let Some(table) = parent.table(key)? else {
+        return Ok(ChargeDistribution::Constant(parent.number(key)?.unwrap_or(0.0)));
+    };
+    read_plain_charges(&table, single(&table)?)
+}
+
+/// Reads the distribution of charges that a word names, without those of files.
+fn read_plain_charges(table: &SceneTable<'_>, word: &str) -> Result<ChargeDistribution, SceneError> {
+    Ok(match word {
+        "constant" => ChargeDistribution::Constant(table.need_number("constant")?),
+        "uniform" => {
+            let inner = table.table("uniform")?.expect("the key is there");
+            let (min, max) = (inner.need_number("min")?, inner.need_number("max")?);
+            if max < min {
+                return Err(inner.bad("max", format!("below min = {min}; exchange them")));
+            }
+            ChargeDistribution::Uniform(Limits { min, max })
+        }
+        "normal" => {
+            let inner = table.table("normal")?.expect("the key is there");
+            ChargeDistribution::Normal { mean: inner.need_number("mean")?, std: inner.need_number("std")? }
+        }
+        _ => ChargeDistribution::Bipolar(match table.table("bipolar")? {
+            Some(inner) => inner.need_number("magnitude")?,
+            None => table.need_number("bipolar")?,
+        }),
+    })
+}
+
 /// Reads the key `charge_C`.
 pub(super) fn read_charges_spec(
     parent: &SceneTable<'_>,
@@ -149,25 +191,13 @@ pub(super) fn read_charges_spec(
         return Ok(parent.number(key)?.map(ChargeDistribution::Constant));
     };
     let charges = match single(&table)? {
-        "constant" => ChargeDistribution::Constant(table.need_number("constant")?),
-        "uniform" => {
-            let inner = table.table("uniform")?.expect("the key is there");
-            ChargeDistribution::Uniform(min_max(&inner, CHARGE)?)
-        }
-        "normal" => {
-            let inner = table.table("normal")?.expect("the key is there");
-            ChargeDistribution::Normal { mean: inner.need_number("mean")?, std: inner.need_number("std")? }
-        }
-        "bipolar" => ChargeDistribution::Bipolar(match table.table("bipolar")? {
-            Some(inner) => inner.need_number("magnitude")?,
-            None => table.need_number("bipolar")?,
-        }),
-        _ => {
+        "from_file" => {
             let file = table.text("from_file")?;
             let file = table.need(file, "from_file", "name a CSV with the column charge_C")?;
             let bytes = context.source.read_file(&table, "from_file", file)?;
             ChargeDistribution::List(read_charges(file, &bytes, count)?)
         }
+        word => read_plain_charges(&table, word)?,
     };
     Ok(Some(charges))
 }
@@ -190,6 +220,74 @@ impl RadiusDistribution {
             }
             Self::Sizes { radii, fractions } => Ok(shares(radii, fractions, count, random)),
         }
+    }
+}
+
+/// Radii that are drawn one after another: more of them begin with the same ones.
+#[derive(Clone, Debug)]
+pub(crate) struct RadiusStream {
+    distribution: RadiusDistribution,
+    random: ChaCha8Rng,
+    /// Grains of each of several sizes so far.
+    drawn: Vec<f64>,
+}
+
+impl RadiusStream {
+    pub(crate) fn new(distribution: RadiusDistribution, random: ChaCha8Rng) -> Self {
+        let sizes = if let RadiusDistribution::Sizes { radii, .. } = &distribution { radii.len() } else { 0 };
+        Self { distribution, random, drawn: vec![0.0; sizes] }
+    }
+
+    /// Draws the next radius [m].
+    ///
+    /// Among several sizes, each is as likely as it lags behind its share: shares are kept to a grain or so
+    /// from the beginning.
+    pub(crate) fn next(&mut self) -> Result<f64, String> {
+        let RadiusDistribution::Sizes { radii, fractions } = &self.distribution else {
+            return Ok(self.distribution.draw(1, &mut self.random)?[0]);
+        };
+        let total: f64 = fractions.iter().sum();
+        let number = self.drawn.iter().sum::<f64>() + 1.0;
+        let lag = |k: usize| (fractions[k] / total * number - self.drawn[k]).max(0.0);
+        let mut at = self.random.random::<f64>() * (0..radii.len()).map(lag).sum::<f64>();
+        let mut chosen = radii.len() - 1;
+        for k in 0..radii.len() {
+            at -= lag(k);
+            if at < 0.0 {
+                chosen = k;
+                break;
+            }
+        }
+        self.drawn[chosen] += 1.0;
+        Ok(radii[chosen])
+    }
+}
+
+/// Charges that are drawn one after another: more of them begin with the same ones.
+#[derive(Clone, Debug)]
+pub(crate) struct ChargeStream {
+    distribution: ChargeDistribution,
+    random: ChaCha8Rng,
+    /// Charge of the second of a pair.
+    second: Option<f64>,
+}
+
+impl ChargeStream {
+    pub(crate) fn new(distribution: ChargeDistribution, random: ChaCha8Rng) -> Self {
+        Self { distribution, random, second: None }
+    }
+
+    /// Draws the next charge [C]. Both signs come in pairs, one of each, in random order.
+    pub(crate) fn next(&mut self) -> Result<f64, String> {
+        let ChargeDistribution::Bipolar(charge) = &self.distribution else {
+            return Ok(self.distribution.draw(1, &mut self.random)?[0]);
+        };
+        if let Some(second) = self.second.take() {
+            return Ok(second);
+        }
+        let first = if self.random.random::<bool>() { *charge } else { -charge };
+        self.second = Some(-first);
+        Ok(first)
     }
 }
 

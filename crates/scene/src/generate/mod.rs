@@ -9,4 +9,8 @@ mod relax;
 mod spec;
 mod surfaces;
 
+pub(crate) use distribution::{
+    ChargeDistribution, ChargeStream, RadiusDistribution, RadiusStream, read_charges_of_feed, read_radii,
+};
+pub(crate) use region::read_volume;
 pub(crate) use spec::{GenerateContext, generate};

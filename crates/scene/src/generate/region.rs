@@ -5,7 +5,7 @@ use super::surfaces::Surfaces;
 use crate::SceneError;
 use crate::table::SceneTable;
 use crate::tree::Value;
-use amberfield_core::{Axis, Domain, Wall, WallShape};
+use amberfield_core::{Axis, Domain, FeedRegion, Wall, WallShape};
 use nalgebra::Vector3;
 use rand::{RngExt, SeedableRng};
 use rand_chacha::ChaCha8Rng;
@@ -71,6 +71,24 @@ pub(super) fn read_region(
         },
     };
     Region::new(shape, domain, context.walls).map_err(|problem| parent.bad("region", problem))
+}
+
+/// Reads a box or a cylinder from a table `region`, in which a feed's grains appear.
+pub(crate) fn read_volume(
+    parent: &SceneTable<'_>,
+    table: &SceneTable<'_>,
+) -> Result<FeedRegion, SceneError> {
+    let shape = match (table.table("box")?, table.table("cylinder")?) {
+        (Some(block), None) => read_box(&block)?,
+        (None, Some(cylinder)) => read_cylinder(&cylinder)?,
+        _ => return Err(parent.bad("region", "give exactly one of box, cylinder, stl")),
+    };
+    Ok(match shape {
+        RegionShape::Box { min, max } => FeedRegion::Box { min, max },
+        RegionShape::Cylinder { base, axis, radius, length } => {
+            FeedRegion::Cylinder { base, axis, radius, length }
+        }
+    })
 }
 
 fn read_box(table: &SceneTable<'_>) -> Result<RegionShape, SceneError> {

@@ -22,6 +22,8 @@ pub enum Form {
     Vector(Range),
     /// Numbers, each in a range.
     Numbers(Range),
+    /// Pairs of numbers, each in its range.
+    Pairs(Range, Range),
     /// Three whole numbers, each from the first to the second.
     Wholes(i64, i64),
     /// List of texts.
@@ -70,6 +72,9 @@ impl Form {
             Self::Words(words) => format!("a list of some of {}", quoted(words)),
             Self::Vector(range) => format!("three numbers [x, y, z], each {range}{unit}"),
             Self::Numbers(range) => format!("an array of numbers, each {range}{unit}"),
+            Self::Pairs(first, second) => {
+                format!("an array of pairs [a, b], a {first}{unit}, b {second}")
+            }
             Self::Wholes(least, most) => format!("three whole numbers, each from {least} to {most}"),
             Self::Texts => "a list of texts in quotes".to_owned(),
             Self::Anything => "a value".to_owned(),
@@ -139,6 +144,7 @@ impl Form {
                     _ => Some(format!("{} is not a number; give {}", item.shown(), self.expected(key.unit))),
                 })
             }
+            (Self::Pairs(first, second), Value::Array(items)) => refuse_pairs(*first, *second, key, items),
             (Self::Wholes(least, most), Value::Array(items)) => {
                 let taken =
                     |item: &Node| matches!(item.value, Value::Integer(n) if (*least..=*most).contains(&n));
@@ -165,6 +171,7 @@ impl Form {
             | Self::Texts
             | Self::Vector(_)
             | Self::Numbers(_)
+            | Self::Pairs(..)
             | Self::Wholes(..)
             | Self::Tables(_) => {
                 matches!(node.value, Value::Array(_))
@@ -188,6 +195,26 @@ fn refuse_number(range: Range, unit: &str, node: &Node) -> Option<String> {
     let problem = if number.is_finite() { "out of range" } else { "not finite" };
     let unit = if unit.is_empty() { String::new() } else { format!(" {unit}") };
     Some(format!("{problem}; give a number {range}{unit}"))
+}
+
+fn refuse_pairs(first: Range, second: Range, key: &Key, items: &[Node]) -> Option<String> {
+    if items.is_empty() {
+        return Some(format!("there is no pair; give {}", key.values()));
+    }
+    items.iter().find_map(|item| {
+        let numbers = match &item.value {
+            Value::Array(pair) => pair.iter().filter_map(Node::number).collect(),
+            _ => Vec::new(),
+        };
+        let is_good =
+            matches!(numbers[..], [a, b] if first.contains(a) && second.contains(b)) && is_pair(&item.value);
+        (!is_good).then(|| format!("{} is none of them; give {}", item.shown(), key.values()))
+    })
+}
+
+/// Tells whether a value is an array of two.
+fn is_pair(value: &Value) -> bool {
+    matches!(value, Value::Array(items) if items.len() == 2)
 }
 
 fn refuse_text(text: &str) -> Option<String> {

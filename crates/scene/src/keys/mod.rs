@@ -8,6 +8,7 @@ mod charge_transfer;
 mod contacts;
 mod domain;
 mod electric_field;
+mod feeds;
 mod form;
 mod gas;
 mod key;
@@ -34,7 +35,9 @@ pub static SCENE: &[Key] = &[
         .without("open space; a run needs it"),
     Key::new("materials", Form::Tables(materials::KEYS), "Materials of grains and walls.")
         .without("none; a run needs one"),
-    Key::new("particles", Form::Table(particles::KEYS), "Grains at the start.").required(),
+    Key::new("particles", Form::Table(particles::KEYS), "Grains at the start.")
+        .without("none; there must be [[feeds]] then"),
+    Key::new("feeds", Form::Tables(feeds::KEYS), "Grains that come while a run goes on.").without("none"),
     Key::new("walls", Form::Tables(walls::KEYS), "Walls that grains touch.").without("none"),
     Key::new("contacts", Form::Table(contacts::KEYS), "Models of contacts.").without("the defaults below"),
     Key::new("time", Form::Table(time::KEYS), "Time step, end and gravity of a run.")

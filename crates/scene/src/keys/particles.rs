@@ -4,7 +4,7 @@ use super::{Form, Key};
 use crate::limits::{CHARGE, COORDINATE, GRAINS, LENGTH, RADIUS, RADIUS_OR_POINT, SPEED};
 use crate::tree::Range;
 
-static BOX: &[Key] = &[
+pub(super) static BOX: &[Key] = &[
     Key::new("min_m", Form::Vector(COORDINATE), "Lower corner.")
         .unit("m")
         .required()
@@ -17,7 +17,7 @@ static BOX: &[Key] = &[
         .also(&["max", "to_m", "upper", "size_m"]),
 ];
 
-static CYLINDER: &[Key] = &[
+pub(super) static CYLINDER: &[Key] = &[
     Key::new("base_m", Form::Vector(COORDINATE), "Centre of the lower end.")
         .unit("m")
         .required()
@@ -62,7 +62,7 @@ const fn radius(name: &'static str, meaning: &'static str) -> Key {
     Key::new(name, Form::Number(RADIUS), meaning).unit("m").example("5e-4")
 }
 
-static RADII: &[Key] = &[
+pub(super) static RADII: &[Key] = &[
     Key::new("constant", Form::Number(RADIUS_OR_POINT), "One radius for all.").unit("m").example("5e-4"),
     Key::new(
         "uniform",
@@ -139,6 +139,14 @@ static RADII: &[Key] = &[
     )
     .example("{ radius_m = [4e-4, 6e-4], fraction = [0.7, 0.3] }")
     .also(&["list", "bimodal", "discrete"]),
+    Key::new(
+        "by_mass",
+        Form::Pairs(RADIUS, Range::positive(1e12)),
+        "Several radii, each with its share by mass: pairs [radius, share].",
+    )
+    .unit("m")
+    .example("[[4e-4, 0.3], [6e-4, 0.7]]")
+    .also(&["mass_fraction", "sieve", "mass", "mass_fractions"]),
 ];
 
 static CHARGES: &[Key] = &[

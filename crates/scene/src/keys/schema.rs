@@ -67,6 +67,12 @@ fn form(form: &Form) -> Map<String, Value> {
             json!({ "type": "array", "items": number(*range), "minItems": 3, "maxItems": 3 })
         }
         Form::Numbers(range) => json!({ "type": "array", "items": number(*range) }),
+        Form::Pairs(first, second) => json!({
+            "type": "array", "minItems": 1,
+            "items": {
+                "type": "array", "minItems": 2, "maxItems": 2, "items": [number(*first), number(*second)],
+            },
+        }),
         Form::Wholes(least, most) => json!({
             "type": "array", "minItems": 3, "maxItems": 3,
             "items": { "type": "integer", "minimum": least, "maximum": most },

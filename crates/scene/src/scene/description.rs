@@ -1,7 +1,7 @@
 //! Description of a scene: its validated content.
 
 use super::physics::Physics;
-use amberfield_core::{Domain, FieldSettings, Gas, Material, Particles, RollingModel, TimeSettings, Wall};
+use amberfield_core::{Domain, Feeds, FieldSettings, Gas, Material, Particles, RollingModel, TimeSettings, Wall};
 use serde::{Deserialize, Serialize};
 use std::path::PathBuf;
 
@@ -35,6 +35,8 @@ pub struct Scene {
     pub wall_patches: Vec<Option<String>>,
     /// Particles at the start.
     pub particles: Particles,
+    /// Grains that come while the run goes on.
+    pub feeds: Feeds,
     /// Names of the groups; group 0 is `all`.
     pub groups: Vec<String>,
     /// Settings of the motion; absent only where no motion is asked for.

@@ -4,6 +4,7 @@ mod command;
 mod description;
 mod domain;
 mod electric_field;
+mod feeds;
 mod gas;
 mod input;
 mod others;

@@ -8,7 +8,7 @@ use crate::particles::{
 };
 use crate::source::SceneSource;
 use crate::table::SceneTable;
-use amberfield_core::{Axis, Domain, OnExit, Wall};
+use amberfield_core::{Axis, Domain, OnExit, Particles, Wall};
 
 /// Relative difference of two periods that are one: files may have six digits.
 const SAME_PERIOD: f64 = 1e-5;
@@ -37,12 +37,20 @@ pub(super) fn read_section(
     allow_points: bool,
     source: &mut SceneSource,
 ) -> Result<ParticlesSection, SceneError> {
-    let table = document.table("particles")?;
-    let table = document.need(
-        table,
-        "particles",
-        "add [particles] with file = \"grains.csv\" or generate = { … }",
-    )?;
+    let has_feeds = document.has("feeds") && !allow_points;
+    let nothing =
+        || ReadParticles { particles: Particles::default(), groups: vec!["all".to_owned()], has_charge: false };
+    let table = match document.table("particles")? {
+        Some(table) => table,
+        None if has_feeds => {
+            let (on_exit, allow_overlap, warnings) = Default::default();
+            return Ok(ParticlesSection { read: nothing(), on_exit, allow_overlap, warnings });
+        }
+        None => {
+            let advice = "add [particles] with file = \"grains.csv\" or generate = { … }";
+            return Err(document.missing("particles", advice));
+        }
+    };
     let on_exit =
         table.word("on_exit", &[("stop", OnExit::Stop), ("delete", OnExit::Delete)])?.unwrap_or_default();
     let allow_overlap = table.boolean("allow_overlap")?.unwrap_or(false);
@@ -51,6 +59,7 @@ pub(super) fn read_section(
         (Some(_), Some(_)) => {
             return Err(table.bad("generate", "file is given too; give exactly one of file, generate"));
         }
+        (None, None) if has_feeds => nothing(),
         (None, None) => return Err(table.missing("file", "give file = \"grains.csv\" or generate = { … }")),
         (Some(file), None) => {
             let context = GrainContext { domain, materials: names(&table, materials)?, allow_points };

@@ -107,5 +107,6 @@ fn is_technical(key: &str) -> bool {
 
 fn names_a_file(key: &str) -> bool {
     let is_wall = |file: &str| key.starts_with("walls[") && key.ends_with(&format!("].{file}"));
-    FILES.iter().any(|file| key == *file || is_wall(file))
+    let is_face = key.starts_with("feeds[") && key.ends_with("].region.stl");
+    is_face || FILES.iter().any(|file| key == *file || is_wall(file))
 }

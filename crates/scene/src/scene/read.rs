@@ -3,6 +3,7 @@
 use super::description::{Purpose, Scene};
 use super::domain::read_domain;
 use super::electric_field::read_electric_field;
+use super::feeds::{FeedContext, ReadFeeds, read_feeds};
 use super::gas::read_gas;
 use super::input::SceneInput;
 use super::others::{read_charge_transfer, read_contacts, read_output, read_solver};
@@ -15,6 +16,7 @@ use crate::SceneError;
 use crate::error::Problems;
 use crate::keys::SCENE;
 use crate::materials::{Materials, read_materials};
+use crate::particles::ReadParticles;
 use crate::source::{SceneSource, read_text};
 use crate::table::SceneTable;
 use crate::tree::{Entries, Node, Origin, Value, apply_overrides, parse_document};
@@ -140,8 +142,17 @@ fn read_sections(
     };
     let materials = Materials { ignored: list.is_empty(), list };
     let walls = read_walls(document, &materials, solver.as_ref(), source)?;
-    let section = read_section(document, domain.as_ref(), &materials, &walls.walls, !motion, source)?;
+    let mut section = read_section(document, domain.as_ref(), &materials, &walls.walls, !motion, source)?;
     let time = read_time(document, section.on_exit, section.allow_overlap)?;
+    let fed = match &time {
+        Some(time) if motion => {
+            let ReadParticles { particles, groups, .. } = &mut section.read;
+            let (materials, end_s) = (&materials, time.end_s);
+            read_feeds(document, FeedContext { materials, particles, groups, end_s, source })?
+        }
+        _ => ReadFeeds::default(),
+    };
+    let has_charge = section.read.has_charge || fed.has_charge;
     let mut scene = Scene {
         title: "scene".to_owned(),
         domain,
@@ -150,6 +161,7 @@ fn read_sections(
         walls: walls.walls,
         wall_patches: walls.patches,
         particles: section.read.particles,
+        feeds: fed.feeds,
         groups: section.read.groups,
         time,
         electric_field,
@@ -161,16 +173,17 @@ fn read_sections(
         resolved: String::new(),
         physics: Physics::default(),
     };
-    check_together(document, &mut scene, section.read.has_charge)?;
+    check_together(document, &mut scene, has_charge)?;
     Ok(scene)
 }
 
 /// Keys whose values are paths relative to the scene's folder.
-const PATHS: [&[&str]; 4] = [
+const PATHS: [&[&str]; 5] = [
     &["particles", "file"],
     &["particles", "generate", "charge_C", "from_file"],
     &["solver", "openfoam_case"],
     &["walls", "*", "stl"],
+    &["feeds", "*", "region", "stl"],
 ];
 
 /// Text of the scene as TOML, with absolute paths of files so that it can be run from any folder.

@@ -50,7 +50,9 @@ pub(super) fn check_sections(
     if !document.has("solver") {
         need("domain", "add [domain] with min_m, max_m and [domain.boundary]");
     }
-    need("particles", "add [particles] with file = \"grains.csv\" or generate = { … }");
+    if !(motion && document.has("feeds")) {
+        need("particles", "add [particles] with file = \"grains.csv\" or generate = { … }");
+    }
     if motion {
         need("time", "add [time] with step_s and end_s; a run needs it");
         need(

@@ -265,6 +265,19 @@ impl<'a> SceneTable<'a> {
         }))
     }
 
+    /// Pairs of numbers, each in its range; other values are none.
+    pub(crate) fn pairs(&self, name: &str) -> Result<Option<Vec<[f64; 2]>>, SceneError> {
+        let Some(Node { value: Value::Array(items), .. }) = self.checked(name)? else { return Ok(None) };
+        let pair = |item: &Node| match &item.value {
+            Value::Array(pair) => {
+                let numbers: Vec<f64> = pair.iter().filter_map(Node::number).collect();
+                <[f64; 2]>::try_from(numbers).ok()
+            }
+            _ => None,
+        };
+        Ok(Some(items.iter().filter_map(pair).collect()))
+    }
+
     /// Array of numbers under a key that is required.
     pub(crate) fn need_numbers(&self, name: &str) -> Result<Vec<f64>, SceneError> {
         let numbers = self.numbers(name)?;

@@ -7,6 +7,7 @@ mod bad_scenes;
 mod common;
 mod dialects;
 mod dumps;
+mod feeds;
 mod generators;
 mod good_scenes;
 mod keys;

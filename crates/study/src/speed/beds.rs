@@ -112,6 +112,7 @@ fn jittered(count: usize, fraction: f64, jitter: f64) -> Setup {
         },
         gas: None,
         field: None,
+        feeds: Default::default(),
     }
 }
 

@@ -10,6 +10,7 @@ mod touches;
 pub use loads::WallLoad;
 pub(crate) use touches::{Met, Touch, Touching};
 
+use crate::contacts::cells::NO_SHIFT;
 use crate::contacts::material_pairs::{Features, PairTable};
 use crate::contacts::memory::{Growth, Spring, WallHistory};
 use crate::contacts::walls::parts::{Part, surfaces_of};
@@ -227,6 +228,18 @@ impl ContactWalls {
         let mut near = Vec::new();
         self.surfaces.within(place, distance, &mut near);
         self.surfaces.planes_within(place, distance, &mut near);
+        !near.is_empty()
+    }
+
+    /// Whether a grain of a radius [m] touches a wall at a place [m], or is behind a plane.
+    pub(crate) fn are_touched_by(&self, domain: &Domain, place: Vector3<f64>, radius: f64) -> bool {
+        let mut near = Vec::new();
+        for (shift, image) in near::images(domain, &self.shifts, place, radius) {
+            self.surfaces.within(image, radius, &mut near);
+            if shift == NO_SHIFT {
+                self.surfaces.planes_within(image, radius, &mut near);
+            }
+        }
         !near.is_empty()
     }
 

@@ -72,6 +72,7 @@ fn built(
         },
         gas: None,
         field: Some(FieldStageSetup { transfer, ..field }),
+        feeds: Default::default(),
     };
     Simulation::new(setup).expect("a good scene")
 }

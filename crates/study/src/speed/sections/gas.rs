@@ -97,6 +97,7 @@ fn ours(root: &Path, place: &Path, lattice: &[[f64; 3]], looks: (f64, usize)) ->
         time: scene.time.context("the case has a time")?,
         gas: Some(GasSetup { gas, solver: Some(solver_of(foam, place)?) }),
         field: None,
+        feeds: Default::default(),
     })?;
     let begun = Instant::now();
     let mut rows = Vec::new();

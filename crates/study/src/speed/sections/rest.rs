@@ -195,6 +195,7 @@ fn start(restitution: f64, young_pa: f64, bed: u64) -> Setup {
         },
         gas: None,
         field: None,
+        feeds: Default::default(),
     }
 }
 

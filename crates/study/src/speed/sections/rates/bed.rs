@@ -33,6 +33,7 @@ impl Bed {
             time: time.clone(),
             gas: None,
             field: None,
+            feeds: Default::default(),
         };
         Ok(Self { plain, settings, end_s: time.end_s })
     }
