@@ -6,6 +6,10 @@ use amberfield_tests::Workbench;
 use serde_json::Value;
 use std::collections::BTreeSet;
 
+/// Feed of the scene.
+const FEED: &str = "\n[[feeds]]\nname = \"more\"\nrate_per_s = 1e4\ncount = 2\nradius_m = 1e-4\n\
+    region = { box = { min_m = [5e-4, 5e-4, 2.5e-3], max_m = [1.5e-3, 1.5e-3, 3.5e-3] } }\n";
+
 /// Scene with everything on that needs no OpenFOAM.
 fn everything() -> String {
     let walls = "material = \"glass\"\ncharging = \"insulating\"\n[[walls]]";
@@ -26,6 +30,7 @@ fn everything() -> String {
         )
         .replace("[\"vtk\", \"csv\"]", "[\"vtk\", \"csv\", \"png\"]")
         .replace("velocity_m_s = [0.1,", "velocity_m_s = [2.0,")
+        + FEED
 }
 
 /// Paths of all files in a folder and below, from the folder.
@@ -84,7 +89,7 @@ fn check(bench: &Workbench, folder: &str) -> BTreeSet<&'static str> {
         // The scene has everything on, so that nothing of the table may be missing either.
         for name in file.names(|_| true).filter(|name| !name.contains("STAGE") && !name.contains("NAME")) {
             let is_of_others =
-                ["solver_iterations", "energies_at_end", "field", "field_intervals", "limited"];
+                ["solver_iterations", "energies_at_end", "field", "field_intervals", "limited", "books"];
             let is_there = found.iter().any(|other| other == name) || is_of_others.contains(&name);
             assert!(is_there || name.contains("LIMIT"), "{path}: {name} is in the table and not in the file");
         }

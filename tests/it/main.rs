@@ -8,6 +8,7 @@ mod convert;
 mod errors_page;
 mod explain_and_doctor;
 mod faults;
+mod feeds;
 mod field;
 mod files;
 mod host_library;

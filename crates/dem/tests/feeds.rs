@@ -271,7 +271,8 @@ fn an_empty_box_is_filled_and_empties_again() {
 /// Difference of a sum of two numbers from a third, over their size.
 fn off(book: &Book) -> f64 {
     let Book { start, fed, left, inside, .. } = book;
-    let mass = (inside.mass - (start.mass + fed.mass - left.mass)).abs() / (start.mass + fed.mass).max(1e-300);
+    let mass =
+        (inside.mass - (start.mass + fed.mass - left.mass)).abs() / (start.mass + fed.mass).max(1e-300);
     let sizes = [start, fed, left, inside].map(|tally: &Tally| tally.charge.abs()).iter().sum::<f64>();
     let charge = book.charge_off().abs() / (sizes + book.gained.abs() + 1e-15);
     mass.max(charge)

@@ -97,8 +97,7 @@ fn of_checkpoint(path: &Path, choices: &SnapshotOptions) -> Result<Snapshot, Fai
     };
     let mut all = scene.particles.clone();
     all.append(&scene.feeds.grains);
-    let particles =
-        saved.state.particles(&all, domain).map_err(|error| Failure::at_start(&error))?;
+    let particles = saved.state.particles(&all, domain).map_err(|error| Failure::at_start(&error))?;
     let mut snapshot = Snapshot::of(particles);
     snapshot.step = Some(saved.state.step_index());
     snapshot.time_s = Some(saved.state.time_s());

@@ -58,8 +58,9 @@ fn books(session: &Session<'_>, books: &[Book]) -> Value {
     let materials: Map<String, Value> =
         materials.map(|(material, of)| (material.name.clone(), book(of))).collect();
     let feeds = session.simulation.feeds().into_iter();
-    let feeds: Map<String, Value> =
-        feeds.map(|feed| (feed.name, json!({ "fed": tally(&feed.fed), "owed": tally(&feed.owed) }))).collect();
+    let feeds: Map<String, Value> = feeds
+        .map(|feed| (feed.name, json!({ "fed": tally(&feed.fed), "owed": tally(&feed.owed) })))
+        .collect();
     json!({ "all": book(&Book::sum(books)), "materials": materials, "feeds": feeds })
 }
 

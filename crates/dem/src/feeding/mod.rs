@@ -170,7 +170,11 @@ impl Feeding {
             .zip(list)
             .map(|(number, of)| Queue {
                 places: Places::of(&of),
-                grains: (0..).zip(&feed).filter(|(_, f)| **f == number).map(|(k, _)| starters as u32 + k).collect(),
+                grains: (0..)
+                    .zip(&feed)
+                    .filter(|(_, f)| **f == number)
+                    .map(|(k, _)| starters as u32 + k)
+                    .collect(),
                 feed: of,
                 told: false,
             })

@@ -54,7 +54,8 @@ impl Simulation {
             })
             .collect();
         // Added up in the order of the set-up, as the other sums are.
-        let mut originals: Vec<usize> = self.grains.original.iter().map(|original| original.index()).collect();
+        let mut originals: Vec<usize> =
+            self.grains.original.iter().map(|original| original.index()).collect();
         originals.sort_unstable();
         for original in originals {
             let (mass, charge) = (self.particles.mass(original), self.particles.charge[original]);

@@ -167,7 +167,8 @@ impl Simulation {
             self.contacts.neighbours.pairs().map(|pair| (pair.i, pair.j)),
         );
         let later = self.feeding.iter().flat_map(Feeding::still_to_come).filter(|grain| field.member[*grain]);
-        let like = later.map(|grain| electric_stiffness_of(&self.domain, &self.particles, grain, field.permittivity()));
+        let like = later
+            .map(|grain| electric_stiffness_of(&self.domain, &self.particles, grain, field.permittivity()));
         Some(like.fold(now, Stiffness::tighter))
     }
 

@@ -74,10 +74,7 @@ pub(super) fn read_region(
 }
 
 /// Reads a box or a cylinder from a table `region`, in which a feed's grains appear.
-pub(crate) fn read_volume(
-    parent: &SceneTable<'_>,
-    table: &SceneTable<'_>,
-) -> Result<FeedRegion, SceneError> {
+pub(crate) fn read_volume(parent: &SceneTable<'_>, table: &SceneTable<'_>) -> Result<FeedRegion, SceneError> {
     let shape = match (table.table("box")?, table.table("cylinder")?) {
         (Some(block), None) => read_box(&block)?,
         (None, Some(cylinder)) => read_cylinder(&cylinder)?,

@@ -169,9 +169,13 @@ pub(super) static KEYS: &[Key] = &[
     .default("0.0")
     .example("0.05")
     .also(&["spread", "velocity_std", "velocity_spread"]),
-    Key::new("seed", Form::Whole(0, i64::MAX), "Seed of the random numbers; each feed has its own by its name.")
-        .default("0")
-        .example("7"),
+    Key::new(
+        "seed",
+        Form::Whole(0, i64::MAX),
+        "Seed of the random numbers; each feed has its own by its name.",
+    )
+    .default("0")
+    .example("7"),
     Key::new("group", Form::Text, "Group that electric_field.particle_group can name.")
         .without("the group \"all\" alone")
         .example("\"fines\""),

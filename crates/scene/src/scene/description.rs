@@ -1,7 +1,9 @@
 //! Description of a scene: its validated content.
 
 use super::physics::Physics;
-use amberfield_core::{Domain, Feeds, FieldSettings, Gas, Material, Particles, RollingModel, TimeSettings, Wall};
+use amberfield_core::{
+    Domain, Feeds, FieldSettings, Gas, Material, Particles, RollingModel, TimeSettings, Wall,
+};
 use serde::{Deserialize, Serialize};
 use std::path::PathBuf;
 

@@ -38,8 +38,11 @@ pub(super) fn read_section(
     source: &mut SceneSource,
 ) -> Result<ParticlesSection, SceneError> {
     let has_feeds = document.has("feeds") && !allow_points;
-    let nothing =
-        || ReadParticles { particles: Particles::default(), groups: vec!["all".to_owned()], has_charge: false };
+    let nothing = || ReadParticles {
+        particles: Particles::default(),
+        groups: vec!["all".to_owned()],
+        has_charge: false,
+    };
     let table = match document.table("particles")? {
         Some(table) => table,
         None if has_feeds => {

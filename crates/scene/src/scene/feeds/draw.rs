@@ -39,7 +39,8 @@ pub(super) fn draw(specs: Vec<FeedSpec>, first_id: u64) -> Result<Feeds, SceneEr
             name: spec.feed.name.clone(),
             problem,
         };
-        let number = u16::try_from(number).map_err(|_| refused("more than 65536 feeds; merge some".to_owned()))?;
+        let number =
+            u16::try_from(number).map_err(|_| refused("more than 65536 feeds; merge some".to_owned()))?;
         let before = all.len();
         draw_one(spec, number, &mut all).map_err(refused)?;
         if all.len() == before {

@@ -4,7 +4,9 @@ mod draw;
 
 use crate::SceneError;
 use crate::error::Problems;
-use crate::generate::{ChargeDistribution, RadiusDistribution, read_charges_of_feed, read_radii, read_volume};
+use crate::generate::{
+    ChargeDistribution, RadiusDistribution, read_charges_of_feed, read_radii, read_volume,
+};
 use crate::materials::Materials;
 use crate::source::SceneSource;
 use crate::stl::read_stl;
@@ -112,13 +114,17 @@ fn read_feed(table: &SceneTable<'_>, context: &mut FeedContext<'_>) -> Result<Fe
             return Err(table.bad("rate_per_s", "rate_kg_s is given too; give exactly one of them"));
         }
         (None, None) => {
-            return Err(table.missing("rate_kg_s", "give rate_kg_s in kg/s, or rate_per_s in grains per second"));
+            return Err(
+                table.missing("rate_kg_s", "give rate_kg_s in kg/s, or rate_per_s in grains per second")
+            );
         }
     };
     let start_s = table.number("start_s")?.unwrap_or(0.0);
     let end_s = table.number("end_s")?;
     if let Some(end_s) = end_s.filter(|end_s| *end_s <= start_s) {
-        return Err(table.bad("end_s", format!("{end_s} s is not after start_s = {start_s} s; give a later end")));
+        return Err(
+            table.bad("end_s", format!("{end_s} s is not after start_s = {start_s} s; give a later end"))
+        );
     }
     let charges = match (table.has("charge_C"), table.has("charge_C_kg")) {
         (true, true) => {
