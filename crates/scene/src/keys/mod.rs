@@ -37,7 +37,6 @@ pub static SCENE: &[Key] = &[
         .without("none; a run needs one"),
     Key::new("particles", Form::Table(particles::KEYS), "Grains at the start.")
         .without("none; there must be [[feeds]] then"),
-    Key::new("feeds", Form::Tables(feeds::KEYS), "Grains that come while a run goes on.").without("none"),
     Key::new("walls", Form::Tables(walls::KEYS), "Walls that grains touch.").without("none"),
     Key::new("contacts", Form::Table(contacts::KEYS), "Models of contacts.").without("the defaults below"),
     Key::new("time", Form::Table(time::KEYS), "Time step, end and gravity of a run.")
@@ -49,6 +48,7 @@ pub static SCENE: &[Key] = &[
     Key::new("solver", Form::Table(solver::KEYS), "OpenFOAM case that computes the far field or a flow.")
         .without("the internal grid computes the field"),
     Key::new("gas", Form::Table(gas::KEYS), "Gas around the grains.").without("no gas"),
+    Key::new("feeds", Form::Tables(feeds::KEYS), "Grains that come while a run goes on.").without("none"),
     Key::new("output", Form::Table(output::KEYS), "What a run writes, and how often.")
         .without("the defaults below"),
 ];
