@@ -96,8 +96,8 @@ pub enum DemError {
     },
     /// A feed finds no place for a grain.
     #[error(
-        "feed \"{feed}\" finds no place for grain {id} at t = {time_s:e} s, and {owed} of its grains are due; \
-         make its region larger, its rate smaller or velocity_m_s faster, or set on_blocked = \"wait\""
+        "feed \"{feed}\" finds no place for grain {id} at t = {time_s:e} s, and {owed} of its grains are \
+         due; make its region larger, its rate smaller or velocity_m_s faster, or set on_blocked = \"wait\""
     )]
     Blocked {
         /// Name of the feed.

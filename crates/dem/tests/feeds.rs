@@ -281,8 +281,8 @@ fn off(book: &Book) -> f64 {
 proptest! {
     #![proptest_config(ProptestConfig { cases: 12, ..ProptestConfig::default() })]
 
-    /// What is inside is what was there and came, less what left, for every material: number, mass and charge,
-    /// with what contacts moved.
+    /// Grains inside are those that were there and came, less those that left, for every material: number,
+    /// mass and charge, with what contacts moved.
     #[test]
     fn books_close(
         seed in 0_u64..1000, every in 1.0..12.0_f64, difference in -0.5..0.5_f64, top in 20.0..46.0_f64,

@@ -61,8 +61,8 @@ fn check_region(feed: &Feed, setup: &Setup) -> Result<(), DemError> {
         let slack = SLACK * domain.extent()[k];
         if low[k] < domain.min()[k] - slack || high[k] > domain.max()[k] + slack {
             return Err(bad(format!(
-                "feed \"{name}\": its region reaches from {} to {} m along {axis}, beyond the domain from {} \
-                 to {} m; shrink the region or enlarge the domain",
+                "feed \"{name}\": its region reaches from {} to {} m along {axis}, beyond the domain from \
+                 {} to {} m; shrink the region or enlarge the domain",
                 low[k],
                 high[k],
                 domain.min()[k],
@@ -72,8 +72,8 @@ fn check_region(feed: &Feed, setup: &Setup) -> Result<(), DemError> {
     }
     if matches!(feed.region, FeedRegion::Face(_)) && feed.velocity.norm() == 0.0 {
         return Err(bad(format!(
-            "feed \"{name}\": velocity_m_s is zero, and grains come through a face with their velocity; give \
-             one, into the domain"
+            "feed \"{name}\": velocity_m_s is zero, and grains come through a face with their velocity; \
+             give one, into the domain"
         )));
     }
     Ok(())
@@ -94,14 +94,14 @@ fn check_size(feed: &Feed, largest: f64) -> Result<(), DemError> {
         return Ok(());
     }
     Err(bad(format!(
-        "feed \"{}\": a grain of radius {largest:e} m does not fit into its region; make the region larger or \
-         radius_m smaller",
+        "feed \"{}\": a grain of radius {largest:e} m does not fit into its region; make the region \
+         larger or radius_m smaller",
         feed.name
     )))
 }
 
-/// Refuses a rate [m³/s] that is more than grains can carry out of the region, even if they filled it and left
-/// it as fast as they fall.
+/// Refuses a rate [m³/s] that is more than grains can carry out of the region, even if they filled it and
+/// left it as fast as they fall.
 fn check_rate(feed: &Feed, rate: f64, setup: &Setup) -> Result<(), DemError> {
     let gravity = setup.time.gravity_m_s2;
     let direction = [feed.velocity, gravity].into_iter().find_map(|v| v.try_normalize(0.0));
@@ -118,9 +118,9 @@ fn check_rate(feed: &Feed, rate: f64, setup: &Setup) -> Result<(), DemError> {
         return Ok(());
     }
     Err(bad(format!(
-        "feed \"{}\": it brings {rate:.3e} m³/s of grains, more than the {most:.3e} m³/s that its region lets \
-         through at {speed:.3e} m/s; make rate_kg_s or rate_per_s smaller, the region larger, or velocity_m_s \
-         faster",
+        "feed \"{}\": it brings {rate:.3e} m³/s of grains, more than the {most:.3e} m³/s that its region \
+         lets through at {speed:.3e} m/s; make rate_kg_s or rate_per_s smaller, the region larger, or \
+         velocity_m_s faster",
         feed.name
     )))
 }

@@ -155,7 +155,8 @@ impl Simulation {
         }
     }
 
-    /// Stiffness limits of the present pairs, and of grains that have yet to come with their like; `None` without a field.
+    /// Stiffness limits of the present pairs, and of grains that have yet to come with their like; `None`
+    /// without a field.
     pub(super) fn electric_stiffness(&self) -> Option<Stiffness> {
         let field = self.field.as_ref()?;
         let now = electric_stiffness(

@@ -5,6 +5,7 @@
 mod column;
 mod field;
 mod file;
+mod history;
 mod page;
 mod run;
 mod study;
@@ -12,10 +13,11 @@ mod study;
 pub use column::{Column, When};
 pub use field::{FIELD, FIELD_REPORT, TUNE};
 pub use file::{FileTable, Form};
+pub use history::HISTORY;
 pub use page::{page, section};
 pub use run::{
-    CHARGE_HISTOGRAM, ELECTRIC_FORCE, EXITS, GRAINS_CSV, GRAINS_VTU, HISTORY, LOG, SUMMARY, TUNING,
-    WALL_CHARGE, WALL_FORCES,
+    CHARGE_HISTOGRAM, ELECTRIC_FORCE, EXITS, GRAINS_CSV, GRAINS_VTU, LOG, SUMMARY, TUNING, WALL_CHARGE,
+    WALL_FORCES,
 };
 pub use study::{ENERGIES, EXTREMES, MOTIONS, POINTS};
 

@@ -1,5 +1,6 @@
 //! Files of `amberfield run`.
 
+use super::history::HISTORY;
 use super::{Column, FileTable, Form, When};
 
 pub(super) static FILES: &[&FileTable] = &[
@@ -24,91 +25,11 @@ pub(super) static FILES: &[&FileTable] = &[
 ];
 
 /// Step and time, with which rows of several tables begin.
-const STEP: Column = Column::new(&["step"], "", "Number of the step; 0 is the start.");
-const TIME: Column = Column::new(&["time_s"], "s", "Time of the step.");
+pub(super) const STEP: Column = Column::new(&["step"], "", "Number of the step; 0 is the start.");
+pub(super) const TIME: Column = Column::new(&["time_s"], "s", "Time of the step.");
 
 /// Name of the array of electric forces.
 pub const ELECTRIC_FORCE: &str = "electric_force_N";
-
-/// Energies, charges, counts and clocks over time.
-pub static HISTORY: FileTable = FileTable::csv(
-    "history.csv",
-    "Energies, charges, counts and clocks, a row each `output.history_every_s`.",
-    &[
-        STEP,
-        TIME,
-        Column::new(&["kinetic_J"], "J", "Kinetic energy of all grains, rotation included."),
-        Column::new(
-            &["contact_J"],
-            "J",
-            "Elastic energy of all contacts: normal, tangential and rolling springs.",
-        ),
-        Column::new(&["gravity_J"], "J", "Energy of gravity, −Σ m g·x, zero at the origin.")
-            .when(When::Gravity),
-        Column::new(
-            &["electric_J"],
-            "J",
-            "Energy of the charges in their own field and the external one, ½ Σ q (V + V_external).",
-        )
-        .when(When::Field),
-        Column::new(&["net_charge_C"], "C", "Sum of the charges of all grains.").when(When::Field),
-        Column::new(
-            &["contact_charge_C"],
-            "C",
-            "Sum of the sizes of all charges that contacts have moved since the start.",
-        )
-        .when(When::Transfer),
-        Column::new(&["wall_charge_C"], "C", "Charge that all walls have taken since the start.")
-            .when(When::ChargedWalls),
-        Column::new(&["limited"], "", "Number of grains whose electric force is limited in this step.")
-            .when(When::Limit),
-        Column::new(&["contacts"], "", "Number of contacts, those with walls included."),
-        Column::new(
-            &["collisions"],
-            "",
-            "Number of contacts that have begun since the start, those with walls included.",
-        )
-        .when(When::Transfer),
-        Column::new(&["grains"], "", "Number of grains that are there.").when(When::Feeds),
-        Column::new(&["grains_kg"], "kg", "Their mass.").when(When::Feeds),
-        Column::new(&["fed_grains"], "", "Number of grains that feeds have brought.").when(When::Feeds),
-        Column::new(&["fed_kg"], "kg", "Their mass.").when(When::Feeds),
-        Column::new(&["fed_C"], "C", "Charge with which they came.").when(When::Feeds),
-        Column::new(&["owed_grains"], "", "Number of grains that were due and have found no place yet.")
-            .when(When::Feeds),
-        Column::new(&["owed_kg"], "kg", "Their mass, the feeds' shortfall.").when(When::Feeds),
-        Column::new(&["left_grains"], "", "Number of grains that have left.").when(When::Feeds),
-        Column::new(&["left_kg"], "kg", "Their mass.").when(When::Feeds),
-        Column::new(&["left_C"], "C", "Charge that they took along.").when(When::Feeds),
-        Column::new(
-            &["grains_NAME", "fed_grains_NAME", "left_grains_NAME"],
-            "",
-            "Numbers of grains of a material that are there, came and left.",
-        )
-        .when(When::Feeds),
-        Column::new(
-            &["grains_kg_NAME", "fed_kg_NAME", "left_kg_NAME"],
-            "kg",
-            "Masses of grains of a material that are there, came and left.",
-        )
-        .when(When::Feeds),
-        Column::new(
-            &["grains_C_NAME", "fed_C_NAME", "left_C_NAME", "gained_C_NAME"],
-            "C",
-            "Charges of grains of a material that are there, came and left, and what they gained at contacts.",
-        )
-        .when(When::Feeds),
-        Column::new(&["solver_iterations"], "", "Iterations of the field solver's last solve.")
-            .when(When::Solver),
-        Column::new(&["wall_s"], "s", "Wall-clock time since the start of the run, earlier parts included."),
-        Column::new(
-            &["wall_s_STAGE"],
-            "s",
-            "Wall-clock time of a stage: integrate, neighbours, contacts, walls, gas, charging or field.",
-        )
-        .when(When::Stage),
-    ],
-);
 
 /// Forces of the grains on each wall.
 pub static WALL_FORCES: FileTable = FileTable::csv(
@@ -318,8 +239,8 @@ pub static SUMMARY: FileTable = FileTable::csv(
                 "books.NAME.inside.grains",
             ],
             "",
-            "Numbers of grains of all materials (`all`) or of one (`materials.NAME`): inside is start and fed \
-             less left.",
+            "Numbers of grains of all materials (`all`) or of one (`materials.NAME`): inside is start and \
+             fed less left.",
         ),
         Column::new(
             &["books.NAME.start.kg", "books.NAME.fed.kg", "books.NAME.left.kg", "books.NAME.inside.kg"],

@@ -184,7 +184,8 @@ fn read_feed_region(table: &SceneTable<'_>, source: &mut SceneSource) -> Result<
     let region = table.need(
         region,
         "region",
-        "give { box = { min_m, max_m } }, { cylinder = { base_m, top_m, radius_m } } or { stl = \"face.stl\" }",
+        "give { box = { min_m, max_m } }, { cylinder = { base_m, top_m, radius_m } } or \
+         { stl = \"face.stl\" }",
     )?;
     let Some(stl) = region.text("stl")? else {
         if region.has("scale") {

@@ -137,10 +137,8 @@ fn start(restitution: f64, young_pa: f64, bed: u64) -> Setup {
             let position = Vector3::from_fn(|axis, _| {
                 let corner = if axis == 2 { 0.0 } else { -HALF };
                 let jitter = 0.05 * RADIUS * places.random_range(-1.0..1.0);
-                corner
-                    + (cell[axis] as f64 + 0.5) * spacing
-                    + jitter
-                    + ELSEWHERE * moved.random_range(-1.0..1.0)
+                let elsewhere = ELSEWHERE * moved.random_range(-1.0..1.0);
+                corner + (cell[axis] as f64 + 0.5) * spacing + jitter + elsewhere
             });
             Grain {
                 id: n as u64,
