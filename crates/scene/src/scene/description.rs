@@ -1,7 +1,9 @@
 //! Description of a scene: its validated content.
 
 use super::physics::Physics;
-use amberfield_core::{Domain, FieldSettings, Gas, Material, Particles, RollingModel, TimeSettings, Wall};
+use amberfield_core::{
+    Cohesion, Domain, FieldSettings, Gas, Material, MaterialPair, Particles, RollingModel, TimeSettings, Wall,
+};
 use serde::{Deserialize, Serialize};
 use std::path::PathBuf;
 
@@ -29,6 +31,10 @@ pub struct Scene {
     pub materials: Vec<Material>,
     /// Model of rolling friction.
     pub rolling_model: RollingModel,
+    /// Model of cohesion.
+    pub cohesion: Cohesion,
+    /// Values of pairs of materials, in the order of the file.
+    pub pairs: Vec<MaterialPair>,
     /// Walls, in the order of the file.
     pub walls: Vec<Wall>,
     /// `OpenFOAM` patch with the same surface, for each wall.

@@ -7,6 +7,7 @@ mod electric_field;
 mod gas;
 mod input;
 mod others;
+mod pairs;
 mod particles;
 mod physics;
 mod read;

@@ -175,9 +175,12 @@ fn start(restitution: f64, young_pa: f64, bed: u64) -> Setup {
             restitution,
             friction: FRICTION,
             rolling_friction: 0.0,
+            surface_energy_j_m2: 0.0,
             work_function_ev: None,
         }],
         rolling_model: RollingModel::default(),
+        cohesion: Default::default(),
+        pairs: Vec::new(),
         particles,
         walls: sides
             .map(|normal| plane(normal, HALF))
