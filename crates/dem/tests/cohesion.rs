@@ -3,12 +3,12 @@
 mod common;
 
 use amberfield_core::{
-    Boundary, ChargeTransfer, Cohesion, FieldSettings, ForceLimit, Material, MaterialId, MaterialPair,
+    Boundary, ChargeTransfer, Cohesion, FieldSettings, ForceLimit, Grain, Material, MaterialId, MaterialPair,
     Method, Vector3, WallCharging,
 };
 use amberfield_dem::{ElectricEnergy, FieldStageSetup, Setup, Simulation};
 use amberfield_laws::{dmt, hertz_mindlin, jkr};
-use common::{RADIUS, floor, grain, lattice, mass, material, mesh_floor, run, setup};
+use common::{RADIUS, floor, grain, mass, material, mesh_floor, run, setup};
 
 /// Surface energy [J/m²]; large, as grains are.
 const GAMMA: f64 = 0.2;
@@ -88,7 +88,7 @@ fn largest_pull_is_the_pull_off_force() {
 #[test]
 fn contact_without_load_has_the_closed_radius() {
     for on_wall in [false, true] {
-        let mut scene = meeting(Cohesion::Jkr, on_wall, 0.1, 1e-3);
+        let scene = meeting(Cohesion::Jkr, on_wall, 0.1, 1e-3);
         let young = young(&scene.materials[0]);
         let mut simulation = Simulation::new(scene).unwrap();
         run(&mut simulation, 60_000);
@@ -254,11 +254,15 @@ fn bad_pairs_are_refused() {
 /// A periodic box of sticky grains that clump, over a floor.
 fn clump(cohesion: Cohesion) -> Setup {
     let side = 1.2e-2;
-    let mut grains = lattice([-side; 3], [side; 3], 2.4 * RADIUS, 0.1, 7);
-    for (number, grain) in grains.iter_mut().enumerate() {
-        grain.radius *= if number % 3 == 0 { 0.7 } else { 1.0 };
-    }
-    let mut scene = setup(grains, sticky(0.5, 0.4, 0.05), 2e-6);
+    let at = |number: u64| -side + 2.4e-3 * (0.5 + number as f64);
+    let speed = |number: u64, factor: f64| 0.2 * (number as f64 * factor).fract() - 0.1;
+    let grains = (0..1000).map(|number| {
+        let position = [number % 10, number / 10 % 10, number / 100].map(at);
+        let velocity = [0.618, 0.414, 0.303].map(|factor| speed(number, factor));
+        let radius = if number % 3 == 0 { 0.7 * RADIUS } else { RADIUS };
+        Grain { radius, ..grain(number, position, velocity) }
+    });
+    let mut scene = setup(grains.collect(), sticky(0.5, 0.4, 0.05), 2e-6);
     scene.cohesion = cohesion;
     let faces = [[Boundary::Periodic; 2], [Boundary::Periodic; 2], [Boundary::Open; 2]];
     let (low, high) = (Vector3::new(-side, -side, -side), Vector3::new(side, side, 2.0 * side));

@@ -30,7 +30,7 @@ mod tests {
 
     #[test]
     fn zero_load_is_where_hertz_bears_the_pull() {
-        let (work, radius, young) = (0.05, 5e-5, 1e7);
+        let (work, radius, young) = (0.05, 5e-5_f64, 1e7);
         // δ₀ = (3 F_c/(4 Y* √R*))^{2/3}
         let overlap = (0.75 * pull_off(work, radius) / (young * radius.sqrt())).powf(2.0 / 3.0);
         let load = hertz_mindlin::normal_force(young, radius, overlap) - pull_off(work, radius);
@@ -39,7 +39,7 @@ mod tests {
 
     #[test]
     fn pull_is_linear_in_work_and_radius() {
-        assert!((pull_off(0.1, 2e-5) / pull_off(0.05, 1e-5) - 4.0).abs() < 1e-14);
+        assert!((pull_off(0.1_f64, 2e-5) / pull_off(0.05, 1e-5) - 4.0).abs() < 1e-14);
         assert_eq!(pull_off(0.0, 1.0), 0.0);
     }
 }

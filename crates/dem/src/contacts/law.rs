@@ -78,6 +78,14 @@ pub(crate) struct Response<T> {
     pub(crate) damping: T,
 }
 
+impl<T: SimdRealField<Element = f64> + Copy> Response<T> {
+    /// Response along the normal alone.
+    #[inline(always)]
+    fn along(force: Vector3<T>, damping: T) -> Self {
+        Self { force, twist: Vector3::zeros(), rolling: Vector3::zeros(), damping }
+    }
+}
+
 /// Inertia of a sphere about its centre over m r².
 const SPHERE_INERTIA: f64 = 2.0 / 5.0;
 /// Inertia of a sphere about its contact over m r².
@@ -110,12 +118,7 @@ where
     let damped = approach + dashpots.forecast * (later - approach);
     let load = elastic.load + dashpots.normal * damped;
     let held = L::held(load, elastic.grip);
-    let mut response = Response {
-        force: normal * -load,
-        twist: Vector3::zeros(),
-        rolling: Vector3::zeros(),
-        damping: dashpots.largest,
-    };
+    let mut response = Response::along(normal * -load, dashpots.largest);
     if FRICTION {
         let sliding = velocity - normal * approach + contact.spin.cross(&normal);
         let stiffness = pair.tangential * contact_radius;

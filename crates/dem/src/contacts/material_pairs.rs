@@ -1,7 +1,8 @@
 //! Constants of every pair of materials, mixed once.
 //!
 //! Y*, G* as in Hertz–Mindlin; restitution: geometric mean; friction and rolling friction: the smaller one
-//! (sources with the laws); work of adhesion: 2√(γ_i γ_j). Values that the scene gives for a pair replace them.
+//! (sources with the laws); work of adhesion: 2√(γ_i γ_j). Values that the scene gives
+//! for a pair replace them.
 
 use amberfield_core::{Cohesion, Material, MaterialId, MaterialPair, RollingModel};
 use amberfield_laws::{

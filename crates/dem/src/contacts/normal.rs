@@ -1,7 +1,7 @@
 //! Laws of the elastic normal force of a contact: Hertz, and with adhesion DMT and JKR.
 //!
-//! Adhesion changes the force along the normal, the contact radius of which stiffnesses and dampings are made,
-//! and the load that friction and rolling friction see: F_n + F_c for DMT, F_n + 2F_c for JKR (Thornton, J.
+//! Adhesion changes the force along the normal, the contact radius of which stiffnesses and dampings are
+//! made, and the load that friction and rolling friction see: F_n + F_c for DMT, F_n + 2F_c for JKR (Thornton, J.
 //! Phys. D 24, 1942 (1991)). Everything else of a contact is `crate::contacts::law`, for all of them.
 
 use crate::contacts::material_pairs::PairConstants;
@@ -16,7 +16,7 @@ pub(crate) struct Elastic<T> {
     pub(crate) contact_radius: T,
     /// Force that pushes the bodies apart [N].
     pub(crate) load: T,
-    /// What friction sees beside the load [N]; of cohesive laws only.
+    /// Part of what friction sees that is beside the load [N]; of cohesive laws only.
     pub(crate) grip: T,
 }
 

@@ -68,7 +68,8 @@ pub(crate) fn pair_forces(
     }
 }
 
-/// Distance test of every entry, branch-free where contacts end at zero overlap: fills `hits` and returns their number.
+/// Distance test of every entry, branch-free where contacts end at zero overlap: fills `hits` and
+/// returns their number.
 #[inline(always)]
 fn find_hits<L: NormalLaw, const PERIODIC: bool>(
     scene: &Scene<'_>,

@@ -14,8 +14,8 @@ use amberfield_laws::{rolling_epsd, rolling_epsd2};
 pub struct Energies {
     /// Translation and rotation [J].
     pub kinetic: f64,
-    /// Elastic energy of the contacts: normal, tangential and rolling springs, less what adhesion gained since
-    /// they were made [J].
+    /// Elastic energy of the contacts: normal, tangential and rolling springs, less what adhesion gained
+    /// since they were made [J].
     pub contact: f64,
     /// −Σ m g·x [J], zero at the origin; along periodic axes with the coordinates that the run uses.
     pub gravity: f64,

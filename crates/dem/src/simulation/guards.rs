@@ -30,8 +30,8 @@ const GAS_INTERVAL: &str = "gas interval";
 /// A limit on the time step.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Guard {
-    /// Name: `rayleigh`, `hertz`, `travel`, `pull-off`, `gas response`, `gas interval`, `electric pair`, `wall image` or
-    /// `plasma`.
+    /// Name: `rayleigh`, `hertz`, `travel`, `pull-off`, `gas response`, `gas interval`, `electric pair`,
+    /// `wall image` or `plasma`.
     pub name: &'static str,
     /// Largest step [s]; infinite when nothing limits it at present.
     pub limit_s: f64,

@@ -5,7 +5,7 @@ use super::{ChunkWalls, Met, WallContact, WallLoad, touches};
 use crate::contacts::law::{Contact, History, respond};
 use crate::contacts::material_pairs::{PairConstants, PairTable};
 use crate::contacts::normal::{Elastic, Hertz, NormalLaw};
-use crate::contacts::walls::surfaces::{Found, MOST_CONTACTS, Surfaces};
+use crate::contacts::walls::surfaces::{ClosestPoint, Found, MOST_CONTACTS, Surfaces};
 use crate::motion::chunks::{CHUNK, ChunkLoads};
 use crate::motion::grains::Grains;
 use amberfield_core::{RollingModel, Vector3};
@@ -36,7 +36,7 @@ impl ChunkWalls {
         scene: &Scene<'_>,
         loads: ChunkLoads<'_>,
     ) {
-        let &Scene { surfaces, parts, shifts, grains, table, rolling_model, stretch, step } = scene;
+        let &Scene { surfaces, parts, shifts, grains, table, rolling_model, step, .. } = scene;
         let Self { entries, triangles, contacts, growth, scratch, met, loads: on_walls, deepest } = self;
         met.clear();
         *deepest = 0.0;
@@ -52,19 +52,7 @@ impl ChunkWalls {
                 .iter()
                 .map(|near| (near.triangle, centre + Vector3::from(shifts[near.shift as usize])));
             let kept = &mut contacts[entry.contacts as usize..];
-            let count = if L::COHESIVE {
-                let count = surfaces.contacts(radius + stretch, near, scratch, &mut found);
-                let holds = |found: &Found| {
-                    let material = parts[surfaces.surface_of(found.triangle)].material;
-                    let own = table.stretch(grains.material[i], material, radius);
-                    let is_old = |old: &WallContact| old.normal.dot(&found.normal) > SAME_CONTACT;
-                    let before = &kept[..entry.count as usize];
-                    found.overlap > 0.0 || (found.overlap > -own && before.iter().any(is_old))
-                };
-                sticking(&mut found, count, stretch, holds)
-            } else {
-                surfaces.contacts(radius, near, scratch, &mut found)
-            };
+            let count = find::<L>(scene, i, near, &kept[..entry.count as usize], scratch, &mut found);
             let from = renew(kept, entry.count as usize, &found[..count]);
             if !growth.is_empty() {
                 touches::renew(&mut growth[entry.contacts as usize..], &from[..count]);
@@ -131,6 +119,31 @@ fn elastic<L: NormalLaw>(found: &Found, radius: f64, pair: &PairConstants<f64>, 
         load: own.load - line.load,
         grip: own.grip * share,
     }
+}
+
+/// Finds the contacts of grain `i` with what is near it, after those `before`; returns how many there are.
+#[inline(always)]
+fn find<L: NormalLaw>(
+    scene: &Scene<'_>,
+    i: usize,
+    near: impl Iterator<Item = (u32, Vector3<f64>)>,
+    before: &[WallContact],
+    scratch: &mut Vec<ClosestPoint>,
+    found: &mut [Found; MOST_CONTACTS],
+) -> usize {
+    let &Scene { surfaces, parts, grains, table, stretch, .. } = scene;
+    let radius = grains.centre[i][3];
+    if !L::COHESIVE {
+        return surfaces.contacts(radius, near, scratch, found);
+    }
+    let count = surfaces.contacts(radius + stretch, near, scratch, found);
+    let holds = |found: &Found| {
+        let material = parts[surfaces.surface_of(found.triangle)].material;
+        let own = table.stretch(grains.material[i], material, radius);
+        let is_old = |old: &WallContact| old.normal.dot(&found.normal) > SAME_CONTACT;
+        found.overlap > 0.0 || (found.overlap > -own && before.iter().any(is_old))
+    };
+    sticking(found, count, stretch, holds)
 }
 
 /// Keeps what holds among the contacts of a sphere that is larger by `stretch` [m] than the grain, with the

@@ -106,7 +106,7 @@ pub(crate) struct ContactWalls {
     shifts: [[f64; 3]; 32],
     /// Whether contacts move charge.
     charge: bool,
-    /// How contacts stick to walls.
+    /// Way in which contacts stick to walls.
     sticking: Sticking,
     chunks: Vec<ChunkWalls>,
     /// Whether forces were evaluated since the run began or went on.
