@@ -13,8 +13,9 @@
 //!
 //! U = ∫F dδ from a = 0 [J]. The root s ≥ 1 of the quartic is known in closed form. A contact is made at δ =
 //! 0, where it jumps to a³ = 2πwR*²/Y* and pulls with (8/9) F_c; it pulls with F_c at δ R*/a_c² = −3^{1/3},
-//! and breaks at δ_c = −3a_c²/R* with (5/9) F_c. Making and breaking costs W_s = (4/15 + (2/5) 4^{4/3})
-//! F_c a_c²/R* = 7.09 (w⁵R*⁴/Y*²)^{1/3}; without other losses two bodies part if they meet faster than √(2W_s/m*).
+//! and breaks at δ_c = −3a_c²/R* with (5/9) F_c. Making and breaking costs W_s = (4/15 + (2/5) 4^{4/3}) F_c
+//! a_c²/R* = 7.09 (w⁵R*⁴/Y*²)^{1/3}; without other losses two bodies part if they meet faster than
+//! √(2W_s/m*).
 //! Range: large, soft grains (Tabor's number ≫ 1, see [`crate::dmt`]), a ≪ r.
 //! Sources: Johnson, Kendall & Roberts, Proc. R. Soc. A 324, 301 (1971); Thornton & Ning, Powder Technol. 99,
 //! 154 (1998), for W_s; Parteli et al., Sci. Rep. 4, 6227 (2014), who solve the same quartic.

@@ -1,8 +1,9 @@
 //! Laws of the elastic normal force of a contact: Hertz, and with adhesion DMT and JKR.
 //!
 //! Adhesion changes the force along the normal, the contact radius of which stiffnesses and dampings are
-//! made, and the load that friction and rolling friction see: F_n + F_c for DMT, F_n + 2F_c for JKR (Thornton, J.
-//! Phys. D 24, 1942 (1991)). Everything else of a contact is `crate::contacts::law`, for all of them.
+//! made, and the load that friction and rolling friction see: F_n + F_c for DMT, F_n + 2F_c for JKR
+//! (Thornton, J. Phys. D 24, 1942 (1991)). Everything else of a contact is `crate::contacts::law`, for all
+//! of them.
 
 use crate::contacts::material_pairs::PairConstants;
 use amberfield_core::Cohesion;

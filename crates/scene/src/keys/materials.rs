@@ -70,7 +70,7 @@ pub(super) static KEYS: &[Key] = &[
     Key::new(
         "surface_energy_J_m2",
         Form::Number(SURFACE_ENERGY),
-        "Surface energy, which contacts.cohesion makes grains stick by; two solids have w = 2√(γ₁γ₂).",
+        "Surface energy γ, by which contacts.cohesion makes grains stick.",
     )
     .unit("J/m²")
     .default("0.0")

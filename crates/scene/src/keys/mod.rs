@@ -35,12 +35,8 @@ pub static SCENE: &[Key] = &[
         .without("open space; a run needs it"),
     Key::new("materials", Form::Tables(materials::KEYS), "Materials of grains and walls.")
         .without("none; a run needs one"),
-    Key::new(
-        "pairs",
-        Form::Tables(pairs::KEYS),
-        "Values of two materials, instead of those mixed from each.",
-    )
-    .without("each value is mixed from the two materials"),
+    Key::new("pairs", Form::Tables(pairs::KEYS), "Values of two materials, in the place of mixed ones.")
+        .without("each value is mixed from the two materials"),
     Key::new("particles", Form::Table(particles::KEYS), "Grains at the start.").required(),
     Key::new("walls", Form::Tables(walls::KEYS), "Walls that grains touch.").without("none"),
     Key::new("contacts", Form::Table(contacts::KEYS), "Models of contacts.").without("the defaults below"),
