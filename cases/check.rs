@@ -35,6 +35,8 @@ mod impact;
 mod madelung;
 #[path = "particle-impacts/check.rs"]
 mod particle_impacts;
+#[path = "pull-off/check.rs"]
+mod pull_off;
 #[path = "settling-charged-bed/check.rs"]
 mod settling_charged_bed;
 #[path = "stiffness-collapse/check.rs"]

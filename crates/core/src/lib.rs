@@ -6,6 +6,7 @@
 #![forbid(unsafe_code)]
 
 mod charge_transfer;
+mod cohesion;
 pub mod constants;
 mod domain;
 mod far_question;
@@ -14,6 +15,7 @@ mod field_settings;
 mod fingerprint;
 mod gas;
 mod material;
+mod material_pair;
 mod particles;
 mod permittivity;
 mod plan;
@@ -22,6 +24,7 @@ mod time_settings;
 mod wall;
 
 pub use charge_transfer::ChargeTransfer;
+pub use cohesion::Cohesion;
 pub use domain::{Axis, Boundary, Domain, DomainError, Side};
 pub use far_question::{FarQuestion, SourceCloud};
 pub use feed::{Feed, FeedRegion, Feeds, OnBlocked};
@@ -29,6 +32,7 @@ pub use field_settings::{CouplingInterval, FieldSettings, ForceLimit, Method, Tu
 pub use fingerprint::Fingerprint;
 pub use gas::{DragLaw, Gas, GasFlow, GasModel};
 pub use material::{Material, MaterialId};
+pub use material_pair::MaterialPair;
 pub use nalgebra::{Matrix3, Vector3};
 pub use particles::{Grain, GroupId, Particles};
 pub use permittivity::Permittivity;

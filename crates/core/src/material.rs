@@ -25,6 +25,8 @@ pub struct Material {
     pub friction: f64,
     /// Rolling friction coefficient μ_r.
     pub rolling_friction: f64,
+    /// Surface energy γ [J/m²]; 0: nothing sticks to it.
+    pub surface_energy_j_m2: f64,
     /// Work function W [eV].
     pub work_function_ev: Option<f64>,
 }

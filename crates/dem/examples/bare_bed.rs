@@ -40,7 +40,7 @@ struct Bed {
 impl Bed {
     fn new() -> Self {
         let (domain, particles) = (bed::domain(), bed::particles());
-        let table = PairTable::new(&bed::materials());
+        let table = PairTable::new(&bed::materials(), &[], Default::default());
         let features = table.features();
         let (level, level_radius) = levels_of(particles.radius.iter().copied());
         let neighbours =

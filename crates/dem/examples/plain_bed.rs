@@ -10,6 +10,8 @@ fn main() {
         domain: bed::domain(),
         materials: bed::materials(),
         rolling_model: Default::default(),
+        cohesion: Default::default(),
+        pairs: Vec::new(),
         particles: bed::particles(),
         walls: Vec::new(),
         time: TimeSettings {

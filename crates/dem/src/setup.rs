@@ -1,7 +1,8 @@
 //! Parts of a simulation.
 
 use amberfield_core::{
-    ChargeTransfer, Domain, Feeds, FieldSettings, Gas, Material, Particles, RollingModel, TimeSettings, Wall,
+    ChargeTransfer, Cohesion, Domain, Feeds, FieldSettings, Gas, Material, MaterialPair, Particles,
+    RollingModel, TimeSettings, Wall,
 };
 use amberfield_field::Choice;
 use amberfield_field::far::Connect;
@@ -58,6 +59,10 @@ pub struct Setup {
     pub materials: Vec<Material>,
     /// Model of rolling friction.
     pub rolling_model: RollingModel,
+    /// Model of cohesion.
+    pub cohesion: Cohesion,
+    /// Values of pairs of materials, instead of mixed ones.
+    pub pairs: Vec<MaterialPair>,
     /// Grains at the start.
     pub particles: Particles,
     /// Contact walls.

@@ -1,6 +1,6 @@
 //! Places that walls keep grains from.
 
-use crate::contacts::walls::ContactWalls;
+use crate::contacts::walls::{ContactWalls, Sticking};
 use crate::error::DemError;
 use amberfield_core::{Vector3, Wall};
 
@@ -15,7 +15,9 @@ impl WallCover {
     /// The first wall without a shape.
     pub fn new(walls: &[Wall]) -> Result<Self, DemError> {
         // Places are looked at where they are, without periodic images.
-        ContactWalls::new(walls, [[0.0; 3]; 32], false).map(Self).map_err(DemError::Setup)
+        ContactWalls::new(walls, [[0.0; 3]; 32], false, Sticking::default())
+            .map(Self)
+            .map_err(DemError::Setup)
     }
 
     /// Whether a wall stands within a distance [m] of a place [m], or a plane between the place and the

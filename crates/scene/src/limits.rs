@@ -28,6 +28,8 @@ pub(crate) const ELECTRIC: Range = Range::closed(-1e15, 1e15);
 pub(crate) const FRACTION: Range = Range::closed(0.0, 1.0);
 /// Friction coefficients.
 pub(crate) const FRICTION: Range = Range::closed(0.0, 1e3);
+/// Surface energies [J/m²]; those of solids lie below 10.
+pub(crate) const SURFACE_ENERGY: Range = Range::closed(0.0, 1e3);
 /// Tolerances.
 pub(crate) const TOLERANCE: Range = Range::closed(1e-12, 1.0);
 /// Largest number of particles of a generator.

@@ -37,6 +37,7 @@ fn read_material(table: &SceneTable<'_>) -> Result<Material, SceneError> {
         restitution: table.need_number("restitution")?,
         friction: table.need_number("friction")?,
         rolling_friction: table.number("rolling_friction")?.unwrap_or(0.0),
+        surface_energy_j_m2: table.number("surface_energy_J_m2")?.unwrap_or(0.0),
         work_function_ev: table.number("work_function_eV")?,
     })
 }

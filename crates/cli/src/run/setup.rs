@@ -127,6 +127,8 @@ pub(crate) fn setup_of(
         domain: domain_of(scene)?.clone(),
         materials: scene.materials.clone(),
         rolling_model: scene.rolling_model,
+        cohesion: scene.cohesion,
+        pairs: scene.pairs.clone(),
         particles: std::mem::take(&mut scene.particles),
         walls: scene.walls.clone(),
         time,

@@ -56,6 +56,7 @@ pub(crate) fn materials() -> Vec<Material> {
         restitution: 0.9,
         friction: 0.3,
         rolling_friction: 0.0,
+        surface_energy_j_m2: 0.0,
         work_function_ev: None,
     }]
 }

@@ -3,6 +3,7 @@
 
 use crate::contacts::law::{Contact, History, respond};
 use crate::contacts::material_pairs::PairConstants;
+use crate::contacts::normal::NormalLaw;
 use amberfield_core::{RollingModel, Vector3};
 use amberfield_laws::contact_area;
 use nalgebra::{SimdPartialOrd, SimdValue};
@@ -65,6 +66,8 @@ pub(crate) struct Batch {
     pub(crate) contact_radius: Lanes,
     /// Rolling spring [N·m].
     pub(crate) rolling: Vectors,
+    /// Work of adhesion [J/m²]; of cohesive laws only.
+    pub(crate) work: Lanes,
     /// Constants of the materials.
     pub(crate) pair: PairConstants<Lanes>,
     /// Force on i [N].
@@ -92,6 +95,7 @@ impl Batch {
             spring: none,
             contact_radius: zero,
             rolling: none,
+            work: zero,
             pair: pair.map(|number| [number; BATCH]),
             force: none,
             torque: [none; 2],
@@ -110,9 +114,9 @@ impl Batch {
         contact_area::hertz(a * b / (a + b), a + b - self.offset.get(lane).norm())
     }
 
-    /// Forces and torques of every contact, with a model of rolling; springs advance by `step` [s].
+    /// Forces and torques of every contact by a law, with a model of rolling; springs advance by `step` [s].
     #[inline(always)]
-    pub(crate) fn respond<const FRICTION: bool, const ROLLING: bool, const DAMPING: bool>(
+    pub(crate) fn respond<L: NormalLaw, const FRICTION: bool, const ROLLING: bool, const DAMPING: bool>(
         &mut self,
         model: RollingModel,
         step: f64,
@@ -125,7 +129,6 @@ impl Batch {
         let half = WideF64x4::splat(0.5) * overlap;
         let (arm_i, arm_j) = (a - half, b - half);
         let mut contact = Contact {
-            overlap,
             normal: offset * (WideF64x4::ONE / distance),
             velocity: self.velocity.load(),
             forecast: self.forecast.load(),
@@ -149,7 +152,9 @@ impl Batch {
         };
         let pair = self.pair.map(WideF64x4::from);
         let step = WideF64x4::splat(step);
-        let response = respond::<_, FRICTION, ROLLING, DAMPING>(&contact, &pair, model, step, &mut history);
+        let elastic = L::elastic(overlap, contact.radius, &pair, self.work.into());
+        let response =
+            respond::<_, L, FRICTION, ROLLING, DAMPING>(&contact, &elastic, &pair, model, step, &mut history);
         self.force = Vectors::store(response.force);
         self.depth = (overlap / a.simd_min(b)).into_arr();
         if DAMPING || ROLLING {

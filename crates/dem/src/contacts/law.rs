@@ -8,18 +8,20 @@
 //! contact (δ = 0), where it pulls slightly: that is what makes the coefficient of restitution exact;
 //! friction sees no negative load.
 //!
+//! The elastic normal force and the contact radius are those of a law of `crate::contacts::normal`.
+//!
 //! Numbers are one contact's, or those of several side by side: there is no branch in the law but that of the
 //! rolling model, which is one in a scene.
 
 use crate::contacts::material_pairs::PairConstants;
 use crate::contacts::memory::Spring;
+use crate::contacts::normal::{Elastic, NormalLaw};
 use amberfield_core::{RollingModel, Vector3};
 use amberfield_laws::{damped_step, rolling_cdt, rolling_epsd, rolling_epsd2, rolling_friction};
 use nalgebra::SimdRealField;
 
 /// Geometry and motion of one contact of body i with body j; n points from i to j.
 pub(crate) struct Contact<T> {
-    pub(crate) overlap: T,
     pub(crate) normal: Vector3<T>,
     /// v_i − v_j of the centres in the middle of the step.
     pub(crate) velocity: Vector3<T>,
@@ -43,7 +45,7 @@ pub(crate) struct Contact<T> {
 pub(crate) struct History<T> {
     /// Tangential force of the spring [N].
     pub(crate) spring: Vector3<T>,
-    /// Contact radius √(R*δ) of the last step [m].
+    /// Contact radius of the last step [m].
     pub(crate) contact_radius: T,
     /// Torque of the rolling spring [N·m].
     pub(crate) rolling: Vector3<T>,
@@ -76,15 +78,24 @@ pub(crate) struct Response<T> {
     pub(crate) damping: T,
 }
 
+impl<T: SimdRealField<Element = f64> + Copy> Response<T> {
+    /// Response along the normal alone.
+    #[inline(always)]
+    fn along(force: Vector3<T>, damping: T) -> Self {
+        Self { force, twist: Vector3::zeros(), rolling: Vector3::zeros(), damping }
+    }
+}
+
 /// Inertia of a sphere about its centre over m r².
 const SPHERE_INERTIA: f64 = 2.0 / 5.0;
 /// Inertia of a sphere about its contact over m r².
 const CONTACT_INERTIA: f64 = 7.0 / 5.0;
 
-/// Force and torque now; `step` [s] advances the springs.
+/// Force and torque now, of a contact whose elastic state is known; `step` [s] advances the springs.
 #[inline(always)]
-pub(crate) fn respond<T, const FRICTION: bool, const ROLLING: bool, const DAMPING: bool>(
+pub(crate) fn respond<T, L, const FRICTION: bool, const ROLLING: bool, const DAMPING: bool>(
     contact: &Contact<T>,
+    elastic: &Elastic<T>,
     pair: &PairConstants<T>,
     rolling: RollingModel,
     step: T,
@@ -92,46 +103,43 @@ pub(crate) fn respond<T, const FRICTION: bool, const ROLLING: bool, const DAMPIN
 ) -> Response<T>
 where
     T: SimdRealField<Element = f64> + Copy,
+    L: NormalLaw,
 {
-    let Contact { overlap, normal, velocity, radius, .. } = *contact;
+    let Contact { normal, velocity, radius, .. } = *contact;
     let (zero, one) = (T::zero(), T::one());
-    let contact_radius = (overlap * radius).simd_sqrt();
+    let contact_radius = elastic.contact_radius;
     let dashpots = if DAMPING || ROLLING {
-        Dashpots::of::<FRICTION, ROLLING>(contact, pair, rolling, contact_radius, step)
+        Dashpots::of::<L, FRICTION, ROLLING>(contact, elastic, pair, rolling, step)
     } else {
         Dashpots { normal: zero, tangential: zero, rolling: zero, forecast: zero, largest: zero }
     };
     let approach = velocity.dot(&normal);
     let later = contact.forecast.dot(&normal);
     let damped = approach + dashpots.forecast * (later - approach);
-    let load = pair.hertz * contact_radius * overlap + dashpots.normal * damped;
-    let mut response = Response {
-        force: normal * -load,
-        twist: Vector3::zeros(),
-        rolling: Vector3::zeros(),
-        damping: dashpots.largest,
-    };
+    let load = elastic.load + dashpots.normal * damped;
+    let held = L::held(load, elastic.grip);
+    let mut response = Response::along(normal * -load, dashpots.largest);
     if FRICTION {
         let sliding = velocity - normal * approach + contact.spin.cross(&normal);
         let stiffness = pair.tangential * contact_radius;
         let dashpot = sliding * dashpots.tangential;
         let unloading = contact_radius.simd_lt(history.contact_radius);
         let shrunk = (contact_radius / history.contact_radius).select(unloading, one);
-        let elastic = turned(history.spring, &normal) * shrunk - sliding * (stiffness * step);
-        let trial = elastic - dashpot;
-        let bound = pair.friction * load.simd_max(zero);
+        let stretched = turned(history.spring, &normal) * shrunk - sliding * (stiffness * step);
+        let trial = stretched - dashpot;
+        let bound = pair.friction * held.simd_max(zero);
         let size2 = trial.norm_squared();
         let slipping = size2.simd_gt(bound * bound);
         let tangential = trial * (bound / size2.simd_sqrt()).select(slipping, one);
         let slipped = tangential + dashpot;
-        history.spring = slipped.zip_map(&elastic, |slipped, elastic| slipped.select(slipping, elastic));
+        history.spring = slipped.zip_map(&stretched, |slipped, kept| slipped.select(slipping, kept));
         history.contact_radius = contact_radius;
         response.force += tangential;
         response.twist = normal.cross(&tangential);
     }
     if ROLLING {
         let turning = contact.turning;
-        let bound = rolling_friction::largest(pair.rolling, radius, load);
+        let bound = rolling_friction::largest(pair.rolling, radius, held);
         match rolling {
             RollingModel::Epsd => {
                 let stiffness = rolling_epsd::stiffness(pair.normal * contact_radius, pair.rolling, radius);
@@ -168,17 +176,17 @@ struct Dashpots<T> {
 }
 
 impl<T: SimdRealField<Element = f64> + Copy> Dashpots<T> {
-    /// Damping coefficients of a contact radius [m], as far as a step [s] bears them.
+    /// Damping coefficients of an elastic state, as far as a step [s] bears them.
     #[inline(always)]
-    fn of<const FRICTION: bool, const ROLLING: bool>(
+    fn of<L: NormalLaw, const FRICTION: bool, const ROLLING: bool>(
         contact: &Contact<T>,
+        elastic: &Elastic<T>,
         pair: &PairConstants<T>,
         model: RollingModel,
-        contact_radius: T,
         step: T,
     ) -> Self {
         let Contact { radius, inverse_mass, inverse_moment, slowing, .. } = *contact;
-        let zero = T::zero();
+        let (zero, contact_radius) = (T::zero(), elastic.contact_radius);
         let normal = pair.damping * (contact_radius / inverse_mass).simd_sqrt();
         let tangential = if FRICTION { normal * pair.tangential_ratio } else { zero };
         // C_r, and the part of it that acts.
@@ -190,8 +198,8 @@ impl<T: SimdRealField<Element = f64> + Copy> Dashpots<T> {
             }
             RollingModel::Cdt if ROLLING => {
                 let most = rolling_cdt::most(T::splat(SPHERE_INERTIA) / inverse_moment, step);
-                let load = pair.hertz * contact_radius * contact.overlap;
-                let bound = rolling_friction::largest(pair.rolling, radius, load);
+                let held = L::held(elastic.load, elastic.grip);
+                let bound = rolling_friction::largest(pair.rolling, radius, held);
                 (most, rolling_cdt::coefficient(most, bound, contact.turning.norm()))
             }
             _ => (zero, zero),

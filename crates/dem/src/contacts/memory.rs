@@ -95,7 +95,7 @@ pub(crate) struct Grown {
 pub(crate) struct Spring {
     /// Tangential force [N].
     pub(crate) force: [f64; 3],
-    /// Contact radius √(R*δ) of the last step [m].
+    /// Contact radius of the last step [m].
     pub(crate) contact_radius: f64,
 }
 

@@ -9,6 +9,7 @@ pub(crate) mod law;
 pub(crate) mod material_pairs;
 pub(crate) mod memory;
 pub(crate) mod neighbours;
+pub(crate) mod normal;
 pub(crate) mod pairs;
 pub(crate) mod walls;
 

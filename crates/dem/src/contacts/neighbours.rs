@@ -134,6 +134,7 @@ impl Neighbours {
         )| {
             let list = &mut list[0];
             list.fill(k, cells, grains, features);
+            // Cohesive contacts, which may be stretched, have tangential history too.
             if (features.rotation() || features.charging) && !previous.is_empty() {
                 list.inherit(k, grains, shifts, previous, order, features);
             }
@@ -305,7 +306,8 @@ impl ChunkList {
                 let shift = shifts[(partner >> INDEX_BITS) as usize];
                 let (a, b) = (&grains.centre[i], &grains.centre[j]);
                 let d2: f64 = (0..3).map(|x| (b[x] + shift[x] - a[x]).powi(2)).sum();
-                let overlaps = d2 < (a[3] + b[3]).powi(2);
+                // A stretched contact is none by its overlap; the next evaluation ends it where it breaks.
+                let overlaps = d2 < (a[3] + b[3]).powi(2) || features.stretches();
                 if !(overlaps || features.charging) {
                     continue;
                 }

@@ -5,9 +5,11 @@ use crate::contacts::cells::{INDEX_BITS, INDEX_MASK};
 use crate::contacts::material_pairs::PairTable;
 use crate::contacts::memory::{Follow, Spring};
 use crate::contacts::neighbours::{ChunkList, Hit, Neighbours};
+use crate::contacts::normal::{Dmt, Hertz, Jkr, NormalLaw};
 use crate::motion::chunks::{CHUNK, ChunkLoads, Loads, NO_PUSH, Push, for_each_load};
 use crate::motion::grains::Grains;
-use amberfield_core::{RollingModel, Vector3};
+use amberfield_core::{Cohesion, RollingModel, Vector3};
+use amberfield_laws::hertz_mindlin;
 
 /// Data that every chunk reads.
 struct Scene<'a> {
@@ -35,14 +37,24 @@ pub(crate) fn pair_forces(
     let periodic = neighbours.shifts.iter().flatten().any(|shift| *shift != 0.0);
     let lists = &mut neighbours.lists[..];
     macro_rules! run {
-        ($f:literal, $r:literal, $d:literal, $p:literal) => {
-            for_each_load(lists, loads, |k, list, loads| chunk::<$f, $r, $d, $p>(&scene, k, list, loads))
+        ($law:ty, $f:literal, $r:literal, $d:literal, $p:literal) => {
+            for_each_load(lists, loads, |k, list, loads| {
+                chunk::<$law, $f, $r, $d, $p>(&scene, k, list, loads)
+            })
         };
     }
     macro_rules! periodic {
         ($f:literal, $r:literal, $d:literal) => {
-            if periodic { run!($f, $r, $d, true) } else { run!($f, $r, $d, false) }
+            if periodic { run!(Hertz, $f, $r, $d, true) } else { run!(Hertz, $f, $r, $d, false) }
         };
+    }
+    // Cohesive contacts have all terms: fewer loops to build, and they are not the fast case.
+    match (features.cohesion, features.rolling) {
+        (Cohesion::None, _) => {}
+        (Cohesion::Dmt, false) => return run!(Dmt, true, false, true, true),
+        (Cohesion::Dmt, true) => return run!(Dmt, true, true, true, true),
+        (Cohesion::Jkr, false) => return run!(Jkr, true, false, true, true),
+        (Cohesion::Jkr, true) => return run!(Jkr, true, true, true, true),
     }
     match (features.friction, features.rolling, features.damping) {
         (false, false, false) => periodic!(false, false, false),
@@ -56,9 +68,14 @@ pub(crate) fn pair_forces(
     }
 }
 
-/// Distance test of every entry, branch-free: fills `hits` and returns their number.
+/// Distance test of every entry, branch-free where contacts end at zero overlap: fills `hits` and
+/// returns their number.
 #[inline(always)]
-fn find_hits<const PERIODIC: bool>(scene: &Scene<'_>, first: usize, list: &mut ChunkList) -> usize {
+fn find_hits<L: NormalLaw, const PERIODIC: bool>(
+    scene: &Scene<'_>,
+    first: usize,
+    list: &mut ChunkList,
+) -> usize {
     let centre = &scene.grains.centre[..];
     let ChunkList { start, partner, touching, hits, .. } = list;
     let length = start.len() - 1;
@@ -71,7 +88,13 @@ fn find_hits<const PERIODIC: bool>(scene: &Scene<'_>, first: usize, list: &mut C
             let j = (code & INDEX_MASK) as usize;
             let d = offset_of::<PERIODIC>(scene, &a, &centre[j], code);
             let reach = a[3] + centre[j][3];
-            let hit = d.norm_squared() < reach * reach;
+            let mut hit = d.norm_squared() < reach * reach;
+            if L::STRETCHES && *touching && !hit {
+                let material = &scene.grains.material;
+                let radius = hertz_mindlin::effective(a[3], centre[j][3]);
+                let reach = reach + scene.table.stretch(material[first + local], material[j], radius);
+                hit = d.norm_squared() < reach * reach;
+            }
             hits[found] = Hit { entry: (offset + n) as u32, local: local as u32, slot };
             found += usize::from(hit);
             *touching &= hit;
@@ -90,14 +113,16 @@ fn offset_of<const PERIODIC: bool>(scene: &Scene<'_>, a: &[f64; 4], b: &[f64; 4]
 
 /// Reads the grains and the history of a touching entry into a lane of a batch.
 #[inline(always)]
-fn read<const FRICTION: bool, const ROLLING: bool, const DAMPING: bool, const PERIODIC: bool>(
+fn read<L, const FRICTION: bool, const ROLLING: bool, const DAMPING: bool, const PERIODIC: bool>(
     scene: &Scene<'_>,
     list: &ChunkList,
     entry: usize,
     i: usize,
     batch: &mut Batch,
     lane: usize,
-) {
+) where
+    L: NormalLaw,
+{
     let grains = scene.grains;
     let code = list.partner[entry];
     let j = (code & INDEX_MASK) as usize;
@@ -109,6 +134,9 @@ fn read<const FRICTION: bool, const ROLLING: bool, const DAMPING: bool, const PE
         (grains.inverse_mass[i], grains.inverse_mass[j]);
     if scene.table.is_mixed() {
         batch.pair.set(lane, scene.table.get(grains.material[i], grains.material[j]));
+    }
+    if L::COHESIVE {
+        batch.work[lane] = scene.table.work(grains.material[i], grains.material[j]);
     }
     if DAMPING || ROLLING {
         batch.forecast.set(lane, grains.forecast[i] - grains.forecast[j]);
@@ -130,18 +158,20 @@ fn read<const FRICTION: bool, const ROLLING: bool, const DAMPING: bool, const PE
     }
 }
 
-fn chunk<const FRICTION: bool, const ROLLING: bool, const DAMPING: bool, const PERIODIC: bool>(
+fn chunk<L, const FRICTION: bool, const ROLLING: bool, const DAMPING: bool, const PERIODIC: bool>(
     scene: &Scene<'_>,
     k: usize,
     list: &mut ChunkList,
     mut loads: ChunkLoads<'_>,
-) {
+) where
+    L: NormalLaw,
+{
     let first = k * CHUNK;
     loads.force.fill(Vector3::zeros());
     loads.torque.fill(Vector3::zeros());
     loads.slowing.fill(0.0);
     list.filled.fill(false);
-    let found = find_hits::<PERIODIC>(scene, first, list);
+    let found = find_hits::<L, PERIODIC>(scene, first, list);
     (list.contacts, list.deepest) = (found, 0.0);
     list.met.clear();
     let mut batch = Batch::new(*scene.table.get(0, 0));
@@ -150,9 +180,9 @@ fn chunk<const FRICTION: bool, const ROLLING: bool, const DAMPING: bool, const P
         for lane in 0..size {
             let Hit { entry, local, .. } = list.hits[start + lane];
             let i = first + local as usize;
-            read::<FRICTION, ROLLING, DAMPING, PERIODIC>(scene, list, entry as usize, i, &mut batch, lane);
+            read::<L, FRICTION, ROLLING, DAMPING, PERIODIC>(scene, list, entry as usize, i, &mut batch, lane);
         }
-        batch.respond::<FRICTION, ROLLING, DAMPING>(scene.rolling_model, scene.step);
+        batch.respond::<L, FRICTION, ROLLING, DAMPING>(scene.rolling_model, scene.step);
         if let Some(follow) = scene.follow {
             for lane in 0..size {
                 list.follow_area(list.hits[start + lane].entry, batch.area::<FRICTION>(lane), follow);

@@ -9,7 +9,7 @@ use crate::error::DemError;
 use crate::feeding;
 use crate::motion::grains::Grains;
 use crate::setup::Setup;
-use amberfield_core::{Axis, Material, Particles, Skin, Step};
+use amberfield_core::{Axis, Material, MaterialPair, Particles, Skin, Step};
 
 /// `skin_m = "auto"` is this fraction of a small radius (see [`skin`]).
 const SKIN_OVER_RADIUS: f64 = 0.2;
@@ -26,6 +26,9 @@ pub(crate) fn check(setup: &Setup) -> Result<(), DemError> {
     feeding::check(setup)?;
     for material in &setup.materials {
         check_material(material)?;
+    }
+    for pair in &setup.pairs {
+        check_pair(pair, setup)?;
     }
     for wall in &setup.walls {
         if wall.material.0 as usize >= setup.materials.len() {
@@ -118,10 +121,49 @@ fn check_material(material: &Material) -> Result<(), DemError> {
         ),
         ("friction", material.friction, material.friction >= 0.0, "0 or more"),
         ("rolling_friction", material.rolling_friction, material.rolling_friction >= 0.0, "0 or more"),
+        (
+            "surface_energy_J_m2",
+            material.surface_energy_j_m2,
+            material.surface_energy_j_m2 >= 0.0,
+            "0 or more",
+        ),
     ];
     for (key, value, holds, range) in rules {
         if !(holds && value.is_finite()) {
             return Err(bad(format!("material '{name}': {key} must be {range}, got {value}")));
+        }
+    }
+    Ok(())
+}
+
+fn check_pair(pair: &MaterialPair, setup: &Setup) -> Result<(), DemError> {
+    let names = pair.between.map(|id| setup.materials.get(usize::from(id.0)).map(|material| &material.name));
+    let [Some(one), Some(other)] = names else {
+        let [a, b] = pair.between;
+        return Err(bad(format!("the pair of materials {} and {} has an unknown one", a.0, b.0)));
+    };
+    let [a, b] = pair.between;
+    if setup.pairs.iter().filter(|known| known.is_between(a, b)).count() > 1 {
+        return Err(bad(format!("the pair of materials '{one}' and '{other}' is given twice; merge them")));
+    }
+    let zero = |value: f64| value >= 0.0 && value.is_finite();
+    let rules = [
+        ("restitution", pair.restitution, pair.restitution.is_none_or(|e| e > 0.0 && e <= 1.0), "in (0, 1]"),
+        ("friction", pair.friction, pair.friction.is_none_or(zero), "0 or more"),
+        ("rolling_friction", pair.rolling_friction, pair.rolling_friction.is_none_or(zero), "0 or more"),
+        (
+            "surface_energy_J_m2",
+            pair.surface_energy_j_m2,
+            pair.surface_energy_j_m2.is_none_or(zero),
+            "0 or more",
+        ),
+    ];
+    for (key, value, holds, range) in rules {
+        if !holds {
+            let value = value.unwrap_or(f64::NAN);
+            return Err(bad(format!(
+                "pair of materials '{one}' and '{other}': {key} must be {range}, got {value}"
+            )));
         }
     }
     Ok(())
@@ -148,6 +190,8 @@ pub(crate) fn skin(setup: &Setup) -> f64 {
 /// one through two faces, nor itself.
 pub(crate) fn check_periods(setup: &Setup, skin: f64) -> Result<(), DemError> {
     let largest = setup.particles.radius.iter().copied().fold(0.0, f64::max);
+    let table = PairTable::new(&setup.materials, &setup.pairs, setup.cohesion);
+    let skin = skin + table.longest_stretch(largest);
     for axis in Axis::ALL {
         let length = setup.domain.extent()[axis.index()];
         let needed = 2.0 * (2.0 * largest + skin);
@@ -207,7 +251,7 @@ pub(crate) fn check_state(setup: &Setup, state: &State) -> Result<(), DemError> 
     if lengths.iter().any(|&n| n != count) || contacts.reference.len() != count {
         return misfit("its arrays differ in length");
     }
-    let rotation = PairTable::new(&setup.materials).features().rotation();
+    let rotation = PairTable::new(&setup.materials, &setup.pairs, setup.cohesion).features().rotation();
     if grains.torque.len() != if rotation { count } else { 0 } {
         return misfit("its torques do not match the materials' friction");
     }

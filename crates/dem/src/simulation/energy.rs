@@ -3,9 +3,10 @@
 use crate::contacts::Contacts;
 use crate::contacts::material_pairs::{Features, PairConstants};
 use crate::contacts::memory::Spring;
+use crate::contacts::normal;
 use crate::contacts::walls::ContactWalls;
 use crate::motion::grains::Grains;
-use amberfield_core::{RollingModel, Vector3};
+use amberfield_core::{Cohesion, RollingModel, Vector3};
 use amberfield_laws::{rolling_epsd, rolling_epsd2};
 
 /// Energies [J].
@@ -13,7 +14,8 @@ use amberfield_laws::{rolling_epsd, rolling_epsd2};
 pub struct Energies {
     /// Translation and rotation [J].
     pub kinetic: f64,
-    /// Elastic energy of the contacts: normal, tangential and rolling springs [J].
+    /// Elastic energy of the contacts: normal, tangential and rolling springs, less what adhesion gained
+    /// since they were made [J].
     pub contact: f64,
     /// −Σ m g·x [J], zero at the origin; along periodic axes with the coordinates that the run uses.
     pub gravity: f64,
@@ -63,12 +65,14 @@ pub(crate) fn contact(grains: &Grains, contacts: &Contacts) -> f64 {
         let list = &neighbours.lists[touching.chunk];
         let (a, b) = (&grains.centre[touching.i], &grains.centre[touching.j]);
         let distance = touching.distance(grains, &neighbours.shifts);
+        let overlap = a[3] + b[3] - distance;
         let springs = Springs {
             pair: table.get(grains.material[touching.i], grains.material[touching.j]),
             features: *features,
             radius: a[3] * b[3] / (a[3] + b[3]),
-            overlap: (a[3] + b[3] - distance).max(0.0),
+            overlap: if features.stretches() { overlap } else { overlap.max(0.0) },
             joined: 0.0,
+            work: table.work(grains.material[touching.i], grains.material[touching.j]),
         };
         let spring = list.spring.get(touching.entry).copied().unwrap_or_default();
         let rolling = list.rolling.get(touching.entry).copied().unwrap_or_default();
@@ -81,6 +85,7 @@ pub(crate) fn contact(grains: &Grains, contacts: &Contacts) -> f64 {
             radius: grains.centre[touching.grain][3],
             overlap: touching.overlap,
             joined: touching.joined,
+            work: table.work(grains.material[touching.grain], touching.material),
         };
         sum += springs.energy(&touching.spring, &touching.rolling);
     }
@@ -95,16 +100,45 @@ struct Springs<'a> {
     overlap: f64,
     /// Overlap with the line where the contact joins a deeper one, whose energy is not its own.
     joined: f64,
+    /// Work of adhesion [J/m²].
+    work: f64,
 }
 
 impl Springs<'_> {
     fn energy(&self, spring: &Spring, rolling: &[f64; 3]) -> f64 {
+        let (features, pair) = (self.features, self.pair);
+        if features.cohesion != Cohesion::None {
+            return self.with_others(self.normal_with_cohesion(), self.cohesive_radius(), spring, rolling);
+        }
         let contact_radius = (self.radius * self.overlap).sqrt();
-        let mut energy = 0.4 * self.pair.hertz * contact_radius * self.overlap * self.overlap;
+        let mut energy = 0.4 * pair.hertz * contact_radius * self.overlap * self.overlap;
         if self.joined > 0.0 {
             let whole = (self.overlap.powf(1.5) + self.joined.powf(1.5)).cbrt().powi(5);
-            energy = 0.4 * self.pair.hertz * self.radius.sqrt() * (whole - self.joined.powf(2.5));
+            energy = 0.4 * pair.hertz * self.radius.sqrt() * (whole - self.joined.powf(2.5));
         }
+        self.with_others(energy, contact_radius, spring, rolling)
+    }
+
+    /// Normal energy of a contact that sticks, less that of the line where it joins a deeper one [J].
+    fn normal_with_cohesion(&self) -> f64 {
+        let of =
+            |overlap| normal::energy_by(self.features.cohesion, overlap, self.radius, self.pair, self.work);
+        of(self.overlap) - if self.joined > 0.0 { of(self.joined) } else { 0.0 }
+    }
+
+    /// Contact radius of a contact that sticks, less that of the line where it joins a deeper one [m].
+    fn cohesive_radius(&self) -> f64 {
+        let of = |overlap| {
+            let cohesion = self.features.cohesion;
+            normal::elastic_by(cohesion, overlap, self.radius, self.pair, self.work).contact_radius
+        };
+        let line = if self.joined > 0.0 { of(self.joined) } else { 0.0 };
+        (of(self.overlap).powi(2) - line * line).max(0.0).sqrt()
+    }
+
+    /// Adds the energies of the tangential and the rolling spring [J] to that of the normal one.
+    fn with_others(&self, normal: f64, contact_radius: f64, spring: &Spring, rolling: &[f64; 3]) -> f64 {
+        let mut energy = normal;
         if self.features.friction && contact_radius > 0.0 {
             let force2 = spring.force.iter().map(|f| f * f).sum::<f64>();
             energy += 0.5 * force2 / (self.pair.tangential * contact_radius);

@@ -14,6 +14,10 @@ pub(crate) const AUTO_FRACTION: f64 = 0.2;
 /// up to 2/π of the contact time of a linear spring; a quarter leaves four steps in a collision.
 const CONTACT_TIME_FRACTION: f64 = 0.25;
 
+/// Speed over the sticking speed beyond which what adhesion costs, less than a ninth of the energy, needs no
+/// resolving.
+const STICKING_SPEEDS: f64 = 3.0;
+
 /// Largest way of a grain in a step over its radius: a longer one could lead through a wall unseen.
 const WAY_IN_A_STEP: f64 = 0.5;
 /// Way of a grain in a step over its radius up to which a bound on it is all that matters.
@@ -26,8 +30,8 @@ const GAS_INTERVAL: &str = "gas interval";
 /// A limit on the time step.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Guard {
-    /// Name: `rayleigh`, `hertz`, `travel`, `gas response`, `gas interval`, `electric pair`, `wall image` or
-    /// `plasma`.
+    /// Name: `rayleigh`, `hertz`, `travel`, `pull-off`, `gas response`, `gas interval`, `electric pair`,
+    /// `wall image` or `plasma`.
     pub name: &'static str,
     /// Largest step [s]; infinite when nothing limits it at present.
     pub limit_s: f64,
@@ -55,6 +59,8 @@ pub(crate) struct Limits {
     rayleigh: f64,
     /// min over grains of contact time · speed^{1/5} [s·(m/s)^{1/5}] for two equal grains.
     hertz: f64,
+    /// Stretch at which contacts break; `None` where none stretches.
+    pull_off: Option<PullOff>,
     /// Gas that slows the grains and does not flow.
     gas: Option<UniformGas>,
     /// Limits of a gas that flows.
@@ -63,6 +69,41 @@ pub(crate) struct Limits {
     electric: Option<ElectricLimits>,
     /// Whether a run has been told that its step breaks a guard.
     warned: bool,
+}
+
+/// Limits that the tensile part of JKR's contacts sets.
+#[derive(Clone, Copy, Debug)]
+struct PullOff {
+    /// Shortest stretch at which a contact breaks [m].
+    stretch: f64,
+    /// Shortest time in which a contact that meets at its sticking speed is stretched as far [s].
+    time: f64,
+}
+
+impl PullOff {
+    /// Limits of contacts of equal grains, and of a grain and a wall, with any material.
+    fn of(particles: &Particles, table: &PairTable, materials: usize) -> Option<Self> {
+        let mut found: Option<Self> = None;
+        for i in 0..particles.len() {
+            let (radius, mass) = (particles.radius[i], particles.mass(i));
+            for other in 0..materials {
+                let Some(scale) = table.jkr(particles.material[i].0, other as u16, 0.5 * radius) else {
+                    continue;
+                };
+                let stretch = scale.longest_stretch();
+                let time = stretch / (4.0 * scale.cycle_work() / mass).sqrt();
+                let known = found.unwrap_or(Self { stretch, time });
+                found = Some(Self { stretch: known.stretch.min(stretch), time: known.time.min(time) });
+            }
+        }
+        found
+    }
+
+    /// Largest step [s] in which grains of a largest speed [m/s] do not pass over the stretch unseen. Those
+    /// that are much faster than the speed below which they stick do not feel it.
+    fn limit(self, speed: f64) -> f64 {
+        (self.stretch / (2.0 * speed)).max(self.time / STICKING_SPEEDS)
+    }
 }
 
 /// Electric limits of the time step.
@@ -95,7 +136,8 @@ impl Limits {
             hertz = hertz.min(hertz_mindlin::contact_time(young, 0.5 * radius, 0.5 * mass, 1.0));
         }
         let smallest = particles.radius.iter().copied().fold(f64::INFINITY, f64::min);
-        Self { smallest, rayleigh, hertz, gas, flow: None, electric: None, warned: false }
+        let pull_off = PullOff::of(particles, table, materials.len());
+        Self { smallest, rayleigh, hertz, pull_off, gas, flow: None, electric: None, warned: false }
     }
 
     /// Takes the plasma limit of a new evaluation of the field.
@@ -157,12 +199,14 @@ impl Limits {
         let electric = self
             .electric
             .map(|e| [("electric pair", e.pair), ("wall image", e.wall_image), ("plasma", e.plasma)]);
+        let pull_off = self.pull_off.map(|limits| ("pull-off", limits.limit(speed)));
         let gas = self.gas.map(|gas| ("gas response", gas.limit(speed)));
         let flow = self
             .flow
             .map(|f| [("gas response", f.response_s), (GAS_INTERVAL, f.response_s / f.steps as f64)]);
         [("rayleigh", self.rayleigh), ("hertz", hertz), ("travel", WAY_IN_A_STEP / pace)]
             .into_iter()
+            .chain(pull_off)
             .chain(gas)
             .chain(flow.into_iter().flatten())
             .chain(electric.into_iter().flatten())

@@ -112,7 +112,7 @@ impl Simulation {
             contact,
             gravity,
             electric: electric.map(|electric| electric.energy),
-            error: energy::ROUND_OFF * (contact + sizes) + of_field,
+            error: energy::ROUND_OFF * (contact.abs() + sizes) + of_field,
         })
     }
 

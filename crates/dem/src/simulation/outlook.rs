@@ -7,7 +7,7 @@ use super::state::Progress;
 use super::{Simulation, checks};
 use crate::contacts::cells::{LinkedCells, levels_of, shifts};
 use crate::contacts::material_pairs::{Features, PairTable};
-use crate::contacts::walls::ContactWalls;
+use crate::contacts::walls::{ContactWalls, Sticking};
 use crate::error::DemError;
 use crate::feeding::{self, Feeding};
 use crate::setup::Setup;
@@ -52,10 +52,10 @@ impl Outlook {
         let skin_m = checks::skin(setup);
         checks::check_periods(setup, skin_m)?;
         let Setup { domain, materials, particles, walls, time, .. } = setup;
-        let table = PairTable::new(materials);
+        let table = PairTable::new(materials, &setup.pairs, setup.cohesion);
         let (level, level_radius) = levels_of(particles.radius.iter().copied());
         if !walls.is_empty() {
-            ContactWalls::new(walls, shifts(domain), false).map_err(DemError::Setup)?;
+            ContactWalls::new(walls, shifts(domain), false, Sticking::default()).map_err(DemError::Setup)?;
         }
         let feeding = Feeding::new(setup.feeds.clone(), particles, materials.len(), &level);
         let plan = plan(&Planned {

@@ -4,7 +4,7 @@ use crate::contacts::material_pairs::Features;
 use crate::feeding::Feeding;
 use crate::field_stage::FieldStage;
 use crate::gas_stage::GasStage;
-use amberfield_core::{ChargeTransfer, Plan};
+use amberfield_core::{ChargeTransfer, Cohesion, Plan};
 
 /// Properties of a scene that decide which stages are built.
 pub(super) struct Planned<'a> {
@@ -26,11 +26,21 @@ pub(super) struct Planned<'a> {
 /// The plan of a run, with the field's own plan at its end.
 pub(super) fn plan(planned: &Planned<'_>) -> Plan {
     let &Planned { features, periodic, walls, levels, feeding, gas, transfer, field_asked, field } = planned;
+    let tangential = match features.cohesion {
+        Cohesion::None => "a pair of materials has friction",
+        _ => "contacts that stick have a memory",
+    };
     let mut plan = Plan::new();
     plan.decide(true, "integrate", "velocity Verlet, every step".to_owned(), "");
     let grids = format!("linked cells on {levels} level(s) of size, Verlet lists rebuilt by displacement");
     plan.decide(true, "neighbours", grids, "");
     plan.decide(true, "contacts", "Hertz contacts of grains".to_owned(), "");
+    plan.decide(
+        features.cohesion != Cohesion::None,
+        "cohesion",
+        format!("{}: contacts stick by their surface energies", features.cohesion.name()),
+        "no contacts.cohesion",
+    );
     plan.decide(walls > 0, "walls", format!("{walls} wall(s)"), "no wall");
     plan.decide(
         features.damping,
@@ -41,7 +51,7 @@ pub(super) fn plan(planned: &Planned<'_>) -> Plan {
     plan.decide(
         features.friction,
         "tangential history",
-        "a pair of materials has friction".to_owned(),
+        tangential.to_owned(),
         "no pair of materials has friction",
     );
     plan.decide(

@@ -9,7 +9,7 @@ use crate::charging::Charging;
 use crate::contacts::cells::{LinkedCells, levels_of, shifts};
 use crate::contacts::material_pairs::{Features, PairTable};
 use crate::contacts::neighbours::Neighbours;
-use crate::contacts::walls::ContactWalls;
+use crate::contacts::walls::{ContactWalls, Sticking};
 use crate::contacts::{Contacts, Depths};
 use crate::error::DemError;
 use crate::feeding::{self, Feeding};
@@ -108,8 +108,10 @@ impl Simulation {
     /// Builds the stages that a scene needs; grains are in the set-up's order, nothing is listed yet.
     fn assemble(setup: Setup, skin_m: f64, state: Option<&State>) -> Result<Self, DemError> {
         let ways_out = state.map_or_else(|| WaysOut::new(&setup), |state| state.ways_out);
-        let Setup { domain, materials, rolling_model, particles, walls, time, gas, field, feeds } = setup;
-        let table = PairTable::new(&materials);
+        let Setup { domain, materials, rolling_model, cohesion, pairs, .. } = setup;
+        let Setup { particles, walls, time, gas, field, feeds, .. } = setup;
+        let table = PairTable::new(&materials, &pairs, cohesion);
+        let stretch = table.longest_stretch(particles.radius.iter().copied().fold(0.0, f64::max));
         let transfer = field.as_ref().and_then(|field| field.transfer);
         let features = Features { charging: transfer.is_some(), rolling_model, ..table.features() };
         let (level, level_radius) = levels_of(particles.radius.iter().copied());
@@ -118,9 +120,13 @@ impl Simulation {
         let (wall_count, field_asked) = (walls.len(), field.is_some());
         let walls = match wall_count {
             0 => None,
-            _ => Some(ContactWalls::new(&walls, shifts, features.charging).map_err(DemError::Setup)?),
+            _ => {
+                let sticking = Sticking { cohesion, stretch };
+                let walls = ContactWalls::new(&walls, shifts, features.charging, sticking);
+                Some(walls.map_err(DemError::Setup)?)
+            }
         };
-        let neighbours = Neighbours::new(LinkedCells::new(level_radius, skin_m), shifts, features);
+        let neighbours = Neighbours::new(LinkedCells::new(level_radius, skin_m + stretch), shifts, features);
         let contacts = Contacts { table, features, neighbours, walls };
         let charging = field.as_ref().zip(transfer).map(|(field, transfer)| {
             Charging::new(transfer, &field.settings, &materials, &particles, wall_count)
@@ -302,9 +308,12 @@ mod tests {
                 restitution: 0.8,
                 friction,
                 rolling_friction,
+                surface_energy_j_m2: 0.0,
                 work_function_ev: None,
             }],
             rolling_model: RollingModel::default(),
+            cohesion: Default::default(),
+            pairs: Vec::new(),
             particles: (0..5).map(grain).collect(),
             walls: vec![Wall {
                 name: "floor".into(),

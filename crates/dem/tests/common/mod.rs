@@ -20,6 +20,7 @@ pub(crate) fn material(restitution: f64, friction: f64, rolling_friction: f64) -
         restitution,
         friction,
         rolling_friction,
+        surface_energy_j_m2: 0.0,
         work_function_ev: None,
     }
 }
@@ -63,6 +64,8 @@ pub(crate) fn setup(grains: Vec<Grain>, material: Material, step_s: f64) -> Setu
         domain: domain(1.0, Boundary::Open),
         materials: vec![material],
         rolling_model: RollingModel::default(),
+        cohesion: Default::default(),
+        pairs: Vec::new(),
         particles: grains.into_iter().collect(),
         walls: Vec::new(),
         time: time(step_s),

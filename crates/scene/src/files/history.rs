@@ -14,7 +14,7 @@ pub static HISTORY: FileTable = FileTable::csv(
         Column::new(
             &["contact_J"],
             "J",
-            "Elastic energy of all contacts: normal, tangential and rolling springs.",
+            "Elastic energy of all contacts, normal, tangential and rolling, less what adhesion gained.",
         ),
         Column::new(&["gravity_J"], "J", "Energy of gravity, −Σ m g·x, zero at the origin.")
             .when(When::Gravity),

@@ -1,7 +1,7 @@
 //! Keys of `[[materials]]`.
 
 use super::{Form, Key};
-use crate::limits::{DENSITY, FRICTION, YOUNG};
+use crate::limits::{DENSITY, FRICTION, SURFACE_ENERGY, YOUNG};
 use crate::tree::Range;
 
 pub(super) static KEYS: &[Key] = &[
@@ -67,6 +67,15 @@ pub(super) static KEYS: &[Key] = &[
         .default("0.0")
         .example("0.05")
         .also(&["mu_r", "rolling", "coefficient_rolling_friction"]),
+    Key::new(
+        "surface_energy_J_m2",
+        Form::Number(SURFACE_ENERGY),
+        "Surface energy γ, by which contacts.cohesion makes grains stick.",
+    )
+    .unit("J/m²")
+    .default("0.0")
+    .example("0.05")
+    .also(&["surface_energy", "cohesion_energy", "gamma", "adhesion", "work_of_adhesion"]),
     Key::new(
         "work_function_eV",
         Form::Number(Range::closed(0.0, 100.0)),

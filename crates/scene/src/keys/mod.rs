@@ -15,6 +15,7 @@ mod key;
 mod materials;
 mod output;
 mod page;
+mod pairs;
 mod particles;
 mod schema;
 mod solver;
@@ -35,6 +36,8 @@ pub static SCENE: &[Key] = &[
         .without("open space; a run needs it"),
     Key::new("materials", Form::Tables(materials::KEYS), "Materials of grains and walls.")
         .without("none; a run needs one"),
+    Key::new("pairs", Form::Tables(pairs::KEYS), "Values of two materials, in the place of mixed ones.")
+        .without("each value is mixed from the two materials"),
     Key::new("particles", Form::Table(particles::KEYS), "Grains at the start.")
         .without("none; there must be [[feeds]] then"),
     Key::new("walls", Form::Tables(walls::KEYS), "Walls that grains touch.").without("none"),

@@ -2,7 +2,8 @@
 
 use super::physics::Physics;
 use amberfield_core::{
-    Domain, Feeds, FieldSettings, Gas, Material, Particles, RollingModel, TimeSettings, Wall,
+    Cohesion, Domain, Feeds, FieldSettings, Gas, Material, MaterialPair, Particles, RollingModel,
+    TimeSettings, Wall,
 };
 use serde::{Deserialize, Serialize};
 use std::path::PathBuf;
@@ -31,6 +32,10 @@ pub struct Scene {
     pub materials: Vec<Material>,
     /// Model of rolling friction.
     pub rolling_model: RollingModel,
+    /// Model of cohesion.
+    pub cohesion: Cohesion,
+    /// Values of pairs of materials, in the order of the file.
+    pub pairs: Vec<MaterialPair>,
     /// Walls, in the order of the file.
     pub walls: Vec<Wall>,
     /// `OpenFOAM` patch with the same surface, for each wall.

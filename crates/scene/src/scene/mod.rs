@@ -8,6 +8,7 @@ mod feeds;
 mod gas;
 mod input;
 mod others;
+mod pairs;
 mod particles;
 mod physics;
 mod read;

@@ -4,13 +4,24 @@ use super::description::{ChargeTransferSettings, OpenFoamSettings, OutputSetting
 use crate::SceneError;
 use crate::source::SceneSource;
 use crate::table::SceneTable;
-use amberfield_core::RollingModel;
+use amberfield_core::{Cohesion, RollingModel};
+
+/// Models of contacts.
+#[derive(Clone, Copy, Debug, Default)]
+pub(super) struct ContactModels {
+    pub(super) rolling: RollingModel,
+    pub(super) cohesion: Cohesion,
+}
 
 /// Reads `[contacts]`.
-pub(super) fn read_contacts(document: &SceneTable<'_>) -> Result<RollingModel, SceneError> {
+pub(super) fn read_contacts(document: &SceneTable<'_>) -> Result<ContactModels, SceneError> {
     let Some(table) = document.table("contacts")? else { return Ok(Default::default()) };
-    let models = RollingModel::ALL.map(|model| (model.name(), model));
-    Ok(table.word("rolling_model", &models)?.unwrap_or_default())
+    let rolling = RollingModel::ALL.map(|model| (model.name(), model));
+    let cohesion = Cohesion::ALL.map(|model| (model.name(), model));
+    Ok(ContactModels {
+        rolling: table.word("rolling_model", &rolling)?.unwrap_or_default(),
+        cohesion: table.word("cohesion", &cohesion)?.unwrap_or_default(),
+    })
 }
 
 /// Reads `[charge_transfer]`.

@@ -7,6 +7,7 @@ use super::feeds::{FeedContext, ReadFeeds, read_feeds};
 use super::gas::read_gas;
 use super::input::SceneInput;
 use super::others::{read_charge_transfer, read_contacts, read_output, read_solver};
+use super::pairs::read_pairs;
 use super::particles::read_section;
 use super::physics::Physics;
 use super::time::read_time;
@@ -116,7 +117,7 @@ fn read_sections(
     let sections = problems.keep(check_sections(document, motion, purpose));
     let domain = problems.keep(read_domain(document));
     let list = problems.keep(read_materials(document));
-    let rolling_model = problems.keep(read_contacts(document));
+    let contacts = problems.keep(read_contacts(document));
     let field = problems.keep(read_electric_field(document));
     let charge_transfer = problems.keep(read_charge_transfer(document));
     let solver = problems.keep(read_solver(document, source));
@@ -128,7 +129,7 @@ fn read_sections(
     let (
         Some(domain),
         Some(list),
-        Some(rolling_model),
+        Some(contacts),
         Some(electric_field),
         Some(charge_transfer),
         Some(solver),
@@ -136,11 +137,12 @@ fn read_sections(
         Some(output),
         Some(_),
         Some(()),
-    ) = (domain, list, rolling_model, field, charge_transfer, solver, gas, output, time_alone, sections)
+    ) = (domain, list, contacts, field, charge_transfer, solver, gas, output, time_alone, sections)
     else {
         return Err(problems.finish().expect_err("a section was refused"));
     };
     let materials = Materials { ignored: list.is_empty(), list };
+    let pairs = read_pairs(document, &materials)?;
     let walls = read_walls(document, &materials, solver.as_ref(), source)?;
     let mut section = read_section(document, domain.as_ref(), &materials, &walls.walls, !motion, source)?;
     let time = read_time(document, section.on_exit, section.allow_overlap)?;
@@ -157,7 +159,9 @@ fn read_sections(
         title: "scene".to_owned(),
         domain,
         materials: materials.list,
-        rolling_model,
+        rolling_model: contacts.rolling,
+        cohesion: contacts.cohesion,
+        pairs,
         walls: walls.walls,
         wall_patches: walls.patches,
         particles: section.read.particles,

@@ -7,7 +7,7 @@ use crate::error::{Problems, shorten};
 use crate::table::SceneTable;
 use crate::tree::nearest;
 use amberfield_core::{
-    Axis, Boundary, Domain, FieldSettings, Method, Vector3, Wall, WallCharging, WallShape,
+    Axis, Boundary, Cohesion, Domain, FieldSettings, Method, Vector3, Wall, WallCharging, WallShape,
 };
 
 /// Number of grains beyond which the direct sum causes a warning.
@@ -30,6 +30,7 @@ pub(super) fn check_together(
         problems.keep(check_reach(document, domain, &field.field));
     }
     problems.keep(check_charge_transfer(document, scene));
+    problems.keep(check_cohesion(document, scene));
     problems.finish()?;
     warn(scene);
     Ok(())
@@ -184,10 +185,34 @@ fn check_charge_transfer(document: &SceneTable<'_>, scene: &Scene) -> Result<(),
     Ok(())
 }
 
+/// Checks that something sticks where cohesion is asked for.
+fn check_cohesion(document: &SceneTable<'_>, scene: &Scene) -> Result<(), SceneError> {
+    if scene.cohesion == Cohesion::None || sticks(scene) || scene.materials.is_empty() {
+        return Ok(());
+    }
+    Err(document.bad_below(
+        "contacts",
+        "cohesion",
+        &format!("\"{}\"", scene.cohesion.name()),
+        "no two materials stick; give surface_energy_J_m2 of materials or of [[pairs]]",
+    ))
+}
+
+/// Whether any material or pair has a surface energy.
+fn sticks(scene: &Scene) -> bool {
+    scene.materials.iter().any(|material| material.surface_energy_j_m2 > 0.0)
+        || scene.pairs.iter().any(|pair| pair.surface_energy_j_m2.is_some_and(|energy| energy > 0.0))
+}
+
 /// Adds warnings about keys that have no effect or cost much time, and about unusual values.
 fn warn(scene: &mut Scene) {
     let unusual = unusual_values(scene);
     scene.warnings.extend(unusual);
+    if scene.cohesion == Cohesion::None && sticks(scene) {
+        scene.warnings.push(
+            "surface_energy_J_m2 has no effect without contacts.cohesion = \"jkr\" or \"dmt\"".to_owned(),
+        );
+    }
     let count = scene.particles.len();
     let method = scene.electric_field.as_ref().map(|field| field.field.method);
     if method == Some(Method::Direct) && count > MANY_FOR_DIRECT {

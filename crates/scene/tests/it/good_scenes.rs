@@ -2,7 +2,8 @@
 
 use crate::common::{Folder, GRAINS, SCENE};
 use amberfield_core::{
-    Boundary, CouplingInterval, Method, RollingModel, Skin, Step, WallCharging, WallShape,
+    Boundary, Cohesion, CouplingInterval, MaterialId, Method, RollingModel, Skin, Step, WallCharging,
+    WallShape,
 };
 use amberfield_scene::{Purpose, write_particles_csv};
 use nalgebra::Vector3;
@@ -41,6 +42,25 @@ fn rolling_model_is_chosen_by_name_and_belongs_to_the_physics() {
         assert_eq!(asked.rolling_model, model);
         assert_ne!(asked.physics(), plain.physics());
     }
+}
+
+#[test]
+fn pairs_and_cohesion_are_read_by_name() {
+    let plain = Folder::good().read(&[]).unwrap();
+    assert!(plain.pairs.is_empty() && plain.cohesion == Cohesion::None);
+    let keys = [
+        "contacts.cohesion=jkr",
+        "materials[0].surface_energy_J_m2=0.05",
+        "pairs=[{ between = [\"steel\", \"glass\"], friction = 0.4, surface_energy_J_m2 = 0.02 }]",
+    ];
+    let asked = Folder::good().read(&keys).unwrap();
+    assert_eq!(asked.cohesion, Cohesion::Jkr);
+    assert_eq!(asked.materials[0].surface_energy_j_m2, 0.05);
+    let [pair] = &asked.pairs[..] else { panic!("one pair") };
+    assert!(pair.is_between(MaterialId(0), MaterialId(1)));
+    assert_eq!((pair.friction, pair.restitution, pair.surface_energy_j_m2), (Some(0.4), None, Some(0.02)));
+    let unused = Folder::good().read(&keys[1..]).unwrap();
+    assert!(unused.warnings.iter().any(|warning| warning.contains("contacts.cohesion")));
 }
 
 #[test]

@@ -26,6 +26,7 @@ pub(crate) fn glass() -> Material {
         restitution: 0.9,
         friction: 0.3,
         rolling_friction: 0.0,
+        surface_energy_j_m2: 0.0,
         work_function_ev: None,
     }
 }
@@ -99,6 +100,8 @@ fn jittered(count: usize, fraction: f64, jitter: f64) -> Setup {
             .expect("positive extents"),
         materials: vec![glass()],
         rolling_model: RollingModel::default(),
+        cohesion: Default::default(),
+        pairs: Vec::new(),
         particles,
         walls: Vec::new(),
         time: TimeSettings {

@@ -4,7 +4,8 @@ use super::parts::Part;
 use super::{ChunkWalls, Met, WallContact, WallLoad, touches};
 use crate::contacts::law::{Contact, History, respond};
 use crate::contacts::material_pairs::{PairConstants, PairTable};
-use crate::contacts::walls::surfaces::{Found, MOST_CONTACTS, Surfaces};
+use crate::contacts::normal::{Elastic, Hertz, NormalLaw};
+use crate::contacts::walls::surfaces::{ClosestPoint, Found, MOST_CONTACTS, Surfaces};
 use crate::motion::chunks::{CHUNK, ChunkLoads};
 use crate::motion::grains::Grains;
 use amberfield_core::{RollingModel, Vector3};
@@ -21,19 +22,21 @@ pub(super) struct Scene<'a> {
     pub(super) grains: &'a Grains,
     pub(super) table: &'a PairTable,
     pub(super) rolling_model: RollingModel,
+    /// Bound on the stretch of any contact [m]; 0 where none stretches.
+    pub(super) stretch: f64,
     /// Step by which springs advance [s].
     pub(super) step: f64,
 }
 
 impl ChunkWalls {
     /// Adds what walls do to the grains of chunk `k`.
-    pub(super) fn forces<const FRICTION: bool, const ROLLING: bool, const DAMPING: bool>(
+    pub(super) fn forces<L: NormalLaw, const FRICTION: bool, const ROLLING: bool, const DAMPING: bool>(
         &mut self,
         k: usize,
         scene: &Scene<'_>,
         loads: ChunkLoads<'_>,
     ) {
-        let &Scene { surfaces, parts, shifts, grains, table, rolling_model, step } = scene;
+        let &Scene { surfaces, parts, shifts, grains, table, rolling_model, step, .. } = scene;
         let Self { entries, triangles, contacts, growth, scratch, met, loads: on_walls, deepest } = self;
         met.clear();
         *deepest = 0.0;
@@ -48,8 +51,8 @@ impl ChunkWalls {
             let near = triangles[range]
                 .iter()
                 .map(|near| (near.triangle, centre + Vector3::from(shifts[near.shift as usize])));
-            let count = surfaces.contacts(radius, near, scratch, &mut found);
             let kept = &mut contacts[entry.contacts as usize..];
+            let count = find::<L>(scene, i, near, &kept[..entry.count as usize], scratch, &mut found);
             let from = renew(kept, entry.count as usize, &found[..count]);
             if !growth.is_empty() {
                 touches::renew(&mut growth[entry.contacts as usize..], &from[..count]);
@@ -66,8 +69,11 @@ impl ChunkWalls {
                 let pair = table.get(grains.material[i], part.material);
                 let (contact, arm) = contact_of::<FRICTION, ROLLING>(grains, i, wall_contact);
                 let mut history = History::stored(wall_contact.spring, wall_contact.rolling);
-                let response = respond::<_, FRICTION, ROLLING, DAMPING>(
+                let work = if L::COHESIVE { table.work(grains.material[i], part.material) } else { 0.0 };
+                let elastic = elastic::<L>(found, radius, pair, work);
+                let response = respond::<_, L, FRICTION, ROLLING, DAMPING>(
                     &contact,
+                    &elastic,
                     pair,
                     rolling_model,
                     step,
@@ -75,7 +81,7 @@ impl ChunkWalls {
                 );
                 (wall_contact.spring, wall_contact.rolling) = history.to_store();
                 *deepest = deepest.max(wall_contact.overlap / radius);
-                let lean = lean(pair, radius, found);
+                let lean = lean::<L>(pair, radius, found, work);
                 loads.force[local] += response.force - lean;
                 on_walls[part.wall as usize].add_contact(wall_contact, &response, lean, centre, arm);
                 if FRICTION || ROLLING {
@@ -92,8 +98,74 @@ impl ChunkWalls {
 /// Force that a contact lacks where it joins a deeper one: it pushes away from its own place and pulls to
 /// where they join [N].
 #[inline(always)]
-fn lean(pair: &PairConstants<f64>, radius: f64, found: &Found) -> Vector3<f64> {
-    found.lean * (pair.hertz * (radius * found.joined).sqrt() * found.joined)
+fn lean<L: NormalLaw>(pair: &PairConstants<f64>, radius: f64, found: &Found, work: f64) -> Vector3<f64> {
+    if L::COHESIVE && found.joined > 0.0 {
+        return found.lean * L::elastic(found.joined, radius, pair, work).load;
+    }
+    found.lean * Hertz::elastic(found.joined, radius, pair, work).load
+}
+
+/// Elastic state of a contact; of a cohesive one less that of the line where it joins a deeper one.
+#[inline(always)]
+fn elastic<L: NormalLaw>(found: &Found, radius: f64, pair: &PairConstants<f64>, work: f64) -> Elastic<f64> {
+    let own = L::elastic(found.overlap, radius, pair, work);
+    if !L::COHESIVE || found.joined <= 0.0 {
+        return own;
+    }
+    let line = L::elastic(found.joined, radius, pair, work);
+    let share = (1.0 - (line.contact_radius / own.contact_radius).powi(2)).max(0.0);
+    Elastic {
+        contact_radius: own.contact_radius * share.sqrt(),
+        load: own.load - line.load,
+        grip: own.grip * share,
+    }
+}
+
+/// Finds the contacts of grain `i` with what is near it, after those `before`; returns how many there are.
+#[inline(always)]
+fn find<L: NormalLaw>(
+    scene: &Scene<'_>,
+    i: usize,
+    near: impl Iterator<Item = (u32, Vector3<f64>)>,
+    before: &[WallContact],
+    scratch: &mut Vec<ClosestPoint>,
+    found: &mut [Found; MOST_CONTACTS],
+) -> usize {
+    let &Scene { surfaces, parts, grains, table, stretch, .. } = scene;
+    let radius = grains.centre[i][3];
+    if !L::COHESIVE {
+        return surfaces.contacts(radius, near, scratch, found);
+    }
+    let count = surfaces.contacts(radius + stretch, near, scratch, found);
+    let holds = |found: &Found| {
+        let material = parts[surfaces.surface_of(found.triangle)].material;
+        let own = table.stretch(grains.material[i], material, radius);
+        let is_old = |old: &WallContact| old.normal.dot(&found.normal) > SAME_CONTACT;
+        found.overlap > 0.0 || (found.overlap > -own && before.iter().any(is_old))
+    };
+    sticking(found, count, stretch, holds)
+}
+
+/// Keeps what holds among the contacts of a sphere that is larger by `stretch` [m] than the grain, with the
+/// grain's own overlaps, which are negative where a contact is stretched. Returns how many there are.
+fn sticking(
+    found: &mut [Found; MOST_CONTACTS],
+    count: usize,
+    stretch: f64,
+    holds: impl Fn(&Found) -> bool,
+) -> usize {
+    let mut kept = 0;
+    for number in 0..count {
+        let Found { normal, lean, triangle, .. } = found[number];
+        let (overlap, joined) = (found[number].depth() - stretch, found[number].joined - stretch);
+        let lean = if joined > 0.0 { lean } else { Vector3::zeros() };
+        let contact = Found { normal, overlap, joined: joined.max(0.0), lean, triangle };
+        if holds(&contact) {
+            found[kept] = contact;
+            kept += 1;
+        }
+    }
+    kept
 }
 
 /// Geometry and motion of a grain's contact with a wall at rest, and the centre's distance from it.
@@ -107,7 +179,6 @@ fn contact_of<const FRICTION: bool, const ROLLING: bool>(
     let arm = radius - found.overlap;
     let turning = if FRICTION || ROLLING { grains.angular[i] } else { Vector3::zeros() };
     let contact = Contact {
-        overlap: found.overlap,
         normal: found.normal,
         velocity: grains.velocity[i],
         forecast: grains.forecast[i],

@@ -13,11 +13,12 @@ pub(crate) use touches::{Met, Touch, Touching};
 use crate::contacts::cells::NO_SHIFT;
 use crate::contacts::material_pairs::{Features, PairTable};
 use crate::contacts::memory::{Growth, Spring, WallHistory};
+use crate::contacts::normal::{Dmt, Hertz, Jkr};
 use crate::contacts::walls::parts::{Part, surfaces_of};
 use crate::contacts::walls::surfaces::{ClosestPoint, Surfaces};
 use crate::motion::chunks::{CHUNK, Loads, chunk_count, for_each_chunk, for_each_load, is_parallel};
 use crate::motion::grains::Grains;
-use amberfield_core::{Domain, Vector3, Wall};
+use amberfield_core::{Cohesion, Domain, Vector3, Wall};
 use std::ops::Range;
 
 /// A touching contact with a wall, for those who look on.
@@ -88,6 +89,15 @@ pub(crate) struct ChunkWalls {
     deepest: f64,
 }
 
+/// Way in which contacts stick to walls.
+#[derive(Clone, Copy, Debug, Default)]
+pub(crate) struct Sticking {
+    /// Model of cohesion.
+    pub(crate) cohesion: Cohesion,
+    /// Bound on the stretch of any contact [m].
+    pub(crate) stretch: f64,
+}
+
 /// All walls and what is near them.
 #[derive(Debug)]
 pub(crate) struct ContactWalls {
@@ -97,22 +107,30 @@ pub(crate) struct ContactWalls {
     shifts: [[f64; 3]; 32],
     /// Whether contacts move charge.
     charge: bool,
+    /// Way in which contacts stick to walls.
+    sticking: Sticking,
     chunks: Vec<ChunkWalls>,
     /// Whether forces were evaluated since the run began or went on.
     evaluated: bool,
 }
 
 impl ContactWalls {
-    pub(crate) fn new(walls: &[Wall], shifts: [[f64; 3]; 32], charge: bool) -> Result<Self, String> {
+    pub(crate) fn new(
+        walls: &[Wall],
+        shifts: [[f64; 3]; 32],
+        charge: bool,
+        sticking: Sticking,
+    ) -> Result<Self, String> {
         let (surfaces, parts) = surfaces_of(walls)?;
-        Ok(Self { surfaces, parts, shifts, charge, chunks: Vec::new(), evaluated: false })
+        Ok(Self { surfaces, parts, shifts, charge, sticking, chunks: Vec::new(), evaluated: false })
     }
 
     /// Finds the grains near walls; histories stay with their grain and wall.
     pub(crate) fn build(&mut self, domain: &Domain, grains: &Grains, skin: f64, histories: &[WallHistory]) {
         let chunks = chunk_count(grains.len());
         self.chunks.resize_with(chunks, ChunkWalls::default);
-        let Self { surfaces, shifts, charge, chunks: near, .. } = self;
+        let Self { surfaces, shifts, charge, chunks: near, sticking, .. } = self;
+        let skin = skin + sticking.stretch;
         let search = near::Search { surfaces, charge: *charge, shifts, domain, grains, skin, histories };
         let mut marks = vec![(); chunks];
         for_each_chunk!(is_parallel(grains.len()), chunks, (near / 1, marks / 1), |k: usize,
@@ -162,13 +180,23 @@ impl ContactWalls {
     ) {
         self.evaluated = true;
         let near = &mut self.chunks[..];
-        let Self { surfaces, parts, shifts, .. } = self;
-        let rolling_model = features.rolling_model;
-        let scene = forces::Scene { surfaces, parts, shifts, grains, table, rolling_model, step };
+        let Self { surfaces, parts, shifts, sticking, .. } = self;
+        let (rolling_model, stretch) = (features.rolling_model, sticking.stretch);
+        let scene = forces::Scene { surfaces, parts, shifts, grains, table, rolling_model, stretch, step };
         macro_rules! run {
             ($f:literal, $r:literal, $d:literal) => {
-                for_each_load(near, loads, |k, near, loads| near.forces::<$f, $r, $d>(k, &scene, loads))
+                run!(Hertz, $f, $r, $d)
             };
+            ($law:ty, $f:literal, $r:literal, $d:literal) => {
+                for_each_load(near, loads, |k, near, loads| near.forces::<$law, $f, $r, $d>(k, &scene, loads))
+            };
+        }
+        match (features.cohesion, features.rolling) {
+            (Cohesion::None, _) => {}
+            (Cohesion::Dmt, false) => return run!(Dmt, true, false, true),
+            (Cohesion::Dmt, true) => return run!(Dmt, true, true, true),
+            (Cohesion::Jkr, false) => return run!(Jkr, true, false, true),
+            (Cohesion::Jkr, true) => return run!(Jkr, true, true, true),
         }
         match (features.friction, features.rolling, features.damping) {
             (false, false, false) => run!(false, false, false),

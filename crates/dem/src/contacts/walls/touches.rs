@@ -7,9 +7,10 @@ use crate::contacts::memory::{Follow, Growth};
 use crate::contacts::walls::surfaces::{Found, MOST_CONTACTS};
 use crate::motion::chunks::CHUNK;
 use crate::motion::grains::Grains;
-use amberfield_core::{Domain, Vector3, WallCharging};
+use amberfield_core::{Cohesion, Domain, Vector3, WallCharging};
 use amberfield_laws::contact_area;
 use rayon::prelude::*;
+use std::f64::consts::PI;
 
 /// Place of a contact with a wall.
 #[derive(Clone, Copy, Debug)]
@@ -55,6 +56,7 @@ impl ContactWalls {
     /// Follows the areas of all contacts; how many begin.
     pub(crate) fn follow(&mut self, grains: &Grains, follow: Follow) -> u64 {
         let mut begun = 0;
+        let sticks = self.sticking.cohesion != Cohesion::None;
         for (k, chunk) in self.chunks.iter_mut().enumerate() {
             for entry in &chunk.entries {
                 let radius = grains.centre[k * CHUNK + entry.local as usize][3];
@@ -63,7 +65,11 @@ impl ContactWalls {
                     chunk.contacts[touching.clone()].iter().zip(&mut chunk.growth[touching])
                 {
                     // What did not touch before has nothing to remember.
-                    let area = contact_area::hertz(radius, contact.overlap);
+                    let area = if sticks {
+                        PI * contact.spring.contact_radius * contact.spring.contact_radius
+                    } else {
+                        contact_area::hertz(radius, contact.overlap)
+                    };
                     begun += u64::from(growth.follow(area, true, follow));
                 }
             }

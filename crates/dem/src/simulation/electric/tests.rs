@@ -50,6 +50,7 @@ fn built(
         restitution: 1.0,
         friction: 0.0,
         rolling_friction: 0.0,
+        surface_energy_j_m2: 0.0,
         work_function_ev: Some(*work),
     };
     let settings = FieldSettings { method: Method::Direct, ..FieldSettings::default() };
@@ -59,6 +60,8 @@ fn built(
         domain: domain.expect("a good scene"),
         materials: work_functions.iter().map(material).collect(),
         rolling_model: RollingModel::default(),
+        cohesion: Default::default(),
+        pairs: Vec::new(),
         particles: (0..places.len()).map(grain).collect(),
         walls: Vec::new(),
         time: TimeSettings {

@@ -92,6 +92,8 @@ fn ours(root: &Path, place: &Path, lattice: &[[f64; 3]], looks: (f64, usize)) ->
         domain: scene.domain.context("the case has a box")?,
         materials: scene.materials,
         rolling_model: scene.rolling_model,
+        cohesion: scene.cohesion,
+        pairs: scene.pairs.clone(),
         particles,
         walls: scene.walls,
         time: scene.time.context("the case has a time")?,

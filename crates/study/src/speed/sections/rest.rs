@@ -164,18 +164,10 @@ fn start(restitution: f64, young_pa: f64, bed: u64) -> Setup {
     Setup {
         domain: Domain::new(Vector3::repeat(-1.0), Vector3::repeat(1.0), [[Boundary::Open; 2]; 3])
             .expect("positive extents"),
-        materials: vec![Material {
-            name: "glass".to_owned(),
-            density_kg_m3: DENSITY,
-            young_pa,
-            young_real_pa: None,
-            poisson: POISSON,
-            restitution,
-            friction: FRICTION,
-            rolling_friction: 0.0,
-            work_function_ev: None,
-        }],
+        materials: vec![glass(restitution, young_pa)],
         rolling_model: RollingModel::default(),
+        cohesion: Default::default(),
+        pairs: Vec::new(),
         particles,
         walls: sides
             .map(|normal| plane(normal, HALF))
@@ -194,6 +186,22 @@ fn start(restitution: f64, young_pa: f64, bed: u64) -> Setup {
         gas: None,
         field: None,
         feeds: Default::default(),
+    }
+}
+
+/// Material of the grains and the walls.
+fn glass(restitution: f64, young_pa: f64) -> Material {
+    Material {
+        name: "glass".to_owned(),
+        density_kg_m3: DENSITY,
+        young_pa,
+        young_real_pa: None,
+        poisson: POISSON,
+        restitution,
+        friction: FRICTION,
+        rolling_friction: 0.0,
+        surface_energy_j_m2: 0.0,
+        work_function_ev: None,
     }
 }
 

@@ -28,6 +28,8 @@ impl Bed {
             domain: scene.domain.context("the case has a domain")?,
             materials: scene.materials,
             rolling_model: scene.rolling_model,
+            cohesion: scene.cohesion,
+            pairs: scene.pairs.clone(),
             particles: scene.particles,
             walls: scene.walls,
             time: time.clone(),
