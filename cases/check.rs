@@ -3,8 +3,12 @@
 
 mod support;
 
+#[path = "belt/check.rs"]
+mod belt;
 #[path = "capacitor/check.rs"]
 mod capacitor;
+#[path = "centrifuge/check.rs"]
+mod centrifuge;
 #[path = "charged-ball/check.rs"]
 mod charged_ball;
 #[path = "charging-gas/check.rs"]
@@ -39,6 +43,8 @@ mod particle_impacts;
 mod pull_off;
 #[path = "settling-charged-bed/check.rs"]
 mod settling_charged_bed;
+#[path = "shaker/check.rs"]
+mod shaker;
 #[path = "stiffness-collapse/check.rs"]
 mod stiffness_collapse;
 #[path = "two-grains/check.rs"]

@@ -13,6 +13,7 @@ mod field;
 mod files;
 mod host_library;
 mod interrupt;
+mod moving_walls;
 mod openfoam;
 mod run;
 mod scenes;

@@ -33,7 +33,14 @@ pub(crate) fn walls(scene: &Scene) -> Vec<String> {
             |[low, high]| format!("{:?} to {:?} m", low.as_slice(), high.as_slice()),
         ),
     };
-    scene.walls.iter().map(|wall| format!("{}: {}", wall.name, place(&wall.shape))).collect()
+    scene
+        .walls
+        .iter()
+        .map(|wall| {
+            let moves = if wall.motion.is_empty() { "" } else { ", moves" };
+            format!("{}: {}{moves}", wall.name, place(&wall.shape))
+        })
+        .collect()
 }
 
 /// Line with what the step costs in accuracy of impacts.

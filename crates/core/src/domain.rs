@@ -230,6 +230,29 @@ impl Domain {
         )
     }
 
+    /// Corners of the polygon in which a plane cuts the box, in order [m]; none where it passes by.
+    #[must_use]
+    pub fn section(&self, point: &Vector3<f64>, normal: &Vector3<f64>) -> Vec<Vector3<f64>> {
+        let ends = [self.min, self.max];
+        let corner = |k: usize| Vector3::from_fn(|axis, _| ends[k >> axis & 1][axis]);
+        let mut crossings = Vec::new();
+        for from in 0..8_usize {
+            for axis in (0..3).filter(|axis| from >> axis & 1 == 0) {
+                let (a, b) = (corner(from), corner(from | 1 << axis));
+                let (start, end) = ((a - point).dot(normal), (b - point).dot(normal));
+                if start * end <= 0.0 && start != end {
+                    crossings.push(a + (b - a) * (start / (start - end)));
+                }
+            }
+        }
+        let centre = crossings.iter().sum::<Vector3<f64>>() / crossings.len().max(1) as f64;
+        let across = normal.cross(&Vector3::ith(normal.iamin(), 1.0)).normalize();
+        let along = normal.cross(&across);
+        let angle = |place: &Vector3<f64>| (place - centre).dot(&along).atan2((place - centre).dot(&across));
+        crossings.sort_by(|a, b| angle(a).total_cmp(&angle(b)));
+        crossings
+    }
+
     /// Boundary conditions `[axis][side]`.
     #[must_use]
     pub fn faces(&self) -> &[[Boundary; 2]; 3] {

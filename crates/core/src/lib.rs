@@ -22,6 +22,7 @@ mod plan;
 mod rolling_model;
 mod time_settings;
 mod wall;
+mod wall_motion;
 
 pub use charge_transfer::ChargeTransfer;
 pub use cohesion::Cohesion;
@@ -40,3 +41,4 @@ pub use plan::{Plan, PlanEntry};
 pub use rolling_model::RollingModel;
 pub use time_settings::{OnExit, Skin, Step, TimeSettings};
 pub use wall::{TriangleMesh, Wall, WallCharging, WallShape};
+pub use wall_motion::{MotionKind, MotionRow, Placement, WallMotion};

@@ -1,6 +1,7 @@
 //! Walls that grains touch.
 
 use crate::material::MaterialId;
+use crate::wall_motion::{Placement, WallMotion};
 use nalgebra::Vector3;
 use serde::{Deserialize, Serialize};
 
@@ -38,6 +39,20 @@ pub enum WallShape {
     Mesh(TriangleMesh),
 }
 
+impl WallShape {
+    /// Shape after a motion.
+    #[must_use]
+    pub fn moved(&self, to: &Placement) -> Self {
+        match self {
+            Self::Plane { point, normal } => Self::Plane { point: to.place(point), normal: to.turn * normal },
+            Self::Mesh(mesh) => Self::Mesh(TriangleMesh {
+                vertices: mesh.vertices.iter().map(|vertex| to.place(vertex)).collect(),
+                triangles: mesh.triangles.clone(),
+            }),
+        }
+    }
+}
+
 /// Treatment of charge by a wall.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(rename_all = "snake_case")]
@@ -65,4 +80,6 @@ pub struct Wall {
     /// Whether it is a boundary of the electric field too: a patch of a field solver's mesh. Faces of the
     /// domain are known by their place.
     pub bounds_field: bool,
+    /// Motions, one after another; empty for a wall at rest.
+    pub motion: Vec<WallMotion>,
 }

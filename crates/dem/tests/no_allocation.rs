@@ -79,6 +79,23 @@ fn steady_step_allocates_nothing() {
     });
 }
 
+#[test]
+fn steady_step_with_walls_that_move_allocates_nothing() {
+    use amberfield_core::{MotionKind, WallMotion};
+    alone(|| {
+        let mut scene = bed(Boundary::Open);
+        let whole = |kind| WallMotion { kind, start_s: 0.0, end_s: f64::INFINITY };
+        let direction = Vector3::z();
+        scene.walls[0].motion = vec![
+            whole(MotionKind::Servo { force_n: 1e-4, direction, most_m_s: 1e-3 }),
+            whole(MotionKind::Rotate { origin: Vector3::zeros(), axis: direction, turns_per_s: 0.1 }),
+        ];
+        let (silent, simulation) = silent_steps(scene);
+        assert!(silent >= 180, "{silent}");
+        assert!(simulation.wall_work().is_some_and(|work| work != 0.0));
+    });
+}
+
 mod charged {
     use super::*;
     use amberfield_core::{ChargeTransfer, FieldSettings, Tuning};

@@ -29,7 +29,7 @@ pub use scene::{
 pub use table::check_keys;
 pub use write::{
     ChargedSquare, FieldColumns, FieldComponents, FieldReport, FieldReportSeconds, HistoryFile, HistoryValue,
-    PvdSeries, read_checkpoint, read_table, write_atomically, write_charge_vtu, write_checkpoint,
+    PvdSeries, WallFace, read_checkpoint, read_table, write_atomically, write_charge_vtu, write_checkpoint,
     write_field_csv, write_json, write_particles_csv, write_rows, write_snapshot, write_table, write_text,
-    write_vtu,
+    write_vtu, write_walls_vtu,
 };

@@ -4,8 +4,8 @@
 //! a feature adds its line. [`field`] has the lines of the electric field over a mesh, by the stand-in for a
 //! field solver, which takes no other process; [`field_over_openfoam`] has those that OpenFOAM's files and
 //! processes make; [`flange`] has OpenFOAM's own example; [`walls`] has contacts, [`charge_on_walls`] what
-//! they charge, [`runs`] whole runs by the binary, [`rest`] charges that start from rest, and [`leaving`]
-//! grains that leave through faces.
+//! they charge, [`moving`] walls that move, [`runs`] whole runs by the binary, [`rest`] charges that start
+//! from rest, and [`leaving`] grains that leave through faces.
 
 mod boxes;
 mod charge_on_walls;
@@ -15,6 +15,7 @@ mod flange;
 mod foam_boxes;
 mod leaving;
 mod lines;
+mod moving;
 mod rest;
 mod runs;
 mod scene;

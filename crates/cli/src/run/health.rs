@@ -35,8 +35,8 @@ pub(crate) struct Health {
 /// Facts that a scene permits, so that they are no sign of an unsound run.
 #[derive(Clone, Copy, Debug, Serialize, Deserialize)]
 pub(crate) struct Allowed {
-    /// Switch for energy from outside: charging contacts, limited forces, a gas, or a force along a periodic
-    /// axis, which does work in each period.
+    /// Switch for energy from outside: charging contacts, limited forces, a gas, walls that move, or a force
+    /// along a periodic axis, which does work in each period.
     work: bool,
 }
 
@@ -54,7 +54,8 @@ impl Allowed {
         let limited = field.is_some_and(|field| field.force_limit.is_some());
         let charging =
             scene.electric_field.as_ref().is_some_and(|field| field.enable_collision_charge_transfer);
-        Self { work: round || limited || scene.gas.is_some() || charging }
+        let moving = scene.walls.iter().any(|wall| !wall.motion.is_empty());
+        Self { work: round || limited || scene.gas.is_some() || charging || moving }
     }
 }
 

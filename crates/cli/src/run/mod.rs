@@ -19,6 +19,7 @@ mod solver;
 mod solver_folder;
 mod summary;
 mod wall_forces;
+mod walls;
 
 pub(crate) use folder::{is_stale, remove_leftovers};
 pub(crate) use name::scene_name;

@@ -13,7 +13,7 @@ pub(crate) fn draw(path: &Path, scene: &Scene, simulation: &Simulation) {
         title: &scene.title,
         time_s: Some(simulation.time_s()),
         domain,
-        walls: &scene.walls,
+        walls: &super::walls::now(scene, simulation),
         particles: &simulation.particles(),
     };
     if let Err(error) = write_picture(path, &picture) {

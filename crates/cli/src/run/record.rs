@@ -6,13 +6,14 @@ use super::histogram::Histogram;
 use super::picture::draw;
 use super::schedule::Schedule;
 use super::wall_forces::WallForces;
+use super::walls::faces;
 use crate::failure::Failure;
 use amberfield_core::WallCharging;
 use amberfield_dem::{Book, ChargedSpot, Energies, FeedAccount, Simulation, Tally};
 use amberfield_scene::files::{ELECTRIC_FORCE, HISTORY, When};
 use amberfield_scene::{
     ChargedSquare, HistoryFile, HistoryValue, PvdSeries, Scene, write_charge_vtu, write_particles_csv,
-    write_vtu,
+    write_vtu, write_walls_vtu,
 };
 
 /// Open files of a run.
@@ -22,7 +23,7 @@ pub(crate) struct Record {
     columns: HistoryColumns,
     /// Files of the grains.
     series: PvdSeries,
-    /// Files of the charge on walls; `None` where no wall takes charge.
+    /// Files of walls; `None` where no wall takes charge or moves.
     walls: Option<PvdSeries>,
     /// Forces on walls; `None` where there are no walls.
     wall_forces: Option<WallForces>,
@@ -43,6 +44,7 @@ struct HistoryColumns {
     field: bool,
     transfer: bool,
     walls: bool,
+    moving: bool,
     limited: bool,
     solver: bool,
     /// Names of the materials, as they stand in columns, where there are feeds; else none.
@@ -59,6 +61,7 @@ impl HistoryColumns {
             transfer: simulation.ledger().is_some(),
             walls: simulation.ledger().is_some()
                 && scene.walls.iter().any(|wall| wall.charging != WallCharging::None),
+            moving: simulation.wall_work().is_some(),
             limited: simulation.plan().has("field")
                 && scene.electric_field.as_ref().is_some_and(|field| field.limit_field_force),
             solver: simulation.plan().has("field") && scene.solver.is_some(),
@@ -86,6 +89,7 @@ impl HistoryColumns {
         match when {
             When::Always | When::Stage => true,
             When::Gravity => self.gravity,
+            When::Motion => self.moving,
             When::Field => self.field,
             When::Transfer => self.transfer,
             When::ChargedWalls => self.walls,
@@ -116,7 +120,7 @@ impl Record {
         let columns = HistoryColumns::new(scene, simulation);
         let history = HistoryFile::create(&folder.file(HISTORY.path), &columns.names())?;
         let series = PvdSeries::new(&folder.file("particles.pvd"));
-        let walls = columns.walls.then(|| PvdSeries::new(&folder.file("walls.pvd")));
+        let walls = (columns.walls || columns.moving).then(|| PvdSeries::new(&folder.file("walls.pvd")));
         if walls.is_some() {
             folder.make("walls")?;
         }
@@ -145,7 +149,8 @@ impl Record {
         let is_kept =
             |name: &str| step_of(name).is_some_and(|step| step <= reached && schedule.frame_is_due(step));
         let series = PvdSeries::resume(&folder.file("particles.pvd"), is_kept);
-        let walls = columns.walls.then(|| PvdSeries::resume(&folder.file("walls.pvd"), is_kept));
+        let has_walls = columns.walls || columns.moving;
+        let walls = has_walls.then(|| PvdSeries::resume(&folder.file("walls.pvd"), is_kept));
         let frame_is_due = |step| schedule.frame_is_due(step);
         let histogram =
             columns.transfer.then(|| Histogram::resume(folder, reached, frame_is_due)).transpose()?;
@@ -183,6 +188,7 @@ impl Record {
             HistoryValue::Number(energies.contact),
         ];
         row.extend(self.columns.gravity.then_some(HistoryValue::Number(energies.gravity)));
+        row.extend(simulation.wall_work().map(HistoryValue::Number));
         if self.columns.field {
             row.push(HistoryValue::Number(energies.electric.unwrap_or_default()));
             row.push(HistoryValue::Number(simulation.particles().net_charge()));
@@ -237,23 +243,41 @@ impl Record {
             let vectors: Vec<_> = forces.iter().map(|forces| (ELECTRIC_FORCE, &forces[..])).collect();
             write_vtu(&folder.file(&file), &particles, &vectors)?;
             self.series.append(simulation.time_s(), &file)?;
-            if let Some(walls) = &mut self.walls {
-                let file = format!("walls/charge_{step:012}.vtu");
-                let square = |(spot, density): (&ChargedSpot, f64)| ChargedSquare {
-                    wall: spot.wall,
-                    corners: spot.square(),
-                    charge_c: spot.charge,
-                    density_c_m2: density,
-                };
-                let squares: Vec<_> = simulation.charged_spots().map(square).collect();
-                write_charge_vtu(&folder.file(&file), &squares)?;
-                walls.append(simulation.time_s(), &file)?;
-            }
+            self.walls_frame(folder, scene, simulation)?;
         }
         if let Some(histogram) = &mut self.histogram {
             histogram.append(step, simulation.time_s(), &particles)?;
         }
         Ok(true)
+    }
+
+    /// Writes the files of the walls: their charge, and where those are that move.
+    fn walls_frame(
+        &mut self,
+        folder: &RunFolder,
+        scene: &Scene,
+        simulation: &Simulation,
+    ) -> Result<(), Failure> {
+        let (step, time_s) = (simulation.step_index(), simulation.time_s());
+        let Some(walls) = &mut self.walls else { return Ok(()) };
+        if self.columns.walls {
+            let file = format!("walls/charge_{step:012}.vtu");
+            let square = |(spot, density): (&ChargedSpot, f64)| ChargedSquare {
+                wall: spot.wall,
+                corners: spot.square(),
+                charge_c: spot.charge,
+                density_c_m2: density,
+            };
+            let squares: Vec<_> = simulation.charged_spots().map(square).collect();
+            write_charge_vtu(&folder.file(&file), &squares)?;
+            walls.append(time_s, &file)?;
+        }
+        if self.columns.moving {
+            let file = format!("walls/surface_{step:012}.vtu");
+            write_walls_vtu(&folder.file(&file), &faces(scene, simulation))?;
+            walls.append_part(time_s, 1, &file)?;
+        }
+        Ok(())
     }
 }
 

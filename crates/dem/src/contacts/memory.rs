@@ -1,5 +1,6 @@
 //! Memory of contacts: springs, area and what of its growth is still to move charge.
 
+use crate::contacts::walls::movers::MoversState;
 use crate::motion::grains::Original;
 use amberfield_core::Vector3;
 use serde::{Deserialize, Serialize};
@@ -144,6 +145,8 @@ pub(crate) struct ContactsState {
     pub(crate) pairs: Vec<PairHistory>,
     /// Histories of the touching contacts with walls.
     pub(crate) walls: Vec<WallHistory>,
+    /// Walls that move; `None` where all are at rest.
+    pub(crate) moving: Option<MoversState>,
 }
 
 /// Charging of a listed pair.

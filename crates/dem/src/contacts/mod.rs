@@ -57,10 +57,18 @@ impl Contacts {
         pair_forces(grains, &mut self.neighbours, &self.table, step, follow, loads);
     }
 
-    /// Adds what walls do to grains; `step` [s] advances the springs.
-    pub(crate) fn push_off_walls(&mut self, grains: &Grains, step: f64, loads: &mut Loads) {
+    /// Adds what walls do to grains at a time [s]; `step` [s] advances the springs.
+    pub(crate) fn push_off_walls(&mut self, grains: &Grains, time: f64, step: f64, loads: &mut Loads) {
         if let Some(walls) = &mut self.walls {
             walls.forces(grains, &self.table, self.features, step, loads);
+            walls.book_motion(grains, &self.table, time, step);
+        }
+    }
+
+    /// Moves walls to a time [s], after a step [s].
+    pub(crate) fn move_walls(&mut self, time: f64, step: f64) {
+        if let Some(walls) = &mut self.walls {
+            walls.advance(time, step);
         }
     }
 
@@ -102,6 +110,7 @@ impl Contacts {
             reference: self.neighbours.reference.clone(),
             pairs: self.neighbours.histories(grains),
             walls: self.wall_histories(grains),
+            moving: self.walls.as_ref().and_then(ContactWalls::moving_state),
         }
     }
 
@@ -114,6 +123,9 @@ impl Contacts {
         skin: f64,
         state: &ContactsState,
     ) -> Result<(), String> {
+        if let Some(walls) = &mut self.walls {
+            walls.restore_moving(state.moving.as_ref())?;
+        }
         let order: Vec<u32> = (0..grains.len() as u32).collect();
         self.list(domain, grains, &order, skin, &state.walls);
         self.neighbours.restore(grains, &state.pairs)

@@ -1,5 +1,6 @@
 //! Checks of a set-up, and of a state that is to go on with it.
 
+use super::check_motion;
 use super::state::State;
 use crate::contacts::Contacts;
 use crate::contacts::cells::INDEX_MASK;
@@ -34,6 +35,7 @@ pub(crate) fn check(setup: &Setup) -> Result<(), DemError> {
         if wall.material.0 as usize >= setup.materials.len() {
             return Err(bad(format!("wall '{}' has unknown material {}", wall.name, wall.material.0)));
         }
+        check_motion::check(wall, setup.field.as_ref().is_some_and(|field| field.transfer.is_some()))?;
     }
     let time = &setup.time;
     if let Step::Seconds(step) = time.step

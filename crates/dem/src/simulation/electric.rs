@@ -65,6 +65,9 @@ impl Simulation {
         let Some(field) = &mut self.field else { return Ok(()) };
         let extras = &mut self.scratch.extras;
         if let Some(charging) = &mut self.charging {
+            if let Some(walls) = &mut self.contacts.walls {
+                walls.settle();
+            }
             let round = Round {
                 domain: &self.domain,
                 grains: &self.grains,

@@ -4,7 +4,7 @@
 //! or an insulator, as soon as it touches it: its own image would pull its centre into the face without
 //! bound. Where a wall stands on such a face, grains bounce off the wall and stay.
 
-use super::Simulation;
+use super::{HALF_SKIN, Simulation};
 use crate::error::DemError;
 use crate::motion::verlet::{Beyond, Bounds};
 use crate::setup::Setup;
@@ -58,6 +58,11 @@ pub(crate) struct WaysOut {
 }
 
 impl WaysOut {
+    /// Share of the skin that a wall may use up before lists are built anew.
+    pub(super) fn share_of_walls(&self) -> f64 {
+        if self.at_touch.is_some() { HALF_SKIN - ON_FACE } else { HALF_SKIN }
+    }
+
     /// Ways out of the box of a set-up. A field solver has other faces than the box.
     pub(crate) fn new(setup: &Setup) -> Self {
         let mirrors = setup.field.as_ref().is_some_and(|field| field.solver.is_none());

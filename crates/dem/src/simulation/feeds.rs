@@ -10,6 +10,9 @@ impl Simulation {
     /// rebuild that must follow adds them.
     pub(super) fn admit_grains(&mut self) -> Result<bool, DemError> {
         let Some(feeding) = &mut self.feeding else { return Ok(false) };
+        if let Some(walls) = &mut self.contacts.walls {
+            walls.settle();
+        }
         let newcomers = feeding.newcomers(&Surroundings {
             domain: &self.domain,
             particles: &self.particles,

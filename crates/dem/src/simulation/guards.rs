@@ -30,7 +30,8 @@ const GAS_INTERVAL: &str = "gas interval";
 /// A limit on the time step.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Guard {
-    /// Name: `rayleigh`, `hertz`, `travel`, `pull-off`, `gas response`, `gas interval`, `electric pair`,
+    /// Name: `rayleigh`, `hertz`, `travel`, `wall motion`, `pull-off`, `gas response`, `gas interval`,
+    /// `electric pair`,
     /// `wall image` or `plasma`.
     pub name: &'static str,
     /// Largest step [s]; infinite when nothing limits it at present.
@@ -67,6 +68,8 @@ pub(crate) struct Limits {
     flow: Option<FlowLimits>,
     /// Electric limits; `None` without charges.
     electric: Option<ElectricLimits>,
+    /// Bound on the speed of walls that move [m/s]; zero where all are at rest.
+    walls: f64,
     /// Whether a run has been told that its step breaks a guard.
     warned: bool,
 }
@@ -137,7 +140,8 @@ impl Limits {
         }
         let smallest = particles.radius.iter().copied().fold(f64::INFINITY, f64::min);
         let pull_off = PullOff::of(particles, table, materials.len());
-        Self { smallest, rayleigh, hertz, pull_off, gas, flow: None, electric: None, warned: false }
+        let (flow, electric, walls, warned) = (None, None, 0.0, false);
+        Self { smallest, rayleigh, hertz, pull_off, gas, flow, electric, walls, warned }
     }
 
     /// Takes the plasma limit of a new evaluation of the field.
@@ -145,6 +149,16 @@ impl Limits {
         if let Some(electric) = &mut self.electric {
             electric.plasma = plasma;
         }
+    }
+
+    /// Takes a bound on the speed of walls that move [m/s].
+    pub(crate) fn set_walls(&mut self, speed: f64) {
+        self.walls = speed;
+    }
+
+    /// Bound on the speed of walls over the smallest radius [1/s].
+    pub(crate) fn pace_of_walls(&self) -> f64 {
+        if self.walls > 0.0 { self.walls / self.smallest } else { 0.0 }
     }
 
     /// Takes the limits of a gas that flows.
@@ -195,7 +209,9 @@ impl Limits {
     /// All guards for the step and the grains' largest speed (two of them head-on).
     pub(crate) fn guards(&self, progress: &Progress) -> impl Iterator<Item = Guard> + use<> {
         let Progress { step_s: step, speed, pace, .. } = *progress;
-        let hertz = CONTACT_TIME_FRACTION * self.hertz * (2.0 * speed).powf(-0.2);
+        let hertz = CONTACT_TIME_FRACTION * self.hertz * (2.0 * speed).max(speed + self.walls).powf(-0.2);
+        let pace_of_walls = self.pace_of_walls();
+        let walls = (pace_of_walls > 0.0).then(|| ("wall motion", WAY_IN_A_STEP / pace_of_walls));
         let electric = self
             .electric
             .map(|e| [("electric pair", e.pair), ("wall image", e.wall_image), ("plasma", e.plasma)]);
@@ -207,6 +223,7 @@ impl Limits {
         [("rayleigh", self.rayleigh), ("hertz", hertz), ("travel", WAY_IN_A_STEP / pace)]
             .into_iter()
             .chain(pull_off)
+            .chain(walls)
             .chain(gas)
             .chain(flow.into_iter().flatten())
             .chain(electric.into_iter().flatten())

@@ -1,6 +1,7 @@
 //! One run: the stages of a scene and the order in which they act.
 
 pub(crate) mod books;
+mod check_motion;
 pub(crate) mod checks;
 mod electric;
 pub(crate) mod energy;
@@ -33,7 +34,7 @@ use state::{Progress, State};
 use timing::{Stage, StageClock};
 
 /// Margin of the displacement test against round-off.
-const HALF_SKIN: f64 = 0.499_999;
+pub(crate) const HALF_SKIN: f64 = 0.499_999;
 
 /// A run: the stages of a scene.
 ///
@@ -41,7 +42,7 @@ const HALF_SKIN: f64 = 0.499_999;
 /// are named here:
 ///
 /// 1. *Begin*: count the step; keep the state where another process may be lost in it.
-/// 2. *Drift*: first half of velocity Verlet ("Motion").
+/// 2. *Drift*: first half of velocity Verlet ("Motion"); walls that move go where they are at the new time.
 /// 3. *Exits*: grains beyond an open face, or at a face that mirrors charges, end the run or are removed.
 /// 4. *Feeds*: grains that are due come where there is room for them, every few steps.
 /// 5. *Lists*: wrap periodic axes, sort grains in space, list neighbours anew, where a grain may have used
@@ -109,6 +110,7 @@ impl Simulation {
     pub fn step(&mut self) -> Result<(), DemError> {
         let step_s = self.progress.step_s;
         self.begin_step();
+        self.move_walls();
         let outside = self.drift();
         let removed = outside && self.handle_exits()?;
         let admitted = self.admit_grains()?;
@@ -143,6 +145,11 @@ impl Simulation {
         self.progress.step_index += 1;
     }
 
+    /// Moves walls that move to the end of the step.
+    fn move_walls(&mut self) {
+        self.contacts.move_walls(self.progress.time_s(), self.progress.step_s);
+    }
+
     /// Moves the grains; whether one of them may leave now.
     fn drift(&mut self) -> bool {
         let gravity = self.time.gravity_m_s2;
@@ -158,7 +165,7 @@ impl Simulation {
     fn renew_lists(&mut self, others: bool) -> Result<(), DemError> {
         self.watch.lap(Stage::Integrate);
         self.progress.travel += self.progress.step_s * self.progress.speed;
-        let used_up = self.has_used_up_skin();
+        let used_up = self.has_used_up_skin() || self.walls_have_moved();
         if others || used_up {
             self.rebuild();
         }
@@ -184,6 +191,14 @@ impl Simulation {
             .fold(0.0, f64::max);
         self.progress.travel = displacement2.sqrt();
         self.progress.travel > limit
+    }
+
+    /// Whether a wall may have moved by its share of the skin since the lists were built: a half, or what
+    /// leaves enough for a look at whether it stands on a face.
+    fn walls_have_moved(&self) -> bool {
+        let Some(walls) = &self.contacts.walls else { return false };
+        let travel = walls.travel();
+        travel > 0.0 && travel > self.ways_out.share_of_walls() * self.progress.skin_m
     }
 
     /// Wraps, sorts and lists the grains anew; histories move along.
@@ -225,7 +240,8 @@ impl Simulation {
 
     /// Adds the contact forces of walls, for springs that advance by `step` [s].
     fn push_off_walls(&mut self, step: f64) {
-        self.contacts.push_off_walls(&self.grains, step, &mut self.scratch.loads);
+        let time = self.progress.time_s();
+        self.contacts.push_off_walls(&self.grains, time, step, &mut self.scratch.loads);
         self.watch.lap(Stage::Walls);
     }
 

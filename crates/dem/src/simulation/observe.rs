@@ -7,7 +7,7 @@ use super::timing::STAGE_NAMES;
 use crate::contacts::walls::WallLoad;
 use crate::error::DemError;
 use crate::field_stage::{FieldStage, Intervals, Limited};
-use amberfield_core::{Particles, Plan, Vector3};
+use amberfield_core::{Particles, Placement, Plan, Vector3};
 use amberfield_field::ElectricField;
 
 impl Simulation {
@@ -141,6 +141,17 @@ impl Simulation {
     #[must_use]
     pub fn contacts(&self) -> usize {
         self.contacts.count()
+    }
+
+    /// Work of the walls that move on the grains since the start [J]; `None` where all walls are at rest.
+    #[must_use]
+    pub fn wall_work(&self) -> Option<f64> {
+        self.contacts.walls.as_ref()?.work()
+    }
+
+    /// Places of the walls that move, by their number in the set-up.
+    pub fn wall_placements(&self) -> impl Iterator<Item = (u32, Placement)> {
+        self.contacts.walls.iter().flat_map(|walls| walls.placements())
     }
 
     /// Loads of the grains on each wall, in the order of the set-up, at the last step; `None` without walls,

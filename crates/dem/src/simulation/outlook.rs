@@ -2,12 +2,12 @@
 
 use super::guards::{Guard, Limits, StepRestitution};
 use super::plan::{Planned, plan};
-use super::start::{bounds, pace};
+use super::start::{bounds, contact_walls, pace};
 use super::state::Progress;
 use super::{Simulation, checks};
 use crate::contacts::cells::{LinkedCells, levels_of, shifts};
 use crate::contacts::material_pairs::{Features, PairTable};
-use crate::contacts::walls::{ContactWalls, Sticking};
+use crate::contacts::walls::Sticking;
 use crate::error::DemError;
 use crate::feeding::{self, Feeding};
 use crate::setup::Setup;
@@ -54,14 +54,17 @@ impl Outlook {
         let Setup { domain, materials, particles, walls, time, .. } = setup;
         let table = PairTable::new(materials, &setup.pairs, setup.cohesion);
         let (level, level_radius) = levels_of(particles.radius.iter().copied());
+        let mut moving = None;
         if !walls.is_empty() {
-            ContactWalls::new(walls, shifts(domain), false, Sticking::default()).map_err(DemError::Setup)?;
+            let built = contact_walls(walls, shifts(domain), false, Sticking::default(), domain)?;
+            moving = built.fastest(time.end_s);
         }
         let feeding = Feeding::new(setup.feeds.clone(), particles, materials.len(), &level);
         let plan = plan(&Planned {
             features: Features { rolling_model: setup.rolling_model, ..table.features() },
             periodic: bounds(domain).is_periodic(),
             walls: walls.len(),
+            moving: moving.is_some(),
             levels: LinkedCells::new(level_radius, skin_m).level_count(),
             feeding: feeding.as_ref(),
             gas: None,
@@ -70,6 +73,7 @@ impl Outlook {
             field: None,
         });
         let mut limits = Limits::new(particles, materials, &table, None);
+        limits.set_walls(moving.unwrap_or(0.0));
         let speed = particles.velocity.iter().map(|v| v.norm()).fold(0.0, f64::max);
         let mut progress =
             Progress { step_index: 0, step_s: 0.0, skin_m, travel: 0.0, speed, pace: pace(particles) };

@@ -102,7 +102,8 @@ impl Simulation {
     /// Ends the run where a contact is too deep: its grain may pass through.
     pub(super) fn watch_overlaps(&mut self) -> Result<(), DemError> {
         let Depths { grains, walls } = self.contacts.depths();
-        let deepest_now = 1.0 - self.progress.step_s * self.progress.pace;
+        let pace = self.progress.pace + self.limits.pace_of_walls();
+        let deepest_now = 1.0 - self.progress.step_s * pace;
         let allowed = Depths { walls: self.allowed.walls.min(deepest_now), ..self.allowed };
         if walls <= DEEPEST {
             // Contacts that began deeper have come out of it.

@@ -13,6 +13,8 @@ pub(super) struct Planned<'a> {
     pub(super) periodic: bool,
     /// Number of walls.
     pub(super) walls: usize,
+    /// Whether a wall moves.
+    pub(super) moving: bool,
     /// Levels of size of the neighbour search.
     pub(super) levels: usize,
     pub(super) feeding: Option<&'a Feeding>,
@@ -25,7 +27,8 @@ pub(super) struct Planned<'a> {
 
 /// The plan of a run, with the field's own plan at its end.
 pub(super) fn plan(planned: &Planned<'_>) -> Plan {
-    let &Planned { features, periodic, walls, levels, feeding, gas, transfer, field_asked, field } = planned;
+    let &Planned { features, periodic, walls, moving, levels, feeding, gas, transfer, field_asked, field } =
+        planned;
     let tangential = match features.cohesion {
         Cohesion::None => "a pair of materials has friction",
         _ => "contacts that stick have a memory",
@@ -42,6 +45,7 @@ pub(super) fn plan(planned: &Planned<'_>) -> Plan {
         "no contacts.cohesion",
     );
     plan.decide(walls > 0, "walls", format!("{walls} wall(s)"), "no wall");
+    plan.decide(moving, "moving walls", "a wall has a motion".to_owned(), "no wall has a motion");
     plan.decide(
         features.damping,
         "contact damping",

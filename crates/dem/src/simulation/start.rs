@@ -18,7 +18,7 @@ use crate::gas_stage::GasStage;
 use crate::motion::grains::Grains;
 use crate::motion::verlet::Bounds;
 use crate::setup::{FieldStageSetup, Setup};
-use amberfield_core::{Axis, Domain, Particles, Step, Vector3};
+use amberfield_core::{Axis, Domain, Particles, Step, Vector3, Wall};
 
 /// Length of the step that is no step [s]: forces at the start are computed where grains stand, and neither
 /// springs nor velocities advance.
@@ -73,6 +73,7 @@ impl Simulation {
         }
         run.grains.restore(state.grains);
         run.progress = state.progress;
+        run.contacts.move_walls(run.progress.time_s(), AT_START);
         run.allowed = overlaps::allowed(run.depths(), run.time.allow_overlap);
         run.resize_scratch();
         run.update_electric_limits();
@@ -122,10 +123,10 @@ impl Simulation {
             0 => None,
             _ => {
                 let sticking = Sticking { cohesion, stretch };
-                let walls = ContactWalls::new(&walls, shifts, features.charging, sticking);
-                Some(walls.map_err(DemError::Setup)?)
+                Some(contact_walls(&walls, shifts, features.charging, sticking, &domain)?)
             }
         };
+        let moving = walls.as_ref().and_then(|walls| walls.fastest(time.end_s));
         let neighbours = Neighbours::new(LinkedCells::new(level_radius, skin_m + stretch), shifts, features);
         let contacts = Contacts { table, features, neighbours, walls };
         let charging = field.as_ref().zip(transfer).map(|(field, transfer)| {
@@ -139,6 +140,7 @@ impl Simulation {
             features,
             periodic: bounds.is_periodic(),
             walls: wall_count,
+            moving: moving.is_some(),
             levels: contacts.neighbours.level_count(),
             feeding: feeding.as_ref(),
             gas: gas.as_ref(),
@@ -175,6 +177,7 @@ impl Simulation {
             rescued: None,
             watch: StageClock::default(),
         };
+        run.limits.set_walls(moving.unwrap_or(0.0));
         run.resize_scratch();
         Ok(run)
     }
@@ -237,6 +240,19 @@ impl Simulation {
     }
 }
 
+/// Builds the walls of a scene, at the begin of their motions.
+pub(super) fn contact_walls(
+    walls: &[Wall],
+    shifts: [[f64; 3]; 32],
+    charge: bool,
+    sticking: Sticking,
+    domain: &Domain,
+) -> Result<ContactWalls, DemError> {
+    let mut built = ContactWalls::new(walls, shifts, charge, sticking).map_err(DemError::Setup)?;
+    built.set_in_motion(walls, domain);
+    Ok(built)
+}
+
 /// Builds the field of a scene that asks for one, afresh or from a state; `None` where every charge is zero
 /// and nothing makes one.
 fn field_stage(
@@ -278,7 +294,7 @@ pub(super) fn bounds(domain: &Domain) -> Bounds {
 mod tests {
     use super::*;
     use amberfield_core::{
-        Boundary, Grain, GroupId, Material, MaterialId, OnExit, RollingModel, Skin, TimeSettings, Wall,
+        Boundary, Grain, GroupId, Material, MaterialId, OnExit, RollingModel, Skin, TimeSettings,
         WallCharging, WallShape,
     };
 
@@ -321,6 +337,7 @@ mod tests {
                 material: MaterialId(0),
                 charging: WallCharging::None,
                 bounds_field: false,
+                motion: Vec::new(),
             }],
             time: TimeSettings {
                 step: Step::Seconds(1e-6),

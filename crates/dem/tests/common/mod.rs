@@ -82,6 +82,7 @@ pub(crate) fn wall(shape: WallShape) -> Wall {
         material: MaterialId(0),
         charging: WallCharging::None,
         bounds_field: false,
+        motion: Vec::new(),
     }
 }
 

@@ -34,7 +34,7 @@ pub(super) fn in_front(image: &mut DepthImage, camera: &Camera, scene: &PictureS
         match &wall.shape {
             WallShape::Plane { point, normal } => {
                 if !on_face(scene.domain, point, normal) {
-                    let polygon = cut(scene.domain, point, normal);
+                    let polygon = scene.domain.section(point, normal);
                     fill(image, camera, &polygon, WALL, VEIL);
                     outline(image, camera, &polygon);
                 }
@@ -98,27 +98,6 @@ fn on_face(domain: &Domain, point: &Vector3<f64>, normal: &Vector3<f64>) -> bool
     corners(domain).iter().all(|corner| (corner - point).dot(normal) > -tolerance(domain))
 }
 
-/// The polygon in which a plane cuts the box, in order around it.
-fn cut(domain: &Domain, point: &Vector3<f64>, normal: &Vector3<f64>) -> Vec<Vector3<f64>> {
-    let all = corners(domain);
-    let mut crossings = Vec::new();
-    for from in 0..8_usize {
-        for axis in (0..3).filter(|axis| from >> axis & 1 == 0) {
-            let (a, b) = (all[from], all[from | 1 << axis]);
-            let (start, end) = ((a - point).dot(normal), (b - point).dot(normal));
-            if start * end <= 0.0 && start != end {
-                crossings.push(a + (b - a) * (start / (start - end)));
-            }
-        }
-    }
-    let centre = crossings.iter().sum::<Vector3<f64>>() / crossings.len().max(1) as f64;
-    let across = normal.cross(&Vector3::ith(normal.iamin(), 1.0)).normalize();
-    let along = normal.cross(&across);
-    let angle = |place: &Vector3<f64>| (place - centre).dot(&along).atan2((place - centre).dot(&across));
-    crossings.sort_by(|a, b| angle(a).total_cmp(&angle(b)));
-    crossings
-}
-
 fn fill(image: &mut DepthImage, camera: &Camera, polygon: &[Vector3<f64>], colour: Colour, weight: f64) {
     let projected: Vec<Corner> = polygon.iter().map(|corner| camera.project(corner)).collect();
     for index in 2..projected.len() {
@@ -142,7 +121,7 @@ mod tests {
     fn slanted_plane_cuts_a_cube_in_a_hexagon() {
         let domain = Domain::new(Vector3::zeros(), Vector3::repeat(1.0), [[Boundary::Open; 2]; 3]).unwrap();
         let normal = Vector3::repeat(1.0).normalize();
-        assert_eq!(cut(&domain, &Vector3::repeat(0.5), &normal).len(), 6);
+        assert_eq!(domain.section(&Vector3::repeat(0.5), &normal).len(), 6);
         assert!(on_face(&domain, &Vector3::zeros(), &Vector3::z()));
         assert!(!on_face(&domain, &Vector3::repeat(0.5), &normal));
     }

@@ -20,6 +20,8 @@ pub enum When {
     Always,
     /// Gravity.
     Gravity,
+    /// Wall with a motion.
+    Motion,
     /// Field of charged grains.
     Field,
     /// Charging by contact.
@@ -45,6 +47,7 @@ impl When {
         match self {
             Self::Always => "",
             Self::Gravity => "gravity",
+            Self::Motion => "a wall with `motion`",
             Self::Field => "`[electric_field]` and a charge",
             Self::Transfer => "`enable_collision_charge_transfer`",
             Self::ChargedWalls => "the same, and a wall with `charging`",

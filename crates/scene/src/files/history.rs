@@ -19,6 +19,12 @@ pub static HISTORY: FileTable = FileTable::csv(
         Column::new(&["gravity_J"], "J", "Energy of gravity, −Σ m g·x, zero at the origin.")
             .when(When::Gravity),
         Column::new(
+            &["wall_work_J"],
+            "J",
+            "Work that walls which move have done on the grains since the start.",
+        )
+        .when(When::Motion),
+        Column::new(
             &["electric_J"],
             "J",
             "Energy of the charges in their own field and the external one, ½ Σ q (V + V_external).",

@@ -17,7 +17,7 @@ pub use history::HISTORY;
 pub use page::{page, section};
 pub use run::{
     CHARGE_HISTOGRAM, ELECTRIC_FORCE, EXITS, GRAINS_CSV, GRAINS_VTU, LOG, SUMMARY, TUNING, WALL_CHARGE,
-    WALL_FORCES,
+    WALL_FORCES, WALL_SURFACES,
 };
 pub use study::{ENERGIES, EXTREMES, MOTIONS, POINTS};
 

@@ -14,6 +14,7 @@ pub(super) static FILES: &[&FileTable] = &[
     &GRAINS_PNG,
     &GRAINS_SERIES,
     &WALL_CHARGE,
+    &WALL_SURFACES,
     &WALL_SERIES,
     &PICTURE,
     &CHECKPOINT,
@@ -175,9 +176,26 @@ pub static WALL_CHARGE: FileTable = FileTable::csv(
 .form(Form::Vtu)
 .when("charging by contact, a wall with `charging`, and `\"vtk\"`");
 
-static WALL_SERIES: FileTable =
-    FileTable::plain("walls.pvd", "List of the files of charge on walls with their times.")
-        .when("as these files");
+/// Walls that move, for ParaView.
+pub static WALL_SURFACES: FileTable = FileTable::csv(
+    "walls/surface_STEP.vtu",
+    "Walls that move, for ParaView, where they are; of a plane, what is in the box.",
+    &[
+        Column::new(&["wall"], "", "Number of the wall in the order of `[[walls]]`, counted from 0."),
+        Column::new(&["points_m"], "m", "Corners of the faces, as ParaView's Points."),
+        Column::new(&["connectivity"], "", "Points of the cells, as VTK asks for it; a face is a cell."),
+        Column::new(&["offsets"], "", "End of each cell's points."),
+        Column::new(&["types"], "", "Type of each cell: 7, a polygon."),
+    ],
+)
+.form(Form::Vtu)
+.when("a wall with `motion`, and `\"vtk\"`");
+
+static WALL_SERIES: FileTable = FileTable::plain(
+    "walls.pvd",
+    "List of the files of walls with their times: part 0 charge, part 1 surfaces.",
+)
+.when("as these files");
 
 static PICTURE: FileTable =
     FileTable::plain("picture.png", "Picture of the grains at the end.").when("a run that ends well");

@@ -49,8 +49,11 @@ pub(crate) fn unknown_key(name: &str, path: &str, keys: &'static [Key], value: &
     // A table of this name is no answer to a value that is none.
     let is_table = matches!(value.value, Value::Table(_));
     let fits = |key: &Key| is_table || key.form.keys().is_empty();
-    let named = all().find(|(_, key)| key.name == name && fits(key));
-    if let Some((path, key)) = named.or_else(|| all().find(|(_, key)| means(key, name) && fits(key))) {
+    // Of several, the one that is not deep inside of a list is meant.
+    let depth = |(path, _): &(String, &Key)| path.matches('.').count();
+    let named = all().filter(|(_, key)| key.name == name && fits(key)).min_by_key(depth);
+    let meant = || all().find(|(_, key)| means(key, name) && fits(key));
+    if let Some((path, key)) = named.or_else(meant) {
         return format!("; {path} is {}", told(key, name));
     }
     format!("; the keys here are {}", names.join(", "))

@@ -15,6 +15,7 @@ mod read;
 mod time;
 mod together;
 mod unusual;
+mod wall_motion;
 mod walls;
 
 pub use description::{

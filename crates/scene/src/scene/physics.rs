@@ -25,7 +25,7 @@ const TECHNICAL: [&str; 12] = [
 const OF_SOLVER: &str = "solver";
 const RANKS: &str = "solver.ranks";
 /// Keys whose values are names of files: their contents count instead.
-const FILES: [&str; 3] = ["particles.file", "particles.generate.charge_C.from_file", "stl"];
+const FILES: [&str; 4] = ["particles.file", "particles.generate.charge_C.from_file", "stl", "table"];
 /// Differences that a message names at most.
 const MOST_NAMED: usize = 5;
 

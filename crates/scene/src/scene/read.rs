@@ -143,7 +143,7 @@ fn read_sections(
     };
     let materials = Materials { ignored: list.is_empty(), list };
     let pairs = read_pairs(document, &materials)?;
-    let walls = read_walls(document, &materials, solver.as_ref(), source)?;
+    let walls = read_walls(document, &materials, solver.as_ref(), domain.as_ref(), source)?;
     let mut section = read_section(document, domain.as_ref(), &materials, &walls.walls, !motion, source)?;
     let time = read_time(document, section.on_exit, section.allow_overlap)?;
     let fed = match &time {
@@ -182,12 +182,13 @@ fn read_sections(
 }
 
 /// Keys whose values are paths relative to the scene's folder.
-const PATHS: [&[&str]; 5] = [
+const PATHS: [&[&str]; 6] = [
     &["particles", "file"],
     &["particles", "generate", "charge_C", "from_file"],
     &["solver", "openfoam_case"],
     &["walls", "*", "stl"],
     &["feeds", "*", "region", "stl"],
+    &["walls", "*", "motion", "*", "table"],
 ];
 
 /// Text of the scene as TOML, with absolute paths of files so that it can be run from any folder.

@@ -7,7 +7,8 @@ use crate::error::{Problems, shorten};
 use crate::table::SceneTable;
 use crate::tree::nearest;
 use amberfield_core::{
-    Axis, Boundary, Cohesion, Domain, FieldSettings, Method, Vector3, Wall, WallCharging, WallShape,
+    Axis, Boundary, Cohesion, Domain, FieldSettings, Method, MotionKind, Vector3, Wall, WallCharging,
+    WallShape,
 };
 
 /// Number of grains beyond which the direct sum causes a warning.
@@ -168,6 +169,17 @@ fn check_charge_transfer(document: &SceneTable<'_>, scene: &Scene) -> Result<(),
     if !on {
         return Ok(());
     }
+    let keeps = |wall: &Wall| wall.charging == WallCharging::Insulating && !wall.motion.is_empty();
+    if let Some(index) = scene.walls.iter().position(keeps) {
+        return Err(SceneError::Value {
+            place: document.place_of("walls").to_string(),
+            key: format!("walls[{index}].charging"),
+            value: "\"insulating\"".to_owned(),
+            problem: "the wall has a motion, and kept charge is not taken along; let it rest, or give \
+                      \"grounded\" or \"none\""
+                .to_owned(),
+        });
+    }
     let correction = scene.charge_transfer.as_ref().is_some_and(|transfer| transfer.stiffness_correction);
     for (index, material) in scene.materials.iter().enumerate() {
         let missing = |key: &str, why: &str| SceneError::Missing {
@@ -240,6 +252,10 @@ fn warn(scene: &mut Scene) {
                 .to_owned(),
         );
     }
+    let solved = scene.solver.is_some();
+    let moving = scene.walls.iter().filter(|wall| leaves(wall) && solved && wall.bounds_field);
+    let moving: Vec<String> = moving.map(|wall| mesh_stays(&wall.name)).collect();
+    scene.warnings.extend(moving);
     if method.is_some() {
         let unknown: Vec<String> = unknown_grounded_walls(scene).map(|wall| wall.name.clone()).collect();
         let over_mesh = scene.solver.is_some();
@@ -251,7 +267,7 @@ fn warn(scene: &mut Scene) {
 fn unknown_grounded_walls(scene: &Scene) -> impl Iterator<Item = &Wall> {
     let is_known = |wall: &Wall| match (&scene.solver, &scene.domain) {
         (Some(_), _) => wall.bounds_field,
-        (None, Some(domain)) => is_conducting_face(domain, &wall.shape),
+        (None, Some(domain)) => !leaves(wall) && is_conducting_face(domain, &wall.shape),
         (None, None) => false,
     };
     scene.walls.iter().filter(move |wall| wall.charging == WallCharging::Grounded && !is_known(wall))
@@ -272,6 +288,20 @@ fn unknown_grounded(name: &str, over_mesh: bool) -> String {
              fields of electrodes and external ones as they are"
         )
     }
+}
+
+/// Whether a wall leaves its place.
+fn leaves(wall: &Wall) -> bool {
+    wall.motion.iter().any(|motion| !matches!(motion.kind, MotionKind::Slide(_)))
+}
+
+/// Warning about a wall that moves in a mesh that does not.
+fn mesh_stays(name: &str) -> String {
+    format!(
+        "{name}: the wall moves for the grains that touch it, but the solver's mesh stays: field and gas see \
+         its patch where the case has it; keep the motion small beside the cells, or let the surface slide \
+         with surface_velocity_m_s"
+    )
 }
 
 /// Whether a wall lies on conducting faces of the domain.

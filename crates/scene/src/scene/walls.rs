@@ -1,5 +1,6 @@
 //! Sections `[[walls]]`.
 
+use super::wall_motion::read_motion;
 use crate::SceneError;
 use crate::error::Problems;
 use crate::materials::Materials;
@@ -8,10 +9,13 @@ use crate::scene::OpenFoamSettings;
 use crate::source::SceneSource;
 use crate::stl::{Surface, read_stl};
 use crate::table::SceneTable;
-use amberfield_core::{Fingerprint, TriangleMesh, Wall, WallCharging, WallShape};
+use amberfield_core::{Domain, Fingerprint, TriangleMesh, Wall, WallCharging, WallShape};
 
 /// Length below which a normal has no direction.
 const SHORTEST_NORMAL: f64 = 1e-100;
+
+/// Largest size of a surface over that of the domain.
+const LARGEST: f64 = 1000.0;
 
 /// Advice for a wall without a shape.
 const SHAPES: &str = "give stl = \"file.stl\", plane = { point_m = [0, 0, 0], normal = [0, 0, 1] } or, with \
@@ -37,14 +41,17 @@ pub(super) fn read_walls(
     document: &SceneTable<'_>,
     materials: &Materials,
     solver: Option<&OpenFoamSettings>,
+    domain: Option<&Domain>,
     source: &mut SceneSource,
 ) -> Result<ReadWalls, SceneError> {
     let mut read = ReadWalls { walls: Vec::new(), patches: Vec::new(), warnings: Vec::new() };
     let mut mesh = solver.map(|solver| PolyMesh::of(&solver.openfoam_case, source.mesh()));
     let mut problems = Problems::default();
     for table in document.tables("walls")?.into_iter().flatten() {
-        let wall =
-            table.and_then(|table| read_wall(&table, materials, mesh.as_mut(), source, &mut read.warnings));
+        let wall = table.and_then(|table| {
+            let read = read_wall(&table, materials, mesh.as_mut(), source, &mut read.warnings)?;
+            check_size(&table, &read.wall, domain).map(|()| read)
+        });
         // Whoever can make the mesh does so and reads the scene again.
         if let Err(error @ SceneError::NoMesh { .. }) = wall {
             return Err(error);
@@ -105,7 +112,26 @@ fn read_wall(
     let bounds_field = patch.is_some();
     let patch = patch.map(ToOwned::to_owned);
     let charging = charging.unwrap_or(usual);
-    Ok(ReadWall { wall: Wall { name, shape, material, charging, bounds_field }, patch })
+    let motion = read_motion(table, source)?;
+    Ok(ReadWall { wall: Wall { name, shape, material, charging, bounds_field, motion }, patch })
+}
+
+/// Refuses a surface that is so large that its file is in another unit.
+fn check_size(table: &SceneTable<'_>, wall: &Wall, domain: Option<&Domain>) -> Result<(), SceneError> {
+    let WallShape::Mesh(mesh) = &wall.shape else { return Ok(()) };
+    let (Some([low, high]), Some(domain), true) = (mesh.bounds(), domain, table.has("stl")) else {
+        return Ok(());
+    };
+    let (size, extent) = ((high - low).max(), domain.extent().max());
+    if size <= LARGEST * extent {
+        return Ok(());
+    }
+    let problem = format!(
+        "the surface is {size:.3e} m large, {:.1e} times the domain; its scale is missing or wrong: give \
+         scale = 1e-3 for a file in mm",
+        size / extent
+    );
+    Err(table.bad(if table.has("scale") { "scale" } else { "stl" }, problem))
 }
 
 /// Surface of a patch of the solver's mesh.

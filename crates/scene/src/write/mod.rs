@@ -17,4 +17,4 @@ pub use history::{HistoryFile, HistoryValue};
 pub use particles_csv::write_particles_csv;
 pub use pvd::PvdSeries;
 pub use snapshot::write_snapshot;
-pub use vtu::{ChargedSquare, write_charge_vtu, write_vtu};
+pub use vtu::{ChargedSquare, WallFace, write_charge_vtu, write_vtu, write_walls_vtu};

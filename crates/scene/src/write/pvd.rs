@@ -16,6 +16,8 @@ pub struct PvdSeries {
 #[derive(Clone, Debug)]
 struct Frame {
     time_s: f64,
+    /// Number of the file among those of its time.
+    part: u32,
     /// Path from the folder of the `.pvd` file.
     file: String,
 }
@@ -39,7 +41,8 @@ impl PvdSeries {
                 && let Ok(time_s) = time.parse::<f64>()
                 && is_kept(file)
             {
-                series.frames.push(Frame { time_s, file: file.to_owned() });
+                let part = attribute(line, "part").and_then(|part| part.parse().ok()).unwrap_or(0);
+                series.frames.push(Frame { time_s, part, file: file.to_owned() });
             }
         }
         series
@@ -52,16 +55,26 @@ impl PvdSeries {
     /// # Errors
     /// Errors of the operating system.
     pub fn append(&mut self, time_s: f64, file: &str) -> Result<(), SceneError> {
+        self.append_part(time_s, 0, file)
+    }
+
+    /// Appends a file as a part of a frame that has several.
+    ///
+    /// # Errors
+    /// Errors of the operating system.
+    pub fn append_part(&mut self, time_s: f64, part: u32, file: &str) -> Result<(), SceneError> {
         self.frames.retain(|other| other.file != file);
-        self.frames.push(Frame { time_s, file: file.to_owned() });
+        self.frames.push(Frame { time_s, part, file: file.to_owned() });
         let mut text = String::from(
             "<?xml version=\"1.0\"?>\n\
              <VTKFile type=\"Collection\" version=\"0.1\" byte_order=\"LittleEndian\">\n<Collection>\n",
         );
-        for Frame { time_s, file } in &self.frames {
+        for Frame { time_s, part, file } in &self.frames {
             // Writing to a String cannot fail.
-            let _ =
-                writeln!(text, "<DataSet timestep=\"{time_s:?}\" group=\"\" part=\"0\" file=\"{file}\"/>");
+            let _ = writeln!(
+                text,
+                "<DataSet timestep=\"{time_s:?}\" group=\"\" part=\"{part}\" file=\"{file}\"/>"
+            );
         }
         text.push_str("</Collection>\n</VTKFile>\n");
         write_text(&self.path, &text)

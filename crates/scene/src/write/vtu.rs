@@ -4,7 +4,7 @@
 
 use super::atomic::write_atomically;
 use crate::SceneError;
-use crate::files::{GRAINS_VTU, WALL_CHARGE, When};
+use crate::files::{GRAINS_VTU, WALL_CHARGE, WALL_SURFACES, When};
 use amberfield_core::Particles;
 use nalgebra::Vector3;
 use std::io::{self, Write};
@@ -86,6 +86,8 @@ impl Values<'_> {
 
 /// VTK's number of the cell type vertex.
 const VERTEX: u8 = 1;
+/// VTK's number of the cell type polygon.
+const POLYGON: u8 = 7;
 /// VTK's number of the cell type quadrangle.
 const QUAD: u8 = 9;
 
@@ -188,6 +190,39 @@ pub fn write_charge_vtu(path: &Path, squares: &[ChargedSquare]) -> Result<(), Sc
     let cells = named(&mut names, quadrangles);
     let sections = [("CellData", &cell_data[..]), ("Points", &corners), ("Cells", &cells)];
     write_sections(path, &GridSize { points: points.len(), cells: squares.len(), before: "" }, &sections)
+}
+
+/// Face of a wall.
+#[derive(Clone, Debug, PartialEq)]
+pub struct WallFace {
+    /// Number of the wall.
+    pub wall: u32,
+    /// Corners in order [m].
+    pub corners: Vec<Vector3<f64>>,
+}
+
+/// Writes faces of walls, with the number of their wall.
+///
+/// # Errors
+/// Errors of the operating system.
+pub fn write_walls_vtu(path: &Path, faces: &[WallFace]) -> Result<(), SceneError> {
+    let points: Vec<_> = faces.iter().flat_map(|face| face.corners.iter().copied()).collect();
+    let ends = faces.iter().scan(0, |end, face| {
+        *end += face.corners.len() as i64;
+        Some(*end)
+    });
+    let mut names = WALL_SURFACES.names(|when| when == When::Always);
+    let walls = faces.iter().map(|face| i64::from(face.wall)).collect();
+    let cell_data = named(&mut names, vec![Values::Integers(walls)]);
+    let corners = named(&mut names, vec![Values::Vectors(&points)]);
+    let polygons = vec![
+        Values::Count { from: 0, count: points.len() },
+        Values::Integers(ends.collect()),
+        Values::CellTypes(vec![POLYGON; faces.len()]),
+    ];
+    let cells = named(&mut names, polygons);
+    let sections = [("CellData", &cell_data[..]), ("Points", &corners), ("Cells", &cells)];
+    write_sections(path, &GridSize { points: points.len(), cells: faces.len(), before: "" }, &sections)
 }
 
 /// Size of a grid.

@@ -1,8 +1,10 @@
 //! Forces of walls on the grains of a chunk, and contacts that are the same from step to step.
 
+use super::movers::{Met as Moving, Movers};
 use super::parts::Part;
-use super::{ChunkWalls, Met, WallContact, WallLoad, touches};
-use crate::contacts::law::{Contact, History, respond};
+use super::{ChunkWalls, Met, NearTriangle, WallContact, WallLoad, touches};
+use crate::contacts::cells::NO_SHIFT;
+use crate::contacts::law::{Contact, History, Response, respond};
 use crate::contacts::material_pairs::{PairConstants, PairTable};
 use crate::contacts::normal::{Elastic, Hertz, NormalLaw};
 use crate::contacts::walls::surfaces::{ClosestPoint, Found, MOST_CONTACTS, Surfaces};
@@ -24,51 +26,69 @@ pub(super) struct Scene<'a> {
     pub(super) rolling_model: RollingModel,
     /// Bound on the stretch of any contact [m]; 0 where none stretches.
     pub(super) stretch: f64,
+    /// Walls that move.
+    pub(super) movers: Option<&'a Movers>,
     /// Step by which springs advance [s].
     pub(super) step: f64,
 }
 
 impl ChunkWalls {
+    /// Forgets what the last evaluation found, for a number of walls.
+    fn begin(&mut self, walls: usize) {
+        self.met.clear();
+        (self.deepest, self.power) = (0.0, 0.0);
+        self.loads.clear();
+        self.loads.resize(if self.entries.is_empty() { 0 } else { walls }, WallLoad::default());
+    }
+
     /// Adds what walls do to the grains of chunk `k`.
-    pub(super) fn forces<L: NormalLaw, const FRICTION: bool, const ROLLING: bool, const DAMPING: bool>(
+    pub(super) fn forces<
+        L: NormalLaw,
+        const FRICTION: bool,
+        const ROLLING: bool,
+        const DAMPING: bool,
+        const MOVING: bool,
+    >(
         &mut self,
         k: usize,
         scene: &Scene<'_>,
         loads: ChunkLoads<'_>,
     ) {
-        let &Scene { surfaces, parts, shifts, grains, table, rolling_model, step, .. } = scene;
-        let Self { entries, triangles, contacts, growth, scratch, met, loads: on_walls, deepest } = self;
-        met.clear();
-        *deepest = 0.0;
-        on_walls.clear();
-        on_walls.resize(if entries.is_empty() { 0 } else { parts.len() }, WallLoad::default());
+        let &Scene { surfaces, parts, shifts, grains, table, rolling_model, movers, step, .. } = scene;
+        self.begin(parts.len());
+        let Self { entries, triangles, contacts, growth, scratch, met, loads: on_walls, deepest, power } =
+            self;
         for entry in entries {
             let local = entry.local as usize;
             let i = k * CHUNK + local;
             let (centre, radius) = (grains.position(i), grains.centre[i][3]);
             let mut found = [Found::default(); MOST_CONTACTS];
-            let range = entry.triangles.start as usize..entry.triangles.end as usize;
-            let near = triangles[range]
-                .iter()
-                .map(|near| (near.triangle, centre + Vector3::from(shifts[near.shift as usize])));
+            let near = &triangles[entry.triangles.start as usize..entry.triangles.end as usize];
+            let image = |near: &NearTriangle| centre + Vector3::from(shifts[near.shift as usize]);
+            let places = near.iter().map(|near| (near.triangle, image(near)));
             let kept = &mut contacts[entry.contacts as usize..];
-            let count = find::<L>(scene, i, near, &kept[..entry.count as usize], scratch, &mut found);
+            let count = find::<L>(scene, i, places, &kept[..entry.count as usize], scratch, &mut found);
             let from = renew(kept, entry.count as usize, &found[..count]);
             if !growth.is_empty() {
                 touches::renew(&mut growth[entry.contacts as usize..], &from[..count]);
             }
             entry.count = count as u32;
             let begun = kept[..count].iter().zip(&from).filter(|(_, from)| from.is_none());
-            met.extend(begun.map(|(contact, _)| Met {
-                grain: i,
-                normal: contact.normal,
-                bounds_field: parts[surfaces.surface_of(contact.triangle)].bounds_field,
+            met.extend(begun.map(|(contact, _)| {
+                let part = &parts[surfaces.surface_of(contact.triangle)];
+                Met { grain: i, normal: contact.normal, bounds_field: part.bounds_field }
             }));
             for (wall_contact, found) in kept[..count].iter_mut().zip(&found) {
-                let part = &parts[surfaces.surface_of(wall_contact.triangle)];
+                let surface = surfaces.surface_of(wall_contact.triangle);
+                let part = &parts[surface];
                 let pair = table.get(grains.material[i], part.material);
-                let (contact, arm) = contact_of::<FRICTION, ROLLING>(grains, i, wall_contact);
+                let (mut contact, arm) = contact_of::<FRICTION, ROLLING>(grains, i, wall_contact);
                 let mut history = History::stored(wall_contact.spring, wall_contact.rolling);
+                let moving = movers.filter(|_| MOVING).and_then(|movers| movers.of(surface)).map(|mover| {
+                    let shift = shift_of(near, wall_contact.triangle);
+                    let place = centre + Vector3::from(shifts[shift as usize]) + contact.normal * arm;
+                    mover.meet(&mut contact, &mut history, &place, arm, step)
+                });
                 let work = if L::COHESIVE { table.work(grains.material[i], part.material) } else { 0.0 };
                 let elastic = elastic::<L>(found, radius, pair, work);
                 let response = respond::<_, L, FRICTION, ROLLING, DAMPING>(
@@ -83,6 +103,9 @@ impl ChunkWalls {
                 *deepest = deepest.max(wall_contact.overlap / radius);
                 let lean = lean::<L>(pair, radius, found, work);
                 loads.force[local] += response.force - lean;
+                if let Some(moving) = moving {
+                    *power += power_of(&response, &lean, &moving);
+                }
                 on_walls[part.wall as usize].add_contact(wall_contact, &response, lean, centre, arm);
                 if FRICTION || ROLLING {
                     loads.torque[local] += response.twist * arm + response.rolling;
@@ -166,6 +189,16 @@ fn sticking(
         }
     }
     kept
+}
+
+/// Power that a wall which moves gives to a grain [W].
+fn power_of(response: &Response<f64>, lean: &Vector3<f64>, moving: &Moving) -> f64 {
+    response.force.dot(&moving.contact) - lean.dot(&moving.centre) + response.rolling.dot(&moving.spin)
+}
+
+/// Code of the shift of the grain's image that touches a triangle.
+fn shift_of(near: &[NearTriangle], triangle: u32) -> u32 {
+    near.iter().find(|near| near.triangle == triangle).map_or(NO_SHIFT, |near| near.shift)
 }
 
 /// Geometry and motion of a grain's contact with a wall at rest, and the centre's distance from it.

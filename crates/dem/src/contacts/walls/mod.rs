@@ -1,7 +1,9 @@
 //! Contacts with plane and mesh walls.
 
+mod course;
 mod forces;
 mod loads;
+pub(crate) mod movers;
 mod near;
 mod parts;
 pub(crate) mod surfaces;
@@ -18,7 +20,8 @@ use crate::contacts::walls::parts::{Part, surfaces_of};
 use crate::contacts::walls::surfaces::{ClosestPoint, Surfaces};
 use crate::motion::chunks::{CHUNK, Loads, chunk_count, for_each_chunk, for_each_load, is_parallel};
 use crate::motion::grains::Grains;
-use amberfield_core::{Cohesion, Domain, Vector3, Wall};
+use amberfield_core::{Cohesion, Domain, Placement, Vector3, Wall};
+use movers::{Movers, MoversState};
 use std::ops::Range;
 
 /// A touching contact with a wall, for those who look on.
@@ -87,6 +90,8 @@ pub(crate) struct ChunkWalls {
     loads: Vec<WallLoad>,
     /// Largest overlap over the grain's radius at the last evaluation.
     deepest: f64,
+    /// Power of walls that move at the last evaluation [W].
+    power: f64,
 }
 
 /// Way in which contacts stick to walls.
@@ -110,6 +115,8 @@ pub(crate) struct ContactWalls {
     /// Way in which contacts stick to walls.
     sticking: Sticking,
     chunks: Vec<ChunkWalls>,
+    /// Walls that move; `None` where all are at rest.
+    movers: Option<Box<Movers>>,
     /// Whether forces were evaluated since the run began or went on.
     evaluated: bool,
 }
@@ -122,16 +129,117 @@ impl ContactWalls {
         sticking: Sticking,
     ) -> Result<Self, String> {
         let (surfaces, parts) = surfaces_of(walls)?;
-        Ok(Self { surfaces, parts, shifts, charge, sticking, chunks: Vec::new(), evaluated: false })
+        let chunks = Vec::new();
+        Ok(Self { surfaces, parts, shifts, charge, sticking, chunks, movers: None, evaluated: false })
+    }
+
+    /// Lets walls move that have a motion; they are at its beginning then.
+    pub(crate) fn set_in_motion(&mut self, walls: &[Wall], domain: &Domain) {
+        self.movers = Movers::new(walls, &self.parts, &self.surfaces, domain).map(Box::new);
+    }
+
+    /// Moves walls to a time [s], after a step [s].
+    pub(crate) fn advance(&mut self, time: f64, step: f64) {
+        if let Some(movers) = &mut self.movers {
+            movers.advance(&mut self.surfaces, time, step);
+        }
+    }
+
+    /// Tells those who look for walls anywhere, beyond the lists, where they are now.
+    pub(crate) fn settle(&mut self) {
+        if let Some(movers) = &mut self.movers {
+            movers.set_all(&mut self.surfaces);
+        }
+    }
+
+    /// Largest way of a wall since the lists were built [m].
+    pub(crate) fn travel(&self) -> f64 {
+        self.movers.as_ref().map_or(0.0, |movers| movers.travel())
+    }
+
+    /// Bound on the speed of walls until a time [m/s]; `None` where all are at rest.
+    pub(crate) fn fastest(&self, end_s: f64) -> Option<f64> {
+        self.movers.as_ref().map(|movers| movers.fastest(end_s))
+    }
+
+    /// Work of walls that move on the grains since the start [J]; `None` where all are at rest.
+    pub(crate) fn work(&self) -> Option<f64> {
+        self.movers.as_ref().map(|movers| movers.work())
+    }
+
+    /// Places of walls that move, by their number in the scene.
+    pub(crate) fn placements(&self) -> impl Iterator<Item = (u32, Placement)> {
+        self.movers.iter().flat_map(|movers| movers.placements())
+    }
+
+    /// State of walls that move, for a checkpoint.
+    pub(crate) fn moving_state(&self) -> Option<MoversState> {
+        self.movers.as_ref().map(|movers| movers.state())
+    }
+
+    /// Puts walls that move where the lists of a state were built; `Err` says what does not fit.
+    pub(crate) fn restore_moving(&mut self, state: Option<&MoversState>) -> Result<(), String> {
+        match (&mut self.movers, state) {
+            (None, None) => Ok(()),
+            (Some(movers), Some(state)) => movers.restore(state),
+            _ => Err("its walls move and the scene's do not, or the other way".to_owned()),
+        }
+    }
+
+    /// Books the work of walls that move in a step [s] that ends at a time [s], and steers those that are
+    /// pressed on.
+    pub(crate) fn book_motion(&mut self, grains: &Grains, table: &PairTable, time: f64, step: f64) {
+        let Some(mut movers) = self.movers.take() else { return };
+        movers.book(self.chunks.iter().map(|chunk| chunk.power).sum(), step);
+        if step > 0.0 && movers.has_servo(time) {
+            movers.steer(time, step, |wall, direction| {
+                let load = self.load(wall);
+                let force = -(load.normal + load.tangential).dot(direction);
+                [force, self.stiffness(grains, table, wall, direction)]
+            });
+        }
+        self.movers = Some(movers);
+    }
+
+    /// Load on a wall at the last evaluation.
+    fn load(&self, wall: u32) -> WallLoad {
+        let mut sum = WallLoad::default();
+        let parts = self.chunks.iter().filter_map(|chunk| chunk.loads.get(wall as usize));
+        parts.for_each(|part| sum.add(part));
+        sum
+    }
+
+    /// Stiffness of the contacts of a wall along a direction [N/m].
+    fn stiffness(&self, grains: &Grains, table: &PairTable, wall: u32, direction: &Vector3<f64>) -> f64 {
+        let of_chunk = |(k, chunk): (usize, &ChunkWalls)| {
+            let of_entry = |entry: &Entry| {
+                let i = k * CHUNK + entry.local as usize;
+                let touching = entry.contacts as usize..(entry.contacts + entry.count) as usize;
+                let of_contact = |contact: &WallContact| {
+                    let part = self.part(contact.triangle);
+                    let contact_radius = (contact.overlap.max(0.0) * grains.centre[i][3]).sqrt();
+                    let normal = table.get(grains.material[i], part.material).normal * contact_radius;
+                    let share = contact.normal.dot(direction);
+                    if part.wall == wall { normal * share * share } else { 0.0 }
+                };
+                chunk.contacts[touching].iter().map(of_contact).sum::<f64>()
+            };
+            chunk.entries.iter().map(of_entry).sum::<f64>()
+        };
+        self.chunks.iter().enumerate().map(of_chunk).sum()
     }
 
     /// Finds the grains near walls; histories stay with their grain and wall.
     pub(crate) fn build(&mut self, domain: &Domain, grains: &Grains, skin: f64, histories: &[WallHistory]) {
         let chunks = chunk_count(grains.len());
         self.chunks.resize_with(chunks, ChunkWalls::default);
-        let Self { surfaces, shifts, charge, chunks: near, sticking, .. } = self;
-        let skin = skin + sticking.stretch;
-        let search = near::Search { surfaces, charge: *charge, shifts, domain, grains, skin, histories };
+        if let Some(movers) = &mut self.movers {
+            movers.begin_list(&mut self.surfaces, domain);
+        }
+        let Self { surfaces, shifts, charge, chunks: near, sticking, movers, .. } = self;
+        let outside = movers.as_ref().map_or_else(Vector3::zeros, |movers| movers.outside);
+        let (charge, skin) = (*charge, skin + sticking.stretch);
+        let search = near::Search { surfaces, charge, shifts, domain, grains, outside, skin, histories };
         let mut marks = vec![(); chunks];
         for_each_chunk!(is_parallel(grains.len()), chunks, (near / 1, marks / 1), |k: usize,
                                                                                    (near, _): (
@@ -140,6 +248,10 @@ impl ContactWalls {
         )| {
             near[0].fill(k, &search);
         });
+        if let Some(movers) = movers {
+            let named = self.chunks.iter().flat_map(|chunk| &chunk.triangles).map(|near| near.triangle);
+            movers.end_list(surfaces, named);
+        }
     }
 
     /// Histories of touching contacts, sorted by grain.
@@ -180,15 +292,25 @@ impl ContactWalls {
     ) {
         self.evaluated = true;
         let near = &mut self.chunks[..];
-        let Self { surfaces, parts, shifts, sticking, .. } = self;
+        let Self { surfaces, parts, shifts, sticking, movers, .. } = self;
         let (rolling_model, stretch) = (features.rolling_model, sticking.stretch);
-        let scene = forces::Scene { surfaces, parts, shifts, grains, table, rolling_model, stretch, step };
+        let movers = movers.as_deref();
+        let scene =
+            forces::Scene { surfaces, parts, shifts, grains, table, rolling_model, stretch, movers, step };
         macro_rules! run {
             ($f:literal, $r:literal, $d:literal) => {
                 run!(Hertz, $f, $r, $d)
             };
             ($law:ty, $f:literal, $r:literal, $d:literal) => {
-                for_each_load(near, loads, |k, near, loads| near.forces::<$law, $f, $r, $d>(k, &scene, loads))
+                if movers.is_some() {
+                    for_each_load(near, loads, |k, near, loads| {
+                        near.forces::<$law, $f, $r, $d, true>(k, &scene, loads);
+                    })
+                } else {
+                    for_each_load(near, loads, |k, near, loads| {
+                        near.forces::<$law, $f, $r, $d, false>(k, &scene, loads);
+                    })
+                }
             };
         }
         match (features.cohesion, features.rolling) {
@@ -262,7 +384,8 @@ impl ContactWalls {
     /// Whether a grain of a radius [m] touches a wall at a place [m], or is behind a plane.
     pub(crate) fn are_touched_by(&self, domain: &Domain, place: Vector3<f64>, radius: f64) -> bool {
         let mut near = Vec::new();
-        for (shift, image) in near::images(domain, &self.shifts, place, radius) {
+        let outside = self.movers.as_ref().map_or_else(Vector3::zeros, |movers| movers.outside);
+        for (shift, image) in near::images(domain, &self.shifts, place, outside.add_scalar(radius)) {
             self.surfaces.within(image, radius, &mut near);
             if shift == NO_SHIFT {
                 self.surfaces.planes_within(image, radius, &mut near);

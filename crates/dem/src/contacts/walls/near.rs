@@ -16,6 +16,8 @@ pub(super) struct Search<'a> {
     pub(super) shifts: &'a [[f64; 3]; 32],
     pub(super) domain: &'a Domain,
     pub(super) grains: &'a Grains,
+    /// Largest way by which walls that move stand out of the domain along periodic axes [m].
+    pub(super) outside: Vector3<f64>,
     /// Distance from a wall within which a grain is near it [m].
     pub(super) skin: f64,
     /// Histories of the contacts before, sorted by grain.
@@ -25,7 +27,7 @@ pub(super) struct Search<'a> {
 impl ChunkWalls {
     /// Finds the walls near the grains of chunk `k`, and gives contacts the histories that they had.
     pub(super) fn fill(&mut self, k: usize, search: &Search<'_>) {
-        let &Search { surfaces, charge, shifts, domain, grains, skin, histories } = search;
+        let &Search { surfaces, charge, shifts, domain, grains, outside, skin, histories } = search;
         self.entries.clear();
         self.triangles.clear();
         self.contacts.clear();
@@ -35,7 +37,7 @@ impl ChunkWalls {
         for i in k * CHUNK..grains.len().min((k + 1) * CHUNK) {
             let (centre, reach) = (grains.position(i), grains.centre[i][3] + skin);
             let first = self.triangles.len();
-            for (shift, image) in images(domain, shifts, centre, reach) {
+            for (shift, image) in images(domain, shifts, centre, outside.add_scalar(reach)) {
                 near.clear();
                 surfaces.within(image, reach, &mut near);
                 if shift == NO_SHIFT {
@@ -82,12 +84,13 @@ impl ChunkWalls {
     }
 }
 
-/// The centre and its periodic images that can reach into the domain, with their shift codes.
+/// The centre and its periodic images that can reach into the domain, by as much along each axis, with their
+/// shift codes.
 pub(super) fn images<'a>(
     domain: &'a Domain,
     shifts: &'a [[f64; 3]; 32],
     centre: Vector3<f64>,
-    reach: f64,
+    reach: Vector3<f64>,
 ) -> impl Iterator<Item = (u32, Vector3<f64>)> + 'a {
     let (min, max) = (domain.min(), domain.max());
     (0..27_u32).filter_map(move |code| {
@@ -95,8 +98,8 @@ pub(super) fn images<'a>(
         let wanted = code == NO_SHIFT
             || (0..3).all(|axis| match (digits[axis], domain.is_periodic(Axis::ALL[axis])) {
                 (1, _) => true,
-                (0, true) => max[axis] - centre[axis] <= reach,
-                (2, true) => centre[axis] - min[axis] <= reach,
+                (0, true) => max[axis] - centre[axis] <= reach[axis],
+                (2, true) => centre[axis] - min[axis] <= reach[axis],
                 _ => false,
             });
         wanted.then(|| (code, centre + Vector3::from(shifts[code as usize])))

@@ -95,6 +95,15 @@ pub(crate) struct Surfaces {
     planes: Vec<Plane>,
 }
 
+/// Corners and front of a triangle.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Facet {
+    /// Corners [m].
+    pub(crate) corners: [Vector3<f64>; 3],
+    /// Unit vector out of the front.
+    pub(crate) normal: Vector3<f64>,
+}
+
 fn parry(v: Vector3<f64>) -> ParryVector {
     ParryVector::new(v.x, v.y, v.z)
 }
@@ -138,6 +147,52 @@ impl Surfaces {
             Some(plane) => self.first.len() + plane,
             None => self.first.partition_point(|first| *first <= number) - 1,
         }
+    }
+
+    /// Number of triangles and planes.
+    pub(crate) fn len(&self) -> usize {
+        self.triangles.len() + self.planes.len()
+    }
+
+    /// Numbers of the triangles, or of the plane, of a surface.
+    pub(crate) fn numbers_of(&self, surface: usize) -> std::ops::Range<u32> {
+        let count = self.triangles.len() as u32;
+        match surface.checked_sub(self.first.len()) {
+            Some(plane) => count + plane as u32..count + plane as u32 + 1,
+            None => self.first[surface]..self.first.get(surface + 1).copied().unwrap_or(count),
+        }
+    }
+
+    /// Triangle of a number.
+    pub(crate) fn facet(&self, number: u32) -> Facet {
+        let Triangle { a, b, c } = self.triangles[number as usize];
+        Facet { corners: [a, b, c].map(plain), normal: self.normals[number as usize] }
+    }
+
+    /// Puts a triangle elsewhere; who looks for it there must call [`Self::update`] and [`Self::refit`].
+    pub(crate) fn set(&mut self, number: u32, facet: &Facet) {
+        let [a, b, c] = facet.corners.map(parry);
+        self.triangles[number as usize] = Triangle::new(a, b, c);
+        self.normals[number as usize] = facet.normal;
+    }
+
+    /// Puts a plane elsewhere.
+    pub(crate) fn set_plane(&mut self, number: u32, plane: Plane) {
+        let place = number as usize - self.triangles.len();
+        self.planes[place] = plane;
+    }
+
+    /// Tells the search where triangles are.
+    pub(crate) fn update(&mut self, numbers: std::ops::Range<u32>) {
+        for number in numbers {
+            let shape = &self.triangles[number as usize];
+            self.tree.insert_or_update_partially(shape.local_aabb(), number, 0.0);
+        }
+    }
+
+    /// Fits the search to triangles that were moved.
+    pub(crate) fn refit(&mut self) {
+        self.tree.refit_without_opt();
     }
 
     /// Place among the planes of a number that is none of a triangle.

@@ -116,13 +116,14 @@ impl ContactWalls {
     /// Places at walls that trade charge, up to `margin` [m] from grains that do not touch them, in order.
     /// They may be farther than the lists know walls.
     pub(crate) fn upcoming(&self, domain: &Domain, grains: &Grains, margin: f64) -> Vec<Touch> {
+        let outside = self.movers.as_ref().map_or_else(Vector3::zeros, |movers| movers.outside);
         let chunk = |k: usize| {
             let (mut numbers, mut near) = (Vec::new(), Vec::new());
             let (mut scratch, mut touches) = (Vec::new(), Vec::new());
             for grain in k * CHUNK..grains.len().min((k + 1) * CHUNK) {
                 let (centre, reach) = (grains.position(grain), grains.centre[grain][3] + margin);
                 near.clear();
-                for (shift, image) in images(domain, &self.shifts, centre, reach) {
+                for (shift, image) in images(domain, &self.shifts, centre, outside.add_scalar(reach)) {
                     numbers.clear();
                     self.surfaces.within(image, reach, &mut numbers);
                     if shift == NO_SHIFT {

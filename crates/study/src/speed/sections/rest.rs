@@ -126,6 +126,18 @@ fn mean(values: &[f64]) -> [f64; 2] {
     [mean, (square / (count * (count - 1.0).max(1.0))).sqrt()]
 }
 
+/// Plane at a distance from the origin [m].
+fn plane(normal: Vector3<f64>, distance: f64) -> Wall {
+    Wall {
+        name: "side".to_owned(),
+        shape: WallShape::Plane { point: -distance * normal, normal },
+        material: MaterialId(0),
+        charging: WallCharging::None,
+        bounds_field: false,
+        motion: Vec::new(),
+    }
+}
+
 /// Grains on a jittered lattice in a box of four sides and a floor, at the automatic step.
 fn start(restitution: f64, young_pa: f64, bed: u64) -> Setup {
     let spacing = 2.2 * RADIUS;
@@ -153,13 +165,6 @@ fn start(restitution: f64, young_pa: f64, bed: u64) -> Setup {
             }
         })
         .collect();
-    let plane = |normal: Vector3<f64>, distance: f64| Wall {
-        name: "side".to_owned(),
-        shape: WallShape::Plane { point: -distance * normal, normal },
-        material: MaterialId(0),
-        charging: WallCharging::None,
-        bounds_field: false,
-    };
     let sides = [Vector3::x(), -Vector3::x(), Vector3::y(), -Vector3::y()];
     Setup {
         domain: Domain::new(Vector3::repeat(-1.0), Vector3::repeat(1.0), [[Boundary::Open; 2]; 3])
