@@ -54,11 +54,8 @@ impl Outlook {
         let Setup { domain, materials, particles, walls, time, .. } = setup;
         let table = PairTable::new(materials, &setup.pairs, setup.cohesion);
         let (level, level_radius) = levels_of(particles.radius.iter().copied());
-        let mut moving = None;
-        if !walls.is_empty() {
-            let built = contact_walls(walls, shifts(domain), false, Sticking::default(), domain)?;
-            moving = built.fastest(time.end_s);
-        }
+        let built = contact_walls(walls, shifts(domain), false, Sticking::default(), domain)?;
+        let moving = built.and_then(|walls| walls.fastest(time.end_s));
         let feeding = Feeding::new(setup.feeds.clone(), particles, materials.len(), &level);
         let plan = plan(&Planned {
             features: Features { rolling_model: setup.rolling_model, ..table.features() },

@@ -119,14 +119,8 @@ impl Simulation {
         let feeding = Feeding::new(feeds, &particles, materials.len(), &level);
         let shifts = shifts(&domain);
         let (wall_count, field_asked) = (walls.len(), field.is_some());
-        let walls = match wall_count {
-            0 => None,
-            _ => {
-                let sticking = Sticking { cohesion, stretch };
-                Some(contact_walls(&walls, shifts, features.charging, sticking, &domain)?)
-            }
-        };
-        let moving = walls.as_ref().and_then(|walls| walls.fastest(time.end_s));
+        let sticking = Sticking { cohesion, stretch };
+        let walls = contact_walls(&walls, shifts, features.charging, sticking, &domain)?;
         let neighbours = Neighbours::new(LinkedCells::new(level_radius, skin_m + stretch), shifts, features);
         let contacts = Contacts { table, features, neighbours, walls };
         let charging = field.as_ref().zip(transfer).map(|(field, transfer)| {
@@ -140,7 +134,7 @@ impl Simulation {
             features,
             periodic: bounds.is_periodic(),
             walls: wall_count,
-            moving: moving.is_some(),
+            moving: contacts.walls.as_ref().is_some_and(ContactWalls::move_at_all),
             levels: contacts.neighbours.level_count(),
             feeding: feeding.as_ref(),
             gas: gas.as_ref(),
@@ -177,7 +171,7 @@ impl Simulation {
             rescued: None,
             watch: StageClock::default(),
         };
-        run.limits.set_walls(moving.unwrap_or(0.0));
+        run.limit_walls();
         run.resize_scratch();
         Ok(run)
     }
@@ -189,6 +183,12 @@ impl Simulation {
             self.grains.reorder(&starters);
             self.resize_scratch();
         }
+    }
+
+    /// Tells the limits how fast walls may be.
+    fn limit_walls(&mut self) {
+        let speed = self.contacts.walls.as_ref().and_then(|walls| walls.fastest(self.time.end_s));
+        self.limits.set_walls(speed.unwrap_or(0.0));
     }
 
     /// Fixes the step and evaluates the field for the first time: its plasma limit needs a step and the
@@ -240,17 +240,20 @@ impl Simulation {
     }
 }
 
-/// Builds the walls of a scene, at the begin of their motions.
+/// Builds the walls of a scene, at the begin of their motions; `None` without any.
 pub(super) fn contact_walls(
     walls: &[Wall],
     shifts: [[f64; 3]; 32],
     charge: bool,
     sticking: Sticking,
     domain: &Domain,
-) -> Result<ContactWalls, DemError> {
+) -> Result<Option<ContactWalls>, DemError> {
+    if walls.is_empty() {
+        return Ok(None);
+    }
     let mut built = ContactWalls::new(walls, shifts, charge, sticking).map_err(DemError::Setup)?;
     built.set_in_motion(walls, domain);
-    Ok(built)
+    Ok(Some(built))
 }
 
 /// Builds the field of a scene that asks for one, afresh or from a state; `None` where every charge is zero

@@ -73,11 +73,7 @@ impl ChunkWalls {
                 touches::renew(&mut growth[entry.contacts as usize..], &from[..count]);
             }
             entry.count = count as u32;
-            let begun = kept[..count].iter().zip(&from).filter(|(_, from)| from.is_none());
-            met.extend(begun.map(|(contact, _)| {
-                let part = &parts[surfaces.surface_of(contact.triangle)];
-                Met { grain: i, normal: contact.normal, bounds_field: part.bounds_field }
-            }));
+            met.extend(begun(scene, i, &kept[..count], &from));
             for (wall_contact, found) in kept[..count].iter_mut().zip(&found) {
                 let surface = surfaces.surface_of(wall_contact.triangle);
                 let part = &parts[surface];
@@ -189,6 +185,20 @@ fn sticking(
         }
     }
     kept
+}
+
+/// Contacts of grain `i` that are new, by which of the old ones each was.
+fn begun<'a>(
+    scene: &'a Scene<'_>,
+    i: usize,
+    contacts: &'a [WallContact],
+    from: &'a [Option<usize>],
+) -> impl Iterator<Item = Met> + 'a {
+    let new = contacts.iter().zip(from).filter(|(_, from)| from.is_none());
+    new.map(move |(contact, _)| {
+        let part = &scene.parts[scene.surfaces.surface_of(contact.triangle)];
+        Met { grain: i, normal: contact.normal, bounds_field: part.bounds_field }
+    })
 }
 
 /// Power that a wall which moves gives to a grain [W].
