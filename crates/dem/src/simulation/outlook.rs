@@ -2,8 +2,7 @@
 
 use super::guards::{Guard, Limits, StepRestitution};
 use super::plan::{Planned, plan};
-use super::start::{bounds, contact_walls, pace};
-use super::state::Progress;
+use super::start::{bounds, contact_walls, progress_at_start};
 use super::{Simulation, checks};
 use crate::contacts::cells::{LinkedCells, levels_of, shifts};
 use crate::contacts::material_pairs::{Features, PairTable};
@@ -71,9 +70,7 @@ impl Outlook {
         });
         let mut limits = Limits::new(particles, materials, &table, None);
         limits.set_walls(moving.unwrap_or(0.0));
-        let speed = particles.velocity.iter().map(|v| v.norm()).fold(0.0, f64::max);
-        let mut progress =
-            Progress { step_index: 0, step_s: 0.0, skin_m, travel: 0.0, speed, pace: pace(particles) };
+        let mut progress = progress_at_start(skin_m, particles);
         progress.step_s = match time.step {
             Step::Seconds(step) => step,
             Step::Auto => limits.auto_step(&progress),
@@ -85,7 +82,7 @@ impl Outlook {
             step_s: progress.step_s,
             skin_m,
             guards: limits.guards(&progress).collect(),
-            fastest_m_s: speed,
+            fastest_m_s: progress.speed,
             limits,
         }))
     }

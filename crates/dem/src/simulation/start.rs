@@ -145,14 +145,7 @@ impl Simulation {
         let uniform_gas = gas.as_ref().and_then(GasStage::uniform);
         let mut run = Self {
             plan,
-            progress: Progress {
-                step_index: 0,
-                step_s: 0.0,
-                skin_m,
-                travel: 0.0,
-                speed: particles.velocity.iter().map(|v| v.norm()).fold(0.0, f64::max),
-                pace: pace(&particles),
-            },
+            progress: progress_at_start(skin_m, &particles),
             grains: Grains::new(&particles, level, features.rotation()),
             limits: Limits::new(&particles, &materials, &contacts.table, uniform_gas),
             domain,
@@ -279,8 +272,14 @@ fn is_charged(field: &FieldStageSetup, particles: &Particles) -> bool {
     field.member.iter().zip(&particles.charge).any(|(member, charge)| *member && *charge != 0.0)
 }
 
+/// Progress of a run whose step is not known yet, with a skin of the lists [m].
+pub(super) fn progress_at_start(skin_m: f64, particles: &Particles) -> Progress {
+    let speed = particles.velocity.iter().map(|v| v.norm()).fold(0.0, f64::max);
+    Progress { step_index: 0, step_s: 0.0, skin_m, travel: 0.0, speed, pace: pace(particles) }
+}
+
 /// Largest speed over radius [1/s].
-pub(super) fn pace(particles: &Particles) -> f64 {
+fn pace(particles: &Particles) -> f64 {
     let motion = particles.velocity.iter().zip(&particles.radius);
     motion.map(|(velocity, radius)| velocity.norm() / radius).fold(0.0, f64::max)
 }

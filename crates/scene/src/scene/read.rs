@@ -3,7 +3,7 @@
 use super::description::{Purpose, Scene};
 use super::domain::read_domain;
 use super::electric_field::read_electric_field;
-use super::feeds::{FeedContext, ReadFeeds, read_feeds};
+use super::feeds::read_feeds;
 use super::gas::read_gas;
 use super::input::SceneInput;
 use super::others::{read_charge_transfer, read_contacts, read_output, read_solver};
@@ -17,7 +17,6 @@ use crate::SceneError;
 use crate::error::Problems;
 use crate::keys::SCENE;
 use crate::materials::{Materials, read_materials};
-use crate::particles::ReadParticles;
 use crate::source::{SceneSource, read_text};
 use crate::table::SceneTable;
 use crate::tree::{Entries, Node, Origin, Value, apply_overrides, parse_document};
@@ -146,14 +145,8 @@ fn read_sections(
     let walls = read_walls(document, &materials, solver.as_ref(), domain.as_ref(), source)?;
     let mut section = read_section(document, domain.as_ref(), &materials, &walls.walls, !motion, source)?;
     let time = read_time(document, section.on_exit, section.allow_overlap)?;
-    let fed = match &time {
-        Some(time) if motion => {
-            let ReadParticles { particles, groups, .. } = &mut section.read;
-            let (materials, end_s) = (&materials, time.end_s);
-            read_feeds(document, FeedContext { materials, particles, groups, end_s, source })?
-        }
-        _ => ReadFeeds::default(),
-    };
+    let of_motion = time.as_ref().filter(|_| motion);
+    let fed = read_feeds(document, of_motion, &materials, &mut section.read, source)?;
     let has_charge = section.read.has_charge || fed.has_charge;
     let mut scene = Scene {
         title: "scene".to_owned(),

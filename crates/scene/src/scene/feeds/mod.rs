@@ -8,11 +8,12 @@ use crate::generate::{
     ChargeDistribution, RadiusDistribution, read_charges_of_feed, read_radii, read_volume,
 };
 use crate::materials::Materials;
+use crate::particles::ReadParticles;
 use crate::source::SceneSource;
 use crate::stl::read_stl;
 use crate::table::SceneTable;
 use amberfield_core::{
-    Feed, FeedRegion, Feeds, Fingerprint, GroupId, MaterialId, OnBlocked, Particles, Vector3,
+    Feed, FeedRegion, Feeds, Fingerprint, GroupId, MaterialId, OnBlocked, TimeSettings, Vector3,
 };
 use draw::draw;
 
@@ -25,15 +26,13 @@ pub(super) struct ReadFeeds {
 }
 
 /// Parts of a scene that feeds use.
-pub(super) struct FeedContext<'a> {
-    pub(super) materials: &'a Materials,
-    /// Grains at the start.
-    pub(super) particles: &'a Particles,
+struct FeedContext<'a> {
+    materials: &'a Materials,
     /// Names of the groups, to which feeds add theirs.
-    pub(super) groups: &'a mut Vec<String>,
+    groups: &'a mut Vec<String>,
     /// End of the run [s].
-    pub(super) end_s: f64,
-    pub(super) source: &'a mut SceneSource,
+    end_s: f64,
+    source: &'a mut SceneSource,
 }
 
 /// Amount by which a feed's time is counted.
@@ -77,11 +76,18 @@ pub(super) struct FeedSpec {
     pub(super) spread: f64,
 }
 
-/// Reads `[[feeds]]` and draws all their grains.
+/// Reads `[[feeds]]` and draws all their grains; none where nothing moves. `read` are the grains at the
+/// start, whose groups may become more.
 pub(super) fn read_feeds(
     document: &SceneTable<'_>,
-    mut context: FeedContext<'_>,
+    time: Option<&TimeSettings>,
+    materials: &Materials,
+    read: &mut ReadParticles,
+    source: &mut SceneSource,
 ) -> Result<ReadFeeds, SceneError> {
+    let Some(time) = time else { return Ok(ReadFeeds::default()) };
+    let first_id = read.particles.id.iter().max().map_or(1, |id| id.saturating_add(1));
+    let mut context = FeedContext { materials, groups: &mut read.groups, end_s: time.end_s, source };
     let mut problems = Problems::default();
     let mut specs: Vec<FeedSpec> = Vec::new();
     let mut has_charge = false;
@@ -99,7 +105,6 @@ pub(super) fn read_feeds(
     problems.finish()?;
     // The order of the file does not matter.
     specs.sort_by(|a, b| a.feed.name.cmp(&b.feed.name));
-    let first_id = context.particles.id.iter().max().map_or(1, |id| id.saturating_add(1));
     Ok(ReadFeeds { feeds: draw(specs, first_id)?, has_charge })
 }
 
