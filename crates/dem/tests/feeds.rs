@@ -4,10 +4,11 @@ mod common;
 
 use amberfield_core::{
     Boundary, ChargeTransfer, CouplingInterval, Domain, Feed, FeedRegion, Feeds, FieldSettings, Grain,
-    Material, MaterialId, Method, OnBlocked, OnExit, Particles, TriangleMesh, Vector3, WallCharging,
+    Material, MaterialId, Method, MotionKind, OnBlocked, OnExit, Particles, TriangleMesh, Vector3, Wall,
+    WallCharging, WallMotion,
 };
 use amberfield_dem::{Book, FieldStageSetup, Setup, Simulation, State, Tally};
-use common::{RADIUS, floor, grain, material, run, setup};
+use common::{RADIUS, floor, grain, material, mesh_floor, run, setup};
 use proptest::prelude::*;
 
 /// Half the width of the region of feeds [m].
@@ -112,6 +113,29 @@ fn grains_come_as_they_are_due_and_touch_nothing() {
     }
     let account = &run.feeds()[0];
     assert!(account.owed.grains == 0 && account.fed.grains > 290, "{account:?}");
+}
+
+#[test]
+fn grains_come_clear_of_a_wall_that_moves_through_their_region() {
+    let mut scene =
+        scene(feeds(vec![feed("a", high())], 600, 1.7 * STEP, |_, _| {}), material(0.7, 0.3, 0.0));
+    let (speed, kind) = (2.0, MotionKind::Translate(Vector3::new(0.0, 0.0, 2.0)));
+    let motion = vec![WallMotion { kind, start_s: 0.0, end_s: f64::INFINITY }];
+    scene.walls = vec![Wall { motion, ..mesh_floor(2.0 * HALF, 5) }];
+    let mut run = Simulation::new(scene).unwrap();
+    let mut near = f64::INFINITY;
+    for _ in 0..1100 {
+        let before = run.feeds()[0].fed.grains;
+        run.step().unwrap();
+        let come = (run.feeds()[0].fed.grains - before) as usize;
+        let p = run.particles();
+        for i in p.len() - come..p.len() {
+            let off = (p.position[i].z - speed * run.time_s()).abs() - p.radius[i];
+            assert!(off > 0.0, "{off} at {} s", run.time_s());
+            near = near.min(off);
+        }
+    }
+    assert!(near < 0.5 * RADIUS, "{near}: the wall came through");
 }
 
 #[test]

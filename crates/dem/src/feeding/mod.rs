@@ -130,6 +130,8 @@ pub(crate) struct Surroundings<'a> {
     pub(crate) grains: &'a Grains,
     pub(crate) walls: Option<&'a ContactWalls>,
     pub(crate) gravity: Vector3<f64>,
+    /// Skin of the neighbour lists [m].
+    pub(crate) skin_m: f64,
     /// Number of the step in progress, and its length [s].
     pub(crate) step_index: u64,
     pub(crate) step_s: f64,
@@ -262,7 +264,7 @@ impl Feeding {
         around: &Surroundings<'_>,
         found: &mut Vec<Newcomer>,
     ) -> usize {
-        let &Surroundings { domain, particles, grains, walls, gravity, step_index, step_s } = around;
+        let &Surroundings { domain, particles, grains, walls, gravity, skin_m, step_index, step_s } = around;
         let Queue { feed, places, grains: queue, .. } = &self.queues[number];
         let Some(bounds) = feed.region.bounds() else { return 0 };
         let mut room = Room::new(domain, bounds, self.largest);
@@ -279,7 +281,7 @@ impl Feeding {
                 places.hold(place, radius)
                     && is_inside(domain, place, radius)
                     && room.is_free(place, radius)
-                    && !walls.is_some_and(|walls| walls.are_touched_by(domain, *place, radius))
+                    && !walls.is_some_and(|walls| walls.are_touched_by(domain, *place, radius, skin_m))
             };
             let tried = (0..TRIES).filter_map(|_| places.draw(radius, &mut random)).find(|x| is_free(x));
             let lattice = || places.lattice(radius).take(MOST_OF_LATTICE).find(|x| is_free(x));

@@ -19,6 +19,7 @@ impl Simulation {
             grains: &self.grains,
             walls: self.contacts.walls.as_ref(),
             gravity: self.time.gravity_m_s2,
+            skin_m: self.progress.skin_m,
             step_index: self.progress.step_index,
             step_s: self.progress.step_s,
         })?;

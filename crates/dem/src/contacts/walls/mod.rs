@@ -286,14 +286,23 @@ impl ContactWalls {
         !near.is_empty()
     }
 
-    /// Whether a grain of a radius [m] touches a wall at a place [m], or is behind a plane.
-    pub(crate) fn are_touched_by(&self, domain: &Domain, place: Vector3<f64>, radius: f64) -> bool {
+    /// Whether a grain of a radius [m] touches a wall at a place [m], or is behind a plane. Walls that move
+    /// are kept at a distance of the lists' `skin` [m], within which they are where the lists know them.
+    pub(crate) fn are_touched_by(
+        &self,
+        domain: &Domain,
+        place: Vector3<f64>,
+        radius: f64,
+        skin: f64,
+    ) -> bool {
         let mut near = Vec::new();
-        let outside = self.movers.as_ref().map_or_else(Vector3::zeros, |movers| movers.outside);
-        for (shift, image) in near::images(domain, &self.shifts, place, outside.add_scalar(radius)) {
-            self.surfaces.within(image, radius, &mut near);
+        let (outside, moved) =
+            self.movers.as_ref().map_or((Vector3::zeros(), 0.0), |movers| (movers.outside, skin));
+        let reach = radius + moved;
+        for (shift, image) in near::images(domain, &self.shifts, place, outside.add_scalar(reach)) {
+            self.surfaces.within(image, reach, &mut near);
             if shift == NO_SHIFT {
-                self.surfaces.planes_within(image, radius, &mut near);
+                self.surfaces.planes_within(image, reach, &mut near);
             }
         }
         !near.is_empty()
