@@ -74,7 +74,10 @@ impl State {
         let arrays = [grains.centre.len(), grains.velocity.len(), grains.angular.len()];
         let fits = arrays.iter().all(|length| *length == grains.original.len())
             && grains.original.iter().all(|original| original.index() < start.len())
-            && self.charging.as_ref().is_none_or(|charging| charging.charge.len() == start.len());
+            && self.charging.as_ref().is_none_or(|charging| {
+                // A run that was to end earlier knows fewer of the grains that feeds bring.
+                grains.original.iter().all(|original| original.index() < charging.charge.len())
+            });
         if !fits {
             return Err(DemError::State("its grains are not those of the scene".to_owned()));
         }
