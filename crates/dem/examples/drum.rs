@@ -86,6 +86,8 @@ fn main() {
             .expect("positive extents"),
         materials: bed::materials(),
         rolling_model: Default::default(),
+        cohesion: Default::default(),
+        pairs: Vec::new(),
         particles: grains().into_iter().collect(),
         walls: vec![drum, end(Vector3::y()), end(-Vector3::y())],
         time: TimeSettings {
@@ -99,6 +101,7 @@ fn main() {
         },
         gas: None,
         field: None,
+        feeds: Default::default(),
     };
     let mut simulation = Simulation::new(setup).expect("a good scene");
     for _ in 0..10 * bed::STEPS {
