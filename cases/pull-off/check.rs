@@ -6,7 +6,7 @@ use std::f64::consts::PI;
 const RADIUS_M: f64 = 5e-5;
 /// Work of adhesion of two equal solids: twice their surface energy.
 const WORK: f64 = 0.1;
-const STEP_S: f64 = 2e-8;
+const STEP_S: f64 = 5e-9;
 /// Y* of the scene's material with itself.
 const YOUNG_PA: f64 = 1e7 / (2.0 * (1.0 - 0.25 * 0.25));
 /// Bound on the pull-off force and the overlap without load.
@@ -80,7 +80,12 @@ fn bodies_are_parted_by_the_pull_off_force() {
     for meeting in Meeting::ALL {
         let factor = if meeting.model == "jkr" { 1.5 } else { 2.0 };
         let expected = factor * PI * WORK * meeting.radius();
-        let found = meeting.largest_pull(&meeting.case().run(&[]).history());
+        let case = meeting.case();
+        // The pull of Derjaguin, Muller and Toporov is largest at the last moment of the contact.
+        for key in ["step_s", "history_every_s"] {
+            case.replace("scene.toml", &format!("{key} = 2e-8"), &format!("{key} = {STEP_S:e}"));
+        }
+        let found = meeting.largest_pull(&case.run(&[]).history());
         assert!((found / expected - 1.0).abs() < CLOSED_FORM, "{meeting:?}: {found:e} N, {expected:e} N");
     }
 }

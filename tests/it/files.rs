@@ -19,6 +19,10 @@ fn everything() -> String {
             &format!("{walls}\nplane = {{ point_m = [0, 0, 3.99e-3]"),
             1,
         )
+        .replace(
+            "normal = [0, 0, -1] }",
+            "normal = [0, 0, -1] }\nmotion = [{ vibrate = { amplitude_m = [0, 0, 1e-6], frequency_Hz = 50 } }]",
+        )
         .replace("friction = 0.3\n", "friction = 0.3\nwork_function_eV = 4.5\n")
         .replace("x = \"periodic\"", "x = \"open\"")
         .replace("[particles.generate]", "[particles]\non_exit = \"delete\"\n[particles.generate]")
