@@ -21,7 +21,8 @@ fn everything() -> String {
         )
         .replace(
             "normal = [0, 0, -1] }",
-            "normal = [0, 0, -1] }\nmotion = [{ vibrate = { amplitude_m = [0, 0, 1e-6], frequency_Hz = 50 } }]",
+            "normal = [0, 0, -1] }\n\
+             motion = [{ vibrate = { amplitude_m = [0, 0, 1e-6], frequency_Hz = 50 } }]",
         )
         .replace("friction = 0.3\n", "friction = 0.3\nwork_function_eV = 4.5\n")
         .replace("x = \"periodic\"", "x = \"open\"")

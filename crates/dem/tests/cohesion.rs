@@ -266,7 +266,7 @@ fn clump(cohesion: Cohesion) -> Setup {
     scene.cohesion = cohesion;
     let faces = [[Boundary::Periodic; 2], [Boundary::Periodic; 2], [Boundary::Open; 2]];
     let (low, high) = (Vector3::new(-side, -side, -side), Vector3::new(side, side, 2.0 * side));
-    scene.domain = amberfield_core::Domain::new(low, high, faces).unwrap();
+    scene.domain = amberfield_core::Domain::new(low, high, faces).expect("a good box");
     scene.time.gravity_m_s2 = Vector3::new(0.0, 0.0, -9.81);
     let mut bottom = floor();
     bottom.shape = amberfield_core::WallShape::Plane { point: low, normal: Vector3::z() };

@@ -54,7 +54,7 @@ fn scene(feeds: Feeds, stuff: Material) -> Setup {
     let mut faces = [[Boundary::Periodic; 2]; 3];
     faces[2] = [Boundary::Open; 2];
     let (min, max) = (Vector3::new(-HALF, -HALF, -RADIUS), Vector3::new(HALF, HALF, 60.0 * RADIUS));
-    scene.domain = Domain::new(min, max, faces).unwrap();
+    scene.domain = Domain::new(min, max, faces).expect("a good box");
     scene.walls = vec![floor()];
     scene.time.gravity_m_s2 = Vector3::new(0.0, 0.0, -9.81);
     scene.time.on_exit = OnExit::Delete;
@@ -69,7 +69,7 @@ fn bits(particles: &Particles) -> Vec<u64> {
 }
 
 fn with_threads<T: Send>(threads: usize, run: impl FnOnce() -> T + Send) -> T {
-    rayon::ThreadPoolBuilder::new().num_threads(threads).build().unwrap().install(run)
+    rayon::ThreadPoolBuilder::new().num_threads(threads).build().expect("threads").install(run)
 }
 
 /// Charges and charge transfer for a scene, all grains members.
@@ -156,7 +156,8 @@ fn a_grain_falls_from_where_it_came_as_a_free_one() {
 fn threads_checkpoints_and_a_later_end_change_no_bit() {
     let make = |count: usize| {
         let list = vec![feed("a", high()), Feed { seed: 9, ..feed("b", high()) }];
-        let charge = |k: usize, grain: &mut Grain| grain.charge = if k % 2 == 0 { 2e-12 } else { -1e-12 };
+        let charge =
+            |k: usize, grain: &mut Grain| grain.charge = if k.is_multiple_of(2) { 2e-12 } else { -1e-12 };
         charged(scene(feeds(list, count, 2.0 * STEP, charge), work(0.3)), Some(ChargeTransfer::new(5e-7)))
     };
     let whole = |threads: usize| {
@@ -258,7 +259,8 @@ fn grains_come_through_a_face_and_in_a_cylinder() {
 fn newcomers_are_felt_as_in_a_run_that_evaluates_every_step() {
     let run_with = |interval: CouplingInterval| {
         let list = vec![feed("a", high())];
-        let charge = |k: usize, grain: &mut Grain| grain.charge = if k % 2 == 0 { 4e-11 } else { -3e-11 };
+        let charge =
+            |k: usize, grain: &mut Grain| grain.charge = if k.is_multiple_of(2) { 4e-11 } else { -3e-11 };
         let mut scene = charged(scene(feeds(list, 60, 8.0 * STEP, charge), material(0.8, 0.0, 0.0)), None);
         if let Some(field) = &mut scene.field {
             field.settings.coupling_interval = interval;
@@ -314,7 +316,7 @@ proptest! {
     ) {
         let list = vec![Feed { seed, ..feed("a", high()) }, Feed { seed: seed + 1, ..feed("b", high()) }];
         let change = |k: usize, grain: &mut Grain| {
-            grain.material = MaterialId((k % 3 == 0).into());
+            grain.material = MaterialId((k.is_multiple_of(3)).into());
             grain.charge = charge * (k % 5) as f64;
             grain.velocity.x = 0.3 * ((k % 7) as f64 - 3.0);
         };

@@ -1,10 +1,13 @@
 //! Walls of a run where they are: those that move have a place over time.
 
-use amberfield_core::{Wall, WallShape};
+#[cfg(feature = "plots")]
+use amberfield_core::Wall;
+use amberfield_core::WallShape;
 use amberfield_dem::Simulation;
 use amberfield_scene::{Scene, WallFace};
 
 /// Walls of a scene where they are now.
+#[cfg(feature = "plots")]
 pub(crate) fn now(scene: &Scene, simulation: &Simulation) -> Vec<Wall> {
     let mut walls = scene.walls.clone();
     for (number, placement) in simulation.wall_placements() {

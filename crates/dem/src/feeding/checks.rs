@@ -38,7 +38,7 @@ pub(crate) fn check(setup: &Setup) -> Result<(), DemError> {
         let radius = |grain: usize| setup.particles.radius[grain];
         let largest = grains().map(|(grain, _)| radius(grain)).fold(0.0, f64::max);
         check_size(feed, largest)?;
-        let Some(((_, first), (last, end))) = grains().next().zip(grains().last()) else { continue };
+        let Some(((_, first), (last, end))) = grains().next().zip(grains().next_back()) else { continue };
         let volume = |grain: usize| 4.0 / 3.0 * PI * radius(grain).powi(3);
         let brought: f64 = grains().filter(|(grain, _)| *grain != last).map(|(grain, _)| volume(grain)).sum();
         let time_s = feeds.due_s[end] - feeds.due_s[first];

@@ -72,7 +72,8 @@ impl Source {
         let Members { position, charge, time_s, .. } = members;
         if position.is_empty() {
             // Nothing has come yet, or all has left.
-            (values.e.clear(), values.potential.clear());
+            values.e.clear();
+            values.potential.clear();
             return Ok(());
         }
         let lost = match self.field.evaluate_at(*time_s, position, charge, WANTED, values) {
