@@ -63,7 +63,7 @@ impl NativeField {
             field.evaluate(positions, charges, wanted, &mut values)?;
             Ok(values)
         };
-        let done = threads::work(py, &pool, work, |_, _| {});
+        let done = threads::work(py, &pool, work, |_, _| Ok(()));
         host_log::tell(py)?;
         let values = done?.map_err(|error| errors::of_failure(py, &Failure::of_field(&error)))?;
         dict_of(py, values, wanted)
@@ -88,7 +88,7 @@ impl NativeField {
             let positions: Vec<_> = positions.par_iter().map(|place| domain.wrap(*place)).collect();
             field.measure_error(&positions, charges)
         };
-        let done = threads::work(py, &pool, work, |_, _| {})?;
+        let done = threads::work(py, &pool, work, |_, _| Ok(()))?;
         let measured = done.map_err(|error| errors::of_failure(py, &Failure::of_field(&error)))?;
         Ok(measured.map(|measured| measured.relative_rms))
     }

@@ -4,6 +4,7 @@ use crate::{errors, host_log, snapshot, threads};
 use amberfield_cli::{Observer, RunRequest, interrupt, simulate};
 use amberfield_dem::Simulation;
 use amberfield_scene::SceneInput;
+use pyo3::exceptions::PyKeyboardInterrupt;
 use pyo3::prelude::*;
 use std::ops::ControlFlow;
 use std::path::PathBuf;
@@ -58,14 +59,15 @@ pub(crate) fn run(
             if signal.is_some() {
                 interrupt::ask();
             }
-            // What fails while a run goes on must not end it: its results matter more.
-            let _ = host_log::tell(py);
-            reached.tell(py, progress.as_ref());
+            // Of failures here only Ctrl-C ends a run: its results matter more than what is shown.
+            let told = host_log::tell(py);
+            reached.tell(py, progress.as_ref())?;
+            told
         },
     );
     log.close();
     interrupt::forget();
-    reached.tell(py, progress.as_ref());
+    reached.tell(py, progress.as_ref())?;
     host_log::tell(py)?;
     if let Some(failure) = observer.failure {
         return Err(failure);
@@ -85,13 +87,19 @@ struct Reached {
 }
 
 impl Reached {
-    /// Calls what shows the progress, once a run has begun.
-    fn tell(&self, py: Python<'_>, progress: Option<&Py<PyAny>>) {
+    /// Calls what shows the progress, once a run has begun. Ctrl-C in there is returned, what else fails is
+    /// reported.
+    fn tell(&self, py: Python<'_>, progress: Option<&Py<PyAny>>) -> PyResult<()> {
         let until = self.until.load(Ordering::Relaxed);
-        let Some(progress) = progress.filter(|_| until > 0) else { return };
+        let Some(progress) = progress.filter(|_| until > 0) else { return Ok(()) };
         let time = f64::from_bits(self.time.load(Ordering::Relaxed));
-        if let Err(error) = progress.call1(py, (self.step.load(Ordering::Relaxed), until, time)) {
-            error.write_unraisable(py, None);
+        match progress.call1(py, (self.step.load(Ordering::Relaxed), until, time)) {
+            Err(error) if error.is_instance_of::<PyKeyboardInterrupt>(py) => Err(error),
+            Err(error) => {
+                error.write_unraisable(py, None);
+                Ok(())
+            }
+            Ok(_) => Ok(()),
         }
     }
 }

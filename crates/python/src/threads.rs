@@ -1,6 +1,7 @@
 //! Threads of the computation, and how Python waits for them.
 
 use crate::errors;
+use pyo3::exceptions::PyKeyboardInterrupt;
 use pyo3::prelude::*;
 use rayon::{ThreadPool, ThreadPoolBuilder};
 use std::collections::HashMap;
@@ -37,12 +38,13 @@ pub(crate) fn pool(py: Python<'_>, threads: Option<usize>) -> PyResult<Arc<Threa
 }
 
 /// Does work on a pool while Python's other threads run. Between looks at signals `look` is called, with the
-/// error of a signal (Ctrl-C) if there was one. The work is always waited for.
+/// error of a signal (Ctrl-C) if there was one. A signal that comes while `look` runs Python is raised there:
+/// it counts, while other failures of `look` do not. The work is always waited for.
 pub(crate) fn work<T: Send>(
     py: Python<'_>,
     pool: &ThreadPool,
     work: impl FnOnce() -> T + Send,
-    mut look: impl FnMut(Python<'_>, Option<&PyErr>),
+    mut look: impl FnMut(Python<'_>, Option<&PyErr>) -> PyResult<()>,
 ) -> PyResult<T> {
     let (send, receive) = sync_channel(1);
     let receive = Mutex::new(receive);
@@ -53,18 +55,19 @@ pub(crate) fn work<T: Send>(
             let _ = send.send(());
             done
         });
-        let mut signal = None;
+        let (mut signal, mut raised) = (None, None::<PyErr>);
         loop {
             let waited =
                 py.detach(|| receive.lock().unwrap_or_else(PoisonError::into_inner).recv_timeout(LOOK));
             if !matches!(waited, Err(RecvTimeoutError::Timeout)) || handle.is_finished() {
                 break;
             }
-            let new = py.check_signals().err();
-            look(py, new.as_ref());
+            let new = raised.take().or_else(|| py.check_signals().err());
+            let failure = look(py, new.as_ref()).err();
+            raised = failure.filter(|failure| failure.is_instance_of::<PyKeyboardInterrupt>(py));
             signal = signal.or(new);
         }
-        (py.detach(|| handle.join()), signal)
+        (py.detach(|| handle.join()), signal.or(raised))
     });
     match (done, signal) {
         (_, Some(signal)) => Err(signal),

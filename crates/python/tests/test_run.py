@@ -99,6 +99,22 @@ def test_ctrl_c_stops_with_a_checkpoint(bed, tmp_path):
     assert amberfield.Run(tmp_path / "run").summary["ending"] == "interrupted"
 
 
+def test_ctrl_c_while_the_bar_is_drawn_is_not_lost(bed, tmp_path, monkeypatch):
+    bed["time"]["end_s"] = 10.0
+    shown = []
+
+    def show(*progress):
+        shown.append(progress)
+        if len(shown) == 3:
+            signal.raise_signal(signal.SIGINT)
+
+    monkeypatch.setattr(amberfield._run._Bar, "show", lambda self, *progress: show(*progress))
+    with pytest.raises(KeyboardInterrupt):
+        amberfield.run(bed, tmp_path / "run")
+    assert amberfield.Run(tmp_path / "run").summary["ending"] == "interrupted"
+    assert amberfield.Run(tmp_path / "run").checkpoints
+
+
 def test_there_is_one_run_at_a_time(bed, tmp_path):
     def inner(_):
         amberfield.run(bed, tmp_path / "inner", progress=False)
