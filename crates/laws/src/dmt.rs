@@ -9,7 +9,7 @@
 //!
 //! ```
 //! use amberfield_laws::dmt::pull_off;
-//! assert!((pull_off(0.1, 5e-5) - 3.1416e-5).abs() < 1e-9);
+//! assert!((pull_off(0.1_f64, 5e-5) - 3.1416e-5).abs() < 1e-9);
 //! ```
 
 use std::f64::consts::PI;

@@ -22,7 +22,7 @@
 //!
 //! ```
 //! use amberfield_laws::jkr::{Scale, pull_off};
-//! let jkr = Scale::new(0.1, 5e-5, 1e7);
+//! let jkr = Scale::new(0.1_f64, 5e-5, 1e7);
 //! assert!((jkr.pull_off / pull_off(0.1, 5e-5) - 1.0).abs() < 1e-15);
 //! // At no overlap the contact pulls with 8/9 of the pull-off force.
 //! assert!((jkr.force(jkr.root(0.0)) / jkr.pull_off + 8.0 / 9.0).abs() < 1e-14);
