@@ -1,6 +1,6 @@
 //! Keys of `[[feeds]]`.
 
-use super::particles::{BOX, CYLINDER, RADII};
+use super::particles::{BOX, CHARGE_WORDS, CYLINDER, GROUP, MATERIAL, RADII, RADIUS_WORDS};
 use super::{Form, Key};
 use crate::limits::{CHARGE, GRAINS, RADIUS, SPEED, TIME};
 use crate::tree::Range;
@@ -92,9 +92,7 @@ pub(super) static KEYS: &[Key] = &[
         .required()
         .example("\"hopper\"")
         .also(&["id", "title"]),
-    Key::new("material", Form::Text, "Name of the grains' material.")
-        .without("the scene's only material")
-        .example("\"glass\""),
+    MATERIAL,
     Key::new("region", Form::Table(REGION), "Where grains appear, or the face through which they come.")
         .required()
         .example("{ box = { min_m = [0.0, 0.0, 0.08], max_m = [0.1, 0.1, 0.1] } }")
@@ -136,7 +134,7 @@ pub(super) static KEYS: &[Key] = &[
     .unit("m")
     .required()
     .example("5e-4")
-    .also(&["diameter_m", "diameter", "radius", "size", "d", "r", "radius_mm", "diameter_mm"]),
+    .also(RADIUS_WORDS),
     Key::new(
         "charge_C",
         Form::Either(&[Form::Number(CHARGE), Form::Table(CHARGES)]),
@@ -145,7 +143,7 @@ pub(super) static KEYS: &[Key] = &[
     .unit("C")
     .default("0.0")
     .example("{ normal = { mean = 0.0, std = 1e-14 } }")
-    .also(&["charge", "q", "charge_e", "charge_pC", "charge_nC"]),
+    .also(CHARGE_WORDS),
     Key::new(
         "charge_C_kg",
         Form::Either(&[Form::Number(CHARGE_PER_MASS), Form::Table(CHARGES_PER_MASS)]),
@@ -176,9 +174,7 @@ pub(super) static KEYS: &[Key] = &[
     )
     .default("0")
     .example("7"),
-    Key::new("group", Form::Text, "Group that electric_field.particle_group can name.")
-        .without("the group \"all\" alone")
-        .example("\"fines\""),
+    GROUP,
     Key::new(
         "on_blocked",
         Form::Word(&["wait", "stop"]),

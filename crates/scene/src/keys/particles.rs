@@ -194,10 +194,23 @@ static CHARGES: &[Key] = &[
         .also(&["file", "csv"]),
 ];
 
+/// Material of grains that are made.
+pub(super) const MATERIAL: Key = Key::new("material", Form::Text, "Name of the grains' material.")
+    .without("the scene's only material")
+    .example("\"glass\"");
+/// Group of grains that are made.
+pub(super) const GROUP: Key =
+    Key::new("group", Form::Text, "Group that electric_field.particle_group can name.")
+        .without("the group \"all\" alone")
+        .example("\"fines\"");
+/// Words that are meant as a radius.
+pub(super) const RADIUS_WORDS: &[&str] =
+    &["diameter_m", "diameter", "radius", "size", "d", "r", "radius_mm", "diameter_mm"];
+/// Words that are meant as a charge.
+pub(super) const CHARGE_WORDS: &[&str] = &["charge", "q", "charge_e", "charge_pC", "charge_nC"];
+
 static GENERATE: &[Key] = &[
-    Key::new("material", Form::Text, "Name of the grains' material.")
-        .without("the scene's only material")
-        .example("\"glass\""),
+    MATERIAL,
     Key::new("count", Form::Whole(1, GRAINS), "Number of grains.").required().example("1000").also(&[
         "n",
         "number",
@@ -212,7 +225,7 @@ static GENERATE: &[Key] = &[
     .unit("m")
     .required()
     .example("5e-4")
-    .also(&["diameter_m", "diameter", "radius", "size", "d", "r", "radius_mm", "diameter_mm"]),
+    .also(RADIUS_WORDS),
     Key::new(
         "charge_C",
         Form::Either(&[Form::Number(CHARGE), Form::Table(CHARGES)]),
@@ -221,7 +234,7 @@ static GENERATE: &[Key] = &[
     .unit("C")
     .default("0.0")
     .example("{ bipolar = 1e-12 }")
-    .also(&["charge", "q", "charge_e", "charge_pC", "charge_nC"]),
+    .also(CHARGE_WORDS),
     Key::new(
         "region",
         Form::Either(&[Form::Word(&["box"]), Form::Table(REGION)]),
@@ -236,9 +249,7 @@ static GENERATE: &[Key] = &[
         .default("[0.0, 0.0, 0.0]")
         .example("[0.0, 0.0, -0.1]")
         .also(&["velocity", "speed_m_s", "v", "u"]),
-    Key::new("group", Form::Text, "Group that electric_field.particle_group can name.")
-        .without("the group \"all\" alone")
-        .example("\"fines\""),
+    GROUP,
 ];
 
 pub(super) static KEYS: &[Key] = &[
