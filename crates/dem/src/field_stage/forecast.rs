@@ -308,6 +308,7 @@ impl Sums {
             largest: over(self.largest, 1.0, scale.of_all),
             jumped: jumps.e2,
             missed: 0.0,
+            forces2: self.weights * scale.of_forces.powi(2),
         }
     }
 }

@@ -55,6 +55,8 @@ pub(crate) struct Check {
     pub(crate) jumped: f64,
     /// Error of the forecast that a field solver beside the steps made for itself; it is in every step.
     pub(crate) missed: f64,
+    /// Sum over the members of the squared scale of the forces [N²]: how much the interval weighs in a run.
+    pub(crate) forces2: f64,
 }
 
 /// Intervals of a run between evaluations of the field, and the error of E that they made.
@@ -66,18 +68,20 @@ pub struct Intervals {
     pub checked_steps: u64,
     /// Steps of the interval in progress.
     pub steps_now: u64,
-    /// Σ over the checked steps of the squared relative error.
+    /// Σ over the checked steps of the squared error of the forces [N²].
     squares: f64,
+    /// Σ over the checked steps of the squared scale of the forces [N²].
+    forces2: f64,
     /// Largest RMS error over one interval.
     pub largest_error: f64,
 }
 
 impl Intervals {
-    /// RMS error of the electric forces, over members and steps and over the scale of E, made by not
-    /// evaluating every step.
+    /// RMS error of the electric forces over members and steps, made by not evaluating every step, over the
+    /// RMS scale of the forces. The last grains of a cloud that leaves weigh as little as their forces do.
     #[must_use]
     pub fn error(&self) -> f64 {
-        (self.squares / self.checked_steps.max(1) as f64).sqrt()
+        (self.squares / self.forces2.max(f64::MIN_POSITIVE)).sqrt()
     }
 }
 
@@ -132,7 +136,8 @@ impl IntervalControl {
             + check.jump.powi(2) * jumps
             + (EXTRAPOLATED * check.missed).powi(2) * steps as f64;
         self.intervals.checked_steps += steps;
-        self.intervals.squares += squares;
+        self.intervals.squares += squares * check.forces2;
+        self.intervals.forces2 += steps as f64 * check.forces2;
         let error = (squares / steps as f64).sqrt();
         self.intervals.largest_error = self.intervals.largest_error.max(error);
         self.intervals.steps_now = match wanted {
@@ -199,7 +204,7 @@ mod tests {
         for _ in 0..40 {
             while !control.is_due() {}
             let drift = drift(&control, curvature, power);
-            let check = Check { drift, largest: 3.0 * drift, ..Check::default() };
+            let check = Check { drift, largest: 3.0 * drift, forces2: 1.0, ..Check::default() };
             control.evaluated(Some(check), CouplingInterval::Auto, TOLERANCE, most);
         }
         control
@@ -220,7 +225,7 @@ mod tests {
         for _ in 0..40 {
             while !control.is_due() {}
             let drift = drift(&control, 1e-5, 2.0);
-            let check = Check { drift, largest: 10.0 * WORST * drift, ..Check::default() };
+            let check = Check { drift, largest: 10.0 * WORST * drift, forces2: 1.0, ..Check::default() };
             control.evaluated(Some(check), CouplingInterval::Auto, TOLERANCE, u64::MAX);
         }
         let end = 1e-5 * (control.intervals.steps_now as f64).powi(2);
@@ -235,7 +240,7 @@ mod tests {
 
     /// A check that found drift alone.
     fn drifted(drift: f64) -> Option<Check> {
-        Some(Check { drift, drift_of_all: drift, largest: drift, ..Check::default() })
+        Some(Check { drift, drift_of_all: drift, largest: drift, forces2: 1.0, ..Check::default() })
     }
 
     #[test]
@@ -258,6 +263,24 @@ mod tests {
     }
 
     #[test]
+    fn intervals_weigh_as_much_as_their_forces() {
+        let mut control = IntervalControl::new();
+        let fixed = CouplingInterval::Steps(2);
+        control.evaluated(None, fixed, TOLERANCE, 2);
+        control.intervals.steps_now = 2;
+        // The drift of two held steps is half that at the end after the first, none after the second.
+        for (drift, forces2) in [(0.01, 1.0), (1.0, 1e-8)] {
+            control.before = 0;
+            while !control.is_due() {}
+            let check = Check { drift, forces2, ..Check::default() };
+            control.evaluated(Some(check), fixed, TOLERANCE, 2);
+        }
+        let of_first = 0.01 * f64::sqrt(0.125);
+        assert!((control.intervals.error() - of_first).abs() < 1e-3 * of_first);
+        assert!((control.intervals.largest_error - f64::sqrt(0.125)).abs() < 1e-12);
+    }
+
+    #[test]
     fn drift_grows_along_its_parabola_and_a_jump_when_charges_do() {
         let sum = |steps: u64, before: u64| {
             let at = |s: u64| if before == 0 { s as f64 } else { (s * (s + before)) as f64 };
@@ -272,7 +295,7 @@ mod tests {
         let mut control = IntervalControl::new();
         (0..4).for_each(|_| assert!(control.is_due()));
         [0.0, 0.0, 5.0].into_iter().for_each(|jumped| control.forecasts(jumped));
-        let check = Check { jump: 0.2, jumped: 5.0, ..Check::default() };
+        let check = Check { jump: 0.2, jumped: 5.0, forces2: 1.0, ..Check::default() };
         control.evaluated(Some(check), CouplingInterval::Auto, TOLERANCE, 9);
         assert!((control.intervals.error() - 0.1).abs() < 1e-15);
         // Jumps do not shorten the next interval.

@@ -15,7 +15,7 @@ use std::path::Path;
 /// First bytes of every checkpoint.
 const MAGIC: [u8; 8] = *b"AMBRFLD\x1a";
 /// Version of the layout.
-const FORMAT: u32 = 5;
+const FORMAT: u32 = 6;
 /// Version of the program that writes and reads.
 const PROGRAM: &str = env!("CARGO_PKG_VERSION");
 
