@@ -21,5 +21,5 @@ mod native {
     #[pymodule_export]
     use super::run::run;
     #[pymodule_export]
-    use super::snapshot::{read_snapshot, write_snapshot};
+    use super::snapshot::{outline, read_snapshot, write_snapshot};
 }

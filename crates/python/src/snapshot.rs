@@ -1,12 +1,15 @@
 //! Grains from files and to files.
 
 use crate::{arrays, errors};
-use amberfield_core::{GroupId, MaterialId, Particles, Vector3};
-use amberfield_scene::{Given, Snapshot, SnapshotBox, SnapshotOptions, Units};
+use amberfield_core::{Axis, GroupId, MaterialId, Particles, Vector3};
+use amberfield_scene::{Given, Snapshot, SnapshotBox, SnapshotOptions, Units, read_outline};
 use numpy::{IntoPyArray as _, PyReadonlyArray2};
 use pyo3::prelude::*;
 use pyo3::types::PyDict;
 use std::path::PathBuf;
+
+/// Materials, and the corners [m] and periodic axes of a box.
+type Outline = (Vec<String>, Option<([[f64; 3]; 2], [bool; 3])>);
 
 /// Reads the grains of a file at one time: a dict of arrays, in which what the file does not have is `None`.
 #[pyfunction]
@@ -57,6 +60,18 @@ pub(crate) fn read_snapshot(
     }
     dict.update(columns.as_mapping())?;
     Ok(dict)
+}
+
+/// Names of the materials of a scene, and the box with the axes along which it repeats; the box is `None`
+/// where the mesh of a solver gives it.
+#[pyfunction]
+pub(crate) fn outline(py: Python<'_>, scene: PathBuf) -> PyResult<Outline> {
+    let outline = read_outline(&scene).map_err(|error| errors::of_scene(py, &error))?;
+    let bounds = outline.domain.map(|domain| {
+        let corners = [domain.min(), domain.max()].map(<[f64; 3]>::from);
+        (corners, Axis::ALL.map(|axis| domain.is_periodic(axis)))
+    });
+    Ok((outline.materials, bounds))
 }
 
 /// Arrays of grains by the names of their columns.

@@ -60,12 +60,14 @@ fn solver(clean: bool) {
             )),
         }
     }
-    let surroundings = amberfield_coupling::Surroundings::of(&field);
-    for fact in &surroundings.found {
-        line(format_args!("{fact}"));
-    }
-    for problem in &surroundings.wrong {
-        line(format_args!("warning: {problem}"));
+    if let Some(field) = amberfield_coupling::existing(&field) {
+        let surroundings = amberfield_coupling::Surroundings::of(&field);
+        for fact in &surroundings.found {
+            line(format_args!("{fact}"));
+        }
+        for problem in &surroundings.wrong {
+            line(format_args!("warning: {problem}"));
+        }
     }
     let stale = amberfield_coupling::stale_runs(clean);
     if stale.is_empty() {

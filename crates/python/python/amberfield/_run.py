@@ -167,19 +167,17 @@ class Run:
         """Grains of a frame; -1 is the last."""
         time_s, path = self._frame("particles.pvd", frame)
         arrays = arrays_of(path)
-        scene = self.scene
+        materials, box = _native.outline(str(self.path / "scene.toml"))
         grains = Grains(
             position_m=arrays["points_m"],
             **{name: arrays[name] for name in _OF_A_FRAME},
-            materials=[material["name"] for material in scene.get("materials", [])],
+            materials=materials,
             time_s=time_s,
             step=int(path.stem.rsplit("_", 1)[1]),
         )
-        domain = scene.get("domain", {})
-        if "min_m" in domain:
-            grains.box_m = np.array([domain["min_m"], domain["max_m"]], dtype=np.float64)
-            boundary = domain.get("boundary", {})
-            grains.is_periodic = tuple(boundary.get(axis) == "periodic" for axis in "xyz")
+        if box is not None:
+            corners, periodic = box
+            grains.box_m, grains.is_periodic = np.array(corners), tuple(periodic)
         return grains
 
     def walls(self, frame: int = -1) -> pandas.DataFrame:
