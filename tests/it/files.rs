@@ -10,6 +10,10 @@ use std::collections::BTreeSet;
 const FEED: &str = "\n[[feeds]]\nname = \"more\"\nrate_per_s = 1e4\ncount = 2\nradius_m = 1e-4\n\
     region = { box = { min_m = [5e-4, 5e-4, 2.5e-3], max_m = [1.5e-3, 1.5e-3, 3.5e-3] } }\n";
 
+/// Outlet of the scene, beside its feed.
+const OUTLET: &str = "\n[[outlets]]\nname = \"bin\"\neach = true\n\
+    region = { box = { min_m = [1.5e-3, 0, 0], max_m = [2e-3, 2e-3, 2e-3] } }\n";
+
 /// Scene with everything on that needs no OpenFOAM.
 fn everything() -> String {
     let walls = "material = \"glass\"\ncharging = \"insulating\"\n[[walls]]";
@@ -36,6 +40,7 @@ fn everything() -> String {
         .replace("[\"vtk\", \"csv\"]", "[\"vtk\", \"csv\", \"png\"]")
         .replace("velocity_m_s = [0.1,", "velocity_m_s = [2.0,")
         + FEED
+        + OUTLET
 }
 
 /// Paths of all files in a folder and below, from the folder.
@@ -92,7 +97,10 @@ fn check(bench: &Workbench, folder: &str) -> BTreeSet<&'static str> {
             assert!(file.has(name), "{path}: {name} is not in the table of {}", file.path);
         }
         // The scene has everything on, so that nothing of the table may be missing either.
-        for name in file.names(|_| true).filter(|name| !name.contains("STAGE") && !name.contains("NAME")) {
+        for name in file
+            .names(|_| true)
+            .filter(|name| ["STAGE", "NAME", "OUTLET"].iter().all(|word| !name.contains(word)))
+        {
             let is_of_others =
                 ["solver_iterations", "energies_at_end", "field", "field_intervals", "limited", "books"];
             let is_there = found.iter().any(|other| other == name) || is_of_others.contains(&name);

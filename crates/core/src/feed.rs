@@ -1,6 +1,7 @@
 //! Grains that come while a run goes on.
 
 use crate::particles::Particles;
+use crate::volume::Volume;
 use crate::wall::TriangleMesh;
 use nalgebra::Vector3;
 use serde::{Deserialize, Serialize};
@@ -9,24 +10,8 @@ use serde::{Deserialize, Serialize};
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(rename_all = "snake_case")]
 pub enum FeedRegion {
-    /// Box along the axes; grains lie in it as a whole.
-    Box {
-        /// Lower corner.
-        min: Vector3<f64>,
-        /// Upper corner.
-        max: Vector3<f64>,
-    },
-    /// Cylinder; grains lie in it as a whole.
-    Cylinder {
-        /// Centre of the lower end.
-        base: Vector3<f64>,
-        /// Unit vector from the lower to the upper end.
-        axis: Vector3<f64>,
-        /// Radius.
-        radius: f64,
-        /// Length along the axis.
-        length: f64,
-    },
+    /// Volume in which grains lie as a whole.
+    Volume(Volume),
     /// Face through which grains come, as a whole and with their velocity.
     Face(TriangleMesh),
 }
@@ -36,13 +21,7 @@ impl FeedRegion {
     #[must_use]
     pub fn bounds(&self) -> Option<[Vector3<f64>; 2]> {
         match self {
-            Self::Box { min, max } => Some([*min, *max]),
-            Self::Cylinder { base, axis, radius, length } => {
-                let top = base + axis * *length;
-                // A disc reaches R √(1 − a²) along each coordinate.
-                let disc = axis.map(|a| radius * (1.0 - a * a).max(0.0).sqrt());
-                Some([base.inf(&top) - disc, base.sup(&top) + disc])
-            }
+            Self::Volume(volume) => Some(volume.bounds()),
             Self::Face(mesh) => mesh.bounds(),
         }
     }

@@ -26,6 +26,7 @@ fn main() {
         gas: None,
         field: None,
         feeds: Default::default(),
+        outlets: Vec::new(),
     };
     let mut simulation = Simulation::new(setup).expect("a good scene");
     for _ in 0..bed::STEPS {

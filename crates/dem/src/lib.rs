@@ -4,6 +4,7 @@
 //! runs them. Results are bit-identical for any number of threads of the caller's rayon pool.
 #![forbid(unsafe_code)]
 
+mod books;
 mod charging;
 mod contacts;
 mod error;
@@ -11,19 +12,21 @@ mod feeding;
 mod field_stage;
 mod gas_stage;
 mod motion;
+mod outlets;
 mod setup;
 mod simulation;
 mod wall_cover;
 
+pub use books::Tally;
 pub use charging::{ChargedSpot, Ledger};
 pub use contacts::walls::WallLoad;
 pub use error::DemError;
-pub use feeding::{Brought, FeedAccount, Tally};
+pub use feeding::{Brought, FeedAccount};
 pub use field_stage::{Intervals, Limited};
 pub use setup::{FieldStageSetup, GasSetup, Setup};
 pub use simulation::books::Book;
 pub use simulation::energy::{ElectricEnergy, Energies};
-pub use simulation::exits::{Exit, Left};
+pub use simulation::exits::{Exit, Left, WayOut};
 pub use simulation::guards::{Guard, StepRestitution};
 pub use simulation::outlook::Outlook;
 pub use simulation::state::State;

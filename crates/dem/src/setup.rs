@@ -1,7 +1,7 @@
 //! Parts of a simulation.
 
 use amberfield_core::{
-    ChargeTransfer, Cohesion, Domain, Feeds, FieldSettings, Gas, Material, MaterialPair, Particles,
+    ChargeTransfer, Cohesion, Domain, Feeds, FieldSettings, Gas, Material, MaterialPair, Outlet, Particles,
     RollingModel, TimeSettings, Wall,
 };
 use amberfield_field::Choice;
@@ -75,4 +75,6 @@ pub struct Setup {
     pub field: Option<FieldStageSetup>,
     /// Grains that come while the run goes on.
     pub feeds: Feeds,
+    /// Places at which grains leave.
+    pub outlets: Vec<Outlet>,
 }

@@ -4,8 +4,8 @@ mod common;
 
 use amberfield_core::{
     Boundary, ChargeTransfer, CouplingInterval, Domain, Feed, FeedRegion, Feeds, FieldSettings, Grain,
-    Material, MaterialId, Method, MotionKind, OnBlocked, OnExit, Particles, TriangleMesh, Vector3, Wall,
-    WallCharging, WallMotion,
+    Material, MaterialId, Method, MotionKind, OnBlocked, OnExit, Particles, TriangleMesh, Vector3, Volume,
+    Wall, WallCharging, WallMotion,
 };
 use amberfield_dem::{Book, FieldStageSetup, Setup, Simulation, State, Tally};
 use common::{RADIUS, floor, grain, material, mesh_floor, run, setup};
@@ -17,7 +17,10 @@ const STEP: f64 = 2e-5;
 
 fn high() -> FeedRegion {
     let (z, thick) = (40.0 * RADIUS, 4.0 * RADIUS);
-    FeedRegion::Box { min: Vector3::new(-HALF, -HALF, z), max: Vector3::new(HALF, HALF, z + thick) }
+    FeedRegion::Volume(Volume::Box {
+        min: Vector3::new(-HALF, -HALF, z),
+        max: Vector3::new(HALF, HALF, z + thick),
+    })
 }
 
 fn feed(name: &str, region: FeedRegion) -> Feed {
@@ -217,9 +220,11 @@ fn feeds_that_can_never_do_what_they_shall_are_refused() {
         let error = Simulation::new(scene(feeds(vec![bad], 500, every, |_, _| {}), work(0.0))).unwrap_err();
         assert!(error.to_string().contains(word), "{word}: {error}");
     };
-    let small = |half: f64| FeedRegion::Box {
-        min: Vector3::new(-half, -half, 0.01),
-        max: Vector3::new(half, half, 0.02),
+    let small = |half: f64| {
+        FeedRegion::Volume(Volume::Box {
+            min: Vector3::new(-half, -half, 0.01),
+            max: Vector3::new(half, half, 0.02),
+        })
     };
     refused(small(0.9 * RADIUS), -1.0, STEP, "does not fit into its region");
     refused(small(2.0 * HALF), -1.0, STEP, "beyond the domain");
@@ -241,7 +246,8 @@ fn face(half: f64) -> TriangleMesh {
 #[test]
 fn grains_come_through_a_face_and_in_a_cylinder() {
     let base = Vector3::new(0.0, 0.0, 40.0 * RADIUS);
-    let tube = FeedRegion::Cylinder { base, axis: Vector3::z(), radius: 5.0 * RADIUS, length: 5.0 * RADIUS };
+    let (radius, length) = (5.0 * RADIUS, 5.0 * RADIUS);
+    let tube = FeedRegion::Volume(Volume::Cylinder { base, axis: Vector3::z(), radius, length });
     for (region, low) in [(FeedRegion::Face(face(0.6 * HALF)), 43.0), (tube, 40.0)] {
         let mut simulation =
             Simulation::new(scene(feeds(vec![feed("a", region)], 100, 10.0 * STEP, |_, _| {}), work(0.2)))

@@ -8,7 +8,7 @@ use crate::run::{
     scene_name, setup_of,
 };
 use crate::{limits, machine, plan_text};
-use amberfield_core::{Axis, Boundary, Domain, Side};
+use amberfield_core::{Axis, Boundary, Domain, OutletRegion, Side};
 use amberfield_dem::{Outlook, Simulation};
 use amberfield_field::ElectricField;
 use amberfield_field::far::Connect;
@@ -66,6 +66,9 @@ fn print_scene(name: &str, scene: &Scene) {
         }
         line(format_args!("feed \"{}\": {count} grains, {mass:.4e} kg, up to the end", feed.name));
     }
+    for outlet in &scene.outlets {
+        line(format_args!("outlet \"{}\": {}", outlet.name, place_of(&outlet.region)));
+    }
     line(format_args!("walls: {}, materials: {}", scene.walls.len(), scene.materials.len()));
     for wall in plan_text::walls(scene) {
         line(format_args!("  {wall}"));
@@ -73,6 +76,17 @@ fn print_scene(name: &str, scene: &Scene) {
     if let Some(domain) = &scene.domain {
         let (min, max) = (domain.min(), domain.max());
         line(format_args!("domain: {:?} to {:?} m; {}", min.as_slice(), max.as_slice(), faces(domain)));
+    }
+}
+
+/// Text of where an outlet is.
+fn place_of(region: &OutletRegion) -> String {
+    match region {
+        OutletRegion::Face(axis, side) => format!("face {axis}_{}", ["min", "max"][*side as usize]),
+        OutletRegion::Volume(volume) => {
+            let [low, high] = volume.bounds();
+            format!("within {:?} to {:?} m, {:.4e} m³", low.as_slice(), high.as_slice(), volume.size())
+        }
     }
 }
 

@@ -8,12 +8,13 @@ use std::io::Write as _;
 use std::path::{Path, PathBuf};
 
 /// Files and folders that a run may write.
-const OUTPUTS: [&str; 16] = [
+const OUTPUTS: [&str; 17] = [
     "scene.toml",
     "log.jsonl",
     "history.csv",
     wall_forces::FILE,
-    exits::FILE,
+    exits::FILES[0],
+    exits::FILES[1],
     "particles",
     "particles.pvd",
     "walls",

@@ -27,8 +27,8 @@ pub(crate) struct Record {
     walls: Option<PvdSeries>,
     /// Forces on walls; `None` where there are no walls.
     wall_forces: Option<WallForces>,
-    /// Grains that left; `None` where that ends the run.
-    exits: Option<Exits>,
+    /// Grains that left.
+    exits: Exits,
     /// Histograms of the charges; `None` where charges do not change.
     histogram: Option<Histogram>,
     /// Step of the last row.
@@ -47,8 +47,11 @@ struct HistoryColumns {
     moving: bool,
     limited: bool,
     solver: bool,
-    /// Names of the materials, as they stand in columns, where there are feeds; else none.
+    feeds: bool,
+    /// Names of the materials, as they stand in columns, where grains come or go; else none.
     materials: Vec<String>,
+    /// Names of the outlets, as they stand in columns.
+    outlets: Vec<String>,
     /// Names of the stages that are timed.
     stages: Vec<&'static str>,
 }
@@ -65,7 +68,9 @@ impl HistoryColumns {
             limited: simulation.plan().has("field")
                 && scene.electric_field.as_ref().is_some_and(|field| field.limit_field_force),
             solver: simulation.plan().has("field") && scene.solver.is_some(),
+            feeds: !simulation.feeds().is_empty(),
             materials: if simulation.books().is_some() { materials_of(scene) } else { Vec::new() },
+            outlets: scene.outlets.iter().map(|outlet| plain(&outlet.name)).collect(),
             stages: simulation.stage_seconds().into_iter().map(|(name, _)| name).collect(),
         }
     }
@@ -75,7 +80,9 @@ impl HistoryColumns {
         let names = HISTORY.names(|when| self.holds(when)).flat_map(|name| {
             let of_stages = || self.stages.iter().map(|stage| name.replace("STAGE", stage)).collect();
             let of_materials = || self.materials.iter().map(|of| name.replace("NAME", of)).collect();
+            let of_outlets = || self.outlets.iter().map(|of| name.replace("OUTLET", of)).collect();
             match name {
+                name if name.contains("OUTLET") => of_outlets(),
                 name if name.contains("STAGE") => of_stages(),
                 name if name.contains("NAME") => of_materials(),
                 name => vec![name.to_owned()],
@@ -95,7 +102,9 @@ impl HistoryColumns {
             When::ChargedWalls => self.walls,
             When::Limit => self.limited,
             When::Solver => self.solver,
-            When::Feeds => !self.materials.is_empty(),
+            When::Feeds => self.feeds,
+            When::Books => !self.materials.is_empty(),
+            When::Outlets => !self.outlets.is_empty(),
             When::Components => false,
         }
     }
@@ -167,7 +176,7 @@ impl Record {
 
     /// Writes down the grains that left in a step.
     pub(crate) fn exits(&mut self, simulation: &mut Simulation) -> Result<(), Failure> {
-        self.exits.as_mut().map_or(Ok(()), |exits| exits.append(&simulation.take_exits()))
+        self.exits.append(&simulation.take_exits())
     }
 
     /// Appends a row to the history, at most once for each step.
@@ -203,14 +212,16 @@ impl Record {
         row.push(HistoryValue::Count(simulation.contacts() as u64));
         row.extend(simulation.ledger().map(|ledger| HistoryValue::Count(ledger.collisions)));
         if let Some(books) = simulation.books() {
-            books_of(&books, &simulation.feeds(), &mut row);
+            books_of(&books, &mut row);
+            if self.columns.feeds {
+                feeds_of(&books, &simulation.feeds(), &mut row);
+            }
+            outlets_of(simulation.outlets(), &mut row);
         }
         row.extend(self.columns.solver.then(|| HistoryValue::Count(simulation.solver_iterations())));
         row.push(HistoryValue::Number(clock.wall_s));
         row.extend(clock.stages.iter().map(|seconds| HistoryValue::Number(*seconds)));
-        if let Some(exits) = &mut self.exits {
-            exits.tell(simulation.time_s());
-        }
+        self.exits.tell(simulation.time_s());
         if let Some(forces) = &mut self.wall_forces {
             forces.append(simulation)?;
         }
@@ -281,26 +292,47 @@ impl Record {
     }
 }
 
+/// Name without what would part columns.
+fn plain(name: &str) -> String {
+    name.replace([',', '"', '\n', '\r'], "_")
+}
+
 /// Names of a scene's materials, without what would part columns.
 fn materials_of(scene: &Scene) -> Vec<String> {
-    let plain = |name: &str| name.replace([',', '"', '\n', '\r'], "_");
     scene.materials.iter().map(|material| plain(&material.name)).collect()
 }
 
-/// Adds the books of a run with feeds to a row of the history.
-fn books_of(books: &[Book], feeds: &[FeedAccount], row: &mut Vec<HistoryValue>) {
-    let Book { fed, left, inside, .. } = Book::sum(books);
-    let owed = Tally::sum(feeds.iter().map(|feed| &feed.owed));
+/// Adds the books of what is there and what left to a row of the history.
+fn books_of(books: &[Book], row: &mut Vec<HistoryValue>) {
+    let Book { left, inside, .. } = Book::sum(books);
     let (count, number) = (HistoryValue::Count, HistoryValue::Number);
     row.extend([count(inside.grains), number(inside.mass)]);
-    row.extend([count(fed.grains), number(fed.mass), number(fed.charge)]);
-    row.extend([count(owed.grains), number(owed.mass)]);
     row.extend([count(left.grains), number(left.mass), number(left.charge)]);
-    let tallies: [fn(&Book) -> Tally; 3] = [|book| book.inside, |book| book.fed, |book| book.left];
+    let tallies: [fn(&Book) -> Tally; 2] = [|book| book.inside, |book| book.left];
     row.extend(tallies.iter().flat_map(|of| books.iter().map(|book| count(of(book).grains))));
     row.extend(tallies.iter().flat_map(|of| books.iter().map(|book| number(of(book).mass))));
     row.extend(tallies.iter().flat_map(|of| books.iter().map(|book| number(of(book).charge))));
     row.extend(books.iter().map(|book| number(book.gained)));
+}
+
+/// Adds the books of what feeds brought, and what they owe, to a row of the history.
+fn feeds_of(books: &[Book], feeds: &[FeedAccount], row: &mut Vec<HistoryValue>) {
+    let fed = Book::sum(books).fed;
+    let owed = Tally::sum(feeds.iter().map(|feed| &feed.owed));
+    let (count, number) = (HistoryValue::Count, HistoryValue::Number);
+    row.extend([count(fed.grains), number(fed.mass), number(fed.charge)]);
+    row.extend([count(owed.grains), number(owed.mass)]);
+    row.extend(books.iter().map(|book| count(book.fed.grains)));
+    row.extend(books.iter().map(|book| number(book.fed.mass)));
+    row.extend(books.iter().map(|book| number(book.fed.charge)));
+}
+
+/// Adds the books of outlets to a row of the history.
+fn outlets_of(outlets: &[Vec<Tally>], row: &mut Vec<HistoryValue>) {
+    let sums: Vec<Tally> = outlets.iter().map(Tally::sum).collect();
+    row.extend(sums.iter().map(|sum| HistoryValue::Count(sum.grains)));
+    row.extend(sums.iter().map(|sum| HistoryValue::Number(sum.mass)));
+    row.extend(sums.iter().map(|sum| HistoryValue::Number(sum.charge)));
 }
 
 /// Step in the name of a file.

@@ -135,6 +135,7 @@ pub(crate) fn setup_of(
         gas: scene.gas.map(|gas| GasSetup { gas, solver: solver.flow }),
         field,
         feeds: std::mem::take(&mut scene.feeds),
+        outlets: scene.outlets.clone(),
     })
 }
 

@@ -42,7 +42,7 @@ fn energies(energies: &Energies) -> Value {
     })
 }
 
-/// Books as JSON: of all grains, by material and by feed.
+/// Books as JSON: of all grains, by material, by feed and by outlet.
 fn books(session: &Session<'_>, books: &[Book]) -> Value {
     let tally = |tally: &Tally| json!({ "grains": tally.grains, "kg": tally.mass, "C": tally.charge });
     let book = |book: &Book| {
@@ -61,7 +61,23 @@ fn books(session: &Session<'_>, books: &[Book]) -> Value {
     let feeds: Map<String, Value> = feeds
         .map(|feed| (feed.name, json!({ "fed": tally(&feed.fed), "owed": tally(&feed.owed) })))
         .collect();
-    json!({ "all": book(&Book::sum(books)), "materials": materials, "feeds": feeds })
+    let mut all = json!({ "all": book(&Book::sum(books)), "materials": materials });
+    if !feeds.is_empty() {
+        all["feeds"] = Value::Object(feeds);
+    }
+    let outlets = session.scene.outlets.iter().zip(session.simulation.outlets());
+    let outlets: Map<String, Value> = outlets
+        .map(|(outlet, tallies)| {
+            let names = session.scene.materials.iter().map(|material| material.name.clone());
+            let mut of = tally(&Tally::sum(tallies));
+            of["materials"] = names.zip(tallies.iter().map(tally)).collect();
+            (outlet.name.clone(), of)
+        })
+        .collect();
+    if !outlets.is_empty() {
+        all["outlets"] = Value::Object(outlets);
+    }
+    all
 }
 
 /// Writes the summary of a run that began at step `first` with energies `before`.

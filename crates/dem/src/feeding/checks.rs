@@ -3,13 +3,14 @@
 use super::cross_section;
 use super::places::{Places, Random};
 use crate::error::DemError;
+use crate::outlets::Outlets;
 use crate::setup::Setup;
 use amberfield_core::{Axis, Feed, FeedRegion};
 use std::f64::consts::PI;
 
 /// Largest share of a region's volume that grains fill which come one after another.
 const FILLS: f64 = 0.6;
-/// Places that are tried to find out whether a grain fits through a face.
+/// Places that are tried to find out whether a grain fits through a face, and whether outlets take it.
 const TRIES: u64 = 10_000;
 /// Share of the box's size by which a region may reach out of it, because of rounding.
 const SLACK: f64 = 1e-9;
@@ -38,6 +39,7 @@ pub(crate) fn check(setup: &Setup) -> Result<(), DemError> {
         let radius = |grain: usize| setup.particles.radius[grain];
         let largest = grains().map(|(grain, _)| radius(grain)).fold(0.0, f64::max);
         check_size(feed, largest)?;
+        check_outlets(feed, setup)?;
         let Some(((_, first), (last, end))) = grains().next().zip(grains().next_back()) else { continue };
         let volume = |grain: usize| 4.0 / 3.0 * PI * radius(grain).powi(3);
         let brought: f64 = grains().filter(|(grain, _)| *grain != last).map(|(grain, _)| volume(grain)).sum();
@@ -79,11 +81,29 @@ fn check_region(feed: &Feed, setup: &Setup) -> Result<(), DemError> {
     Ok(())
 }
 
+/// Refuses a feed whose grains would leave where they come.
+fn check_outlets(feed: &Feed, setup: &Setup) -> Result<(), DemError> {
+    let Some(outlets) = Outlets::new(&setup.outlets) else { return Ok(()) };
+    let places = Places::of(feed);
+    let mut random = Random::new([feed.seed, 0, 0]);
+    for _ in 0..TRIES {
+        let place = places.draw(0.0, &mut random);
+        if let Some(number) = place.and_then(|place| outlets.holding(&setup.domain, place)) {
+            return Err(bad(format!(
+                "feed \"{}\": outlet \"{}\" reaches into its region, and would take its grains at once; \
+                 move one of them",
+                feed.name,
+                setup.outlets[usize::from(number)].name
+            )));
+        }
+    }
+    Ok(())
+}
+
 /// Refuses a region that the largest grain [m] does not fit into.
 fn check_size(feed: &Feed, largest: f64) -> Result<(), DemError> {
     let fits = match &feed.region {
-        FeedRegion::Box { min, max } => (max - min).min() >= 2.0 * largest,
-        FeedRegion::Cylinder { radius, length, .. } => radius.min(0.5 * length) >= largest,
+        FeedRegion::Volume(volume) => volume.inner_radius() >= largest,
         FeedRegion::Face(_) => {
             let places = Places::of(feed);
             let mut random = Random::new([feed.seed, 0, 0]);

@@ -1,4 +1,4 @@
-//! Grains that come while a run goes on, and the books about all that come and go.
+//! Grains that come while a run goes on.
 //!
 //! All grains of all feeds are known before the run: they have their index in the set-up's arrays, like a
 //! grain that has left. Every few steps those that are due enter, each feed's one after another, where they
@@ -11,11 +11,12 @@ mod room;
 
 pub(crate) use checks::check;
 
+use crate::books::Tally;
 use crate::contacts::walls::ContactWalls;
 use crate::error::DemError;
 use crate::motion::grains::{Grains, Newcomer};
 use crate::setup::Setup;
-use amberfield_core::{Axis, Domain, Feed, FeedRegion, Feeds, OnBlocked, Particles, Vector3};
+use amberfield_core::{Axis, Domain, Feed, FeedRegion, Feeds, OnBlocked, Particles, Vector3, Volume};
 use places::{Places, Random};
 use room::Room;
 use serde::{Deserialize, Serialize};
@@ -26,38 +27,6 @@ const EVERY: u64 = 10;
 const TRIES: u64 = 100;
 /// Places of a lattice that are tried.
 const MOST_OF_LATTICE: usize = 4096;
-
-/// Number, mass and charge of grains.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
-pub struct Tally {
-    /// Number.
-    pub grains: u64,
-    /// Mass [kg].
-    pub mass: f64,
-    /// Charge [C].
-    pub charge: f64,
-}
-
-impl Tally {
-    /// Adds a grain with its mass [kg] and charge [C].
-    pub(crate) fn add(&mut self, mass: f64, charge: f64) {
-        self.grains += 1;
-        self.mass += mass;
-        self.charge += charge;
-    }
-
-    /// Sum of tallies.
-    #[must_use]
-    pub fn sum<'a>(tallies: impl IntoIterator<Item = &'a Self>) -> Self {
-        let mut sum = Self::default();
-        for Self { grains, mass, charge } in tallies {
-            sum.grains += grains;
-            sum.mass += mass;
-            sum.charge += charge;
-        }
-        sum
-    }
-}
 
 /// Account of a feed.
 #[derive(Clone, Debug, PartialEq)]
@@ -88,10 +57,6 @@ pub(crate) struct FeedingState {
     pub(crate) by_feed: Vec<Tally>,
     /// Grains that were due when looked at last and found no place, by feed.
     owed: Vec<Tally>,
-    /// Grains that have come, by material.
-    pub(crate) fed: Vec<Tally>,
-    /// Grains that have left, by material.
-    pub(crate) left: Vec<Tally>,
     pub(crate) brought: Brought,
 }
 
@@ -111,8 +76,6 @@ struct Queue {
 pub(crate) struct Feeding {
     /// Number of grains at the start, after which those of the feeds follow.
     pub(crate) starters: usize,
-    /// Grains at the start, by material.
-    pub(crate) start: Vec<Tally>,
     queues: Vec<Queue>,
     /// Time at which each grain of the feeds is due [s].
     due_s: Vec<f64>,
@@ -158,16 +121,12 @@ pub(crate) fn merge(setup: &mut Setup) {
 impl Feeding {
     /// Takes the feeds of a merged set-up; `level` is that of the cells of all its grains. `None` without
     /// feeds.
-    pub(crate) fn new(feeds: Feeds, particles: &Particles, materials: usize, level: &[u8]) -> Option<Self> {
+    pub(crate) fn new(feeds: Feeds, particles: &Particles, level: &[u8]) -> Option<Self> {
         if feeds.is_empty() {
             return None;
         }
         let Feeds { list, due_s, feed, .. } = feeds;
         let starters = particles.len() - due_s.len();
-        let mut start = vec![Tally::default(); materials];
-        for i in 0..starters {
-            start[particles.material[i].0 as usize].add(particles.mass(i), particles.charge[i]);
-        }
         let queues: Vec<Queue> = (0..)
             .zip(list)
             .map(|(number, of)| Queue {
@@ -184,21 +143,18 @@ impl Feeding {
         let state = FeedingState {
             by_feed: vec![Tally::default(); queues.len()],
             owed: vec![Tally::default(); queues.len()],
-            fed: vec![Tally::default(); materials],
-            left: vec![Tally::default(); materials],
             brought: Brought::default(),
         };
         let largest = particles.radius.iter().copied().fold(0.0, f64::max);
-        Some(Self { starters, start, queues, due_s, level: level[starters..].to_vec(), largest, state })
+        Some(Self { starters, queues, due_s, level: level[starters..].to_vec(), largest, state })
     }
 
     /// Goes on from a state; `Err` says what does not fit.
     pub(crate) fn restore(&mut self, state: &FeedingState) -> Result<(), String> {
         let counts = [state.by_feed.len(), state.owed.len()] == [self.queues.len(); 2];
-        let materials = [state.fed.len(), state.left.len()] == [self.start.len(); 2];
         let enough =
             state.by_feed.iter().zip(&self.queues).all(|(fed, of)| fed.grains as usize <= of.grains.len());
-        if !(counts && materials && enough) {
+        if !(counts && enough) {
             return Err("its feeds are not those of the scene".to_owned());
         }
         self.state.clone_from(state);
@@ -325,16 +281,10 @@ impl Feeding {
         let (mass, charge) = (particles.mass(original), particles.charge[original]);
         let number = self.queues.iter().position(|of| of.grains.binary_search(&newcomer.original).is_ok());
         self.state.by_feed[number.expect("every grain is of a feed")].add(mass, charge);
-        self.state.fed[particles.material[original].0 as usize].add(mass, charge);
         let brought = &mut self.state.brought;
         brought.kinetic += 0.5 * mass * newcomer.end.norm_squared();
         brought.gravity -= mass * gravity.dot(&newcomer.position);
         brought.charge += charge;
-    }
-
-    /// Books a grain that leaves, with its mass [kg] and charge [C].
-    pub(crate) fn book_exit(&mut self, material: u16, mass: f64, charge: f64) {
-        self.state.left[usize::from(material)].add(mass, charge);
     }
 }
 
@@ -350,11 +300,11 @@ fn is_inside(domain: &Domain, place: &Vector3<f64>, radius: f64) -> bool {
 /// Largest cross-section of a region across a direction [m²]; `None` for a face.
 fn cross_section(region: &FeedRegion, direction: &Vector3<f64>) -> Option<f64> {
     match region {
-        FeedRegion::Box { min, max } => {
+        FeedRegion::Volume(Volume::Box { min, max }) => {
             let [x, y, z] = (max - min).into();
             Some(direction.abs().dot(&Vector3::new(y * z, x * z, x * y)))
         }
-        FeedRegion::Cylinder { axis, radius, length, .. } => {
+        FeedRegion::Volume(Volume::Cylinder { axis, radius, length, .. }) => {
             let along = direction.dot(axis).abs();
             let across = (1.0 - along * along).max(0.0).sqrt();
             Some(along * std::f64::consts::PI * radius * radius + across * 2.0 * radius * length)

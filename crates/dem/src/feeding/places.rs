@@ -1,6 +1,6 @@
 //! Places in the region of a feed: at random and on a lattice, the same ones in every run.
 
-use amberfield_core::{Feed, FeedRegion, TriangleMesh, Vector3};
+use amberfield_core::{Feed, FeedRegion, TriangleMesh, Vector3, Volume};
 use std::collections::HashMap;
 use std::f64::consts::PI;
 
@@ -51,7 +51,7 @@ pub(super) fn scattered(k: u64) -> Vector3<f64> {
 /// Places of a region.
 #[derive(Clone, Debug)]
 pub(super) enum Places {
-    Volume(FeedRegion),
+    Volume(Volume),
     Face(Face),
 }
 
@@ -71,7 +71,7 @@ impl Places {
     pub(super) fn of(feed: &Feed) -> Self {
         match &feed.region {
             FeedRegion::Face(mesh) => Self::Face(Face::new(mesh, &feed.velocity)),
-            region => Self::Volume(region.clone()),
+            FeedRegion::Volume(volume) => Self::Volume(volume.clone()),
         }
     }
 
@@ -79,10 +79,10 @@ impl Places {
     pub(super) fn draw(&self, radius: f64, random: &mut Random) -> Option<Vector3<f64>> {
         let inset = radius * (1.0 + GAP);
         match self {
-            Self::Volume(FeedRegion::Box { min, max }) => {
+            Self::Volume(Volume::Box { min, max }) => {
                 Some(Vector3::from_fn(|a, _| random.between(min[a] + inset, max[a] - inset)))
             }
-            Self::Volume(FeedRegion::Cylinder { base, axis, radius: outer, length }) => {
+            Self::Volume(Volume::Cylinder { base, axis, radius: outer, length }) => {
                 let along = random.between(inset, length - inset);
                 // The root makes the density uniform over the disc.
                 let distance = (outer - inset).max(0.0) * random.unit().sqrt();
@@ -90,7 +90,6 @@ impl Places {
                 let [first, second] = perpendicular(axis);
                 Some(base + axis * along + (first * angle.cos() + second * angle.sin()) * distance)
             }
-            Self::Volume(FeedRegion::Face(_)) => None,
             Self::Face(face) => face.draw(radius, random),
         }
     }
@@ -99,7 +98,7 @@ impl Places {
     pub(super) fn lattice(&self, radius: f64) -> impl Iterator<Item = Vector3<f64>> + '_ {
         let inset = radius * (1.0 + 2.0 * GAP);
         let bounds = match self {
-            Self::Volume(region) => region.bounds(),
+            Self::Volume(volume) => Some(volume.bounds()),
             Self::Face(_) => None,
         };
         bounds.into_iter().flat_map(move |[low, high]| {
@@ -117,15 +116,7 @@ impl Places {
     /// Whether a grain of a radius [m] lies in the region as a whole, or came through the face as a whole.
     pub(super) fn hold(&self, place: &Vector3<f64>, radius: f64) -> bool {
         match self {
-            Self::Volume(FeedRegion::Box { min, max }) => {
-                (0..3).all(|a| place[a] - radius >= min[a] && place[a] + radius <= max[a])
-            }
-            Self::Volume(FeedRegion::Cylinder { base, axis, radius: outer, length }) => {
-                let along = (place - base).dot(axis);
-                let across = (place - base - axis * along).norm();
-                along >= radius && along + radius <= *length && across + radius <= *outer
-            }
-            Self::Volume(FeedRegion::Face(_)) => false,
+            Self::Volume(volume) => volume.holds(place, radius),
             // Drawn places are such.
             Self::Face(_) => true,
         }

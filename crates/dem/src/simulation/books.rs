@@ -1,7 +1,7 @@
 //! Books of a run: what is inside is what was there at the start and what came, less what left.
 
 use super::Simulation;
-use crate::feeding::Tally;
+use crate::books::Tally;
 
 /// Books of the grains of one material, or of all.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
@@ -40,15 +40,15 @@ impl Book {
 }
 
 impl Simulation {
-    /// Books by material; `None` without feeds.
+    /// Books by material; `None` where grains neither come nor go.
     #[must_use]
     pub fn books(&self) -> Option<Vec<Book>> {
-        let feeding = self.feeding.as_ref()?;
-        let mut books: Vec<Book> = (0..feeding.start.len())
+        let known = self.books.as_ref()?;
+        let mut books: Vec<Book> = (0..known.start.len())
             .map(|material| Book {
-                start: feeding.start[material],
-                fed: feeding.state.fed[material],
-                left: feeding.state.left[material],
+                start: known.start[material],
+                fed: known.state.fed[material],
+                left: known.state.left[material],
                 inside: Tally::default(),
                 gained: self.charging.as_ref().map_or(0.0, |charging| charging.ledger.gained[material]),
             })
@@ -62,5 +62,11 @@ impl Simulation {
             books[usize::from(self.particles.material[original].0)].inside.add(mass, charge);
         }
         Some(books)
+    }
+
+    /// Grains that left through each outlet, by material; empty without outlets.
+    #[must_use]
+    pub fn outlets(&self) -> &[Vec<Tally>] {
+        self.books.as_ref().map_or(&[], |books| &books.state.outlets)
     }
 }

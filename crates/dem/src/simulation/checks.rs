@@ -2,6 +2,7 @@
 
 use super::check_motion;
 use super::state::State;
+use crate::books::Books;
 use crate::contacts::Contacts;
 use crate::contacts::cells::INDEX_MASK;
 use crate::contacts::material_pairs::PairTable;
@@ -9,6 +10,7 @@ use crate::contacts::neighbours::Listed;
 use crate::error::DemError;
 use crate::feeding;
 use crate::motion::grains::Grains;
+use crate::outlets;
 use crate::setup::Setup;
 use amberfield_core::{Axis, Material, MaterialPair, Particles, Skin, Step};
 
@@ -24,6 +26,7 @@ fn bad(text: String) -> DemError {
 /// Checks everything that can be checked without neighbours.
 pub(crate) fn check(setup: &Setup) -> Result<(), DemError> {
     check_particles(&setup.particles, setup)?;
+    outlets::check(setup)?;
     feeding::check(setup)?;
     for material in &setup.materials {
         check_material(material)?;
@@ -225,9 +228,12 @@ pub(crate) fn check_centres(
 /// Whether a state belongs to a set-up.
 pub(crate) fn check_state(setup: &Setup, state: &State) -> Result<(), DemError> {
     let misfit = |text: &str| Err(DemError::State(text.to_owned()));
-    let State { grains, contacts, field, charging, gas, feeding, .. } = state;
+    let State { grains, contacts, field, charging, gas, feeding, books, .. } = state;
     if feeding.is_some() == setup.feeds.is_empty() {
         return misfit("its feeds are not those of the scene");
+    }
+    if books.is_some() != Books::new(setup).is_some() {
+        return misfit("its books are not those of the scene");
     }
     let count = grains.original.len();
     let total = setup.particles.len();

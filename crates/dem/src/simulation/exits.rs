@@ -2,20 +2,39 @@
 //!
 //! A grain leaves through an open face with its centre, and through a face that mirrors charges, a conductor
 //! or an insulator, as soon as it touches it: its own image would pull its centre into the face without
-//! bound. Where a wall stands on such a face, grains bounce off the wall and stay.
+//! bound. Where a wall stands on such a face, grains bounce off the wall and stay. An outlet takes the grains
+//! that leave through its face, and those whose centre comes into its volume.
 
 use super::{HALF_SKIN, Simulation};
 use crate::error::DemError;
 use crate::motion::verlet::{Beyond, Bounds};
+use crate::outlets::FACES;
 use crate::setup::Setup;
-use amberfield_core::{OnExit, Side, Vector3};
+use amberfield_core::{MaterialId, OnExit, Side, Vector3};
 use serde::{Deserialize, Serialize};
 
 /// A wall this close to a face, over the skin of the lists, stands on it.
 const ON_FACE: f64 = 0.25;
 
-/// Names of the faces, by axis and side.
-const FACES: [[&str; 2]; 3] = [["x_min", "x_max"], ["y_min", "y_max"], ["z_min", "z_max"]];
+/// Way by which a grain left.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum WayOut {
+    /// Face of the box, such as `z_min`.
+    Face(&'static str),
+    /// Outlet, by its number in the set-up.
+    Outlet(u16),
+}
+
+impl WayOut {
+    /// Number of the outlet; `None` for a face that is none.
+    #[must_use]
+    pub fn outlet(self) -> Option<u16> {
+        match self {
+            Self::Face(_) => None,
+            Self::Outlet(number) => Some(number),
+        }
+    }
+}
 
 /// A grain that has left.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -26,14 +45,18 @@ pub struct Exit {
     pub time_s: f64,
     /// Id of the grain.
     pub id: u64,
-    /// Name of the face, such as `z_min`.
-    pub face: &'static str,
+    /// Way by which it left.
+    pub way: WayOut,
     /// Position of the centre [m].
     pub position: Vector3<f64>,
     /// Velocity in the middle of the step [m/s].
     pub velocity: Vector3<f64>,
     /// Radius [m].
     pub radius: f64,
+    /// Mass [kg].
+    pub mass: f64,
+    /// Material.
+    pub material: MaterialId,
     /// Charge [C].
     pub charge: f64,
 }
@@ -124,9 +147,17 @@ impl Simulation {
         (!held).then_some(touched)
     }
 
-    /// Face through which a grain leaves.
-    fn way_out_of(&self, i: usize) -> Option<Beyond> {
-        self.bounds.beyond(&self.grains.centre[i]).or_else(|| self.face_touched_by(i))
+    /// Way by which a grain leaves.
+    fn way_out_of(&self, i: usize) -> Option<WayOut> {
+        let outlets = self.outlets.as_ref();
+        let face = self.bounds.beyond(&self.grains.centre[i]).or_else(|| self.face_touched_by(i));
+        let Some(Beyond { axis, side }) = face else {
+            return outlets?.holding(&self.domain, self.grains.position(i)).map(WayOut::Outlet);
+        };
+        // A centre that is not a number has no side; it ends the run in any case.
+        let side = side.unwrap_or(Side::Min);
+        let outlet = outlets.and_then(|outlets| outlets.at_face(axis, side));
+        Some(outlet.map_or(WayOut::Face(FACES[axis][side as usize]), WayOut::Outlet))
     }
 
     /// Ends the run or removes the grains that leave, as the scene says; whether any was removed.
@@ -135,7 +166,7 @@ impl Simulation {
         let mut lost: Option<u64> = None;
         let time_s = self.progress.time_s();
         for i in 0..self.grains.len() {
-            let Some(Beyond { axis, side }) = self.way_out_of(i) else { continue };
+            let Some(way) = self.way_out_of(i) else { continue };
             let original = self.grains.original[i].index();
             let id = self.particles.id[original];
             if !self.grains.is_finite(i) {
@@ -146,10 +177,12 @@ impl Simulation {
                 step: self.progress.step_index,
                 time_s,
                 id,
-                face: FACES[axis][usize::from(side == Some(Side::Max))],
+                way,
                 position: self.grains.position(i),
                 velocity: self.grains.velocity[i],
                 radius: self.grains.centre[i][3],
+                mass: 1.0 / self.grains.inverse_mass[i],
+                material: self.particles.material[original],
                 charge: self.particles.charge[original],
             };
             exits.push((i, exit));
@@ -158,10 +191,14 @@ impl Simulation {
         if let Some(id) = lost {
             return Err(DemError::NotFinite { id, time_s });
         }
+        let through_faces = exits.iter().filter_map(|(_, exit)| match exit.way {
+            WayOut::Face(face) => Some((exit.id, exit.position, face)),
+            WayOut::Outlet(_) => None,
+        });
         if self.time.on_exit == OnExit::Stop
-            && let Some((_, Exit { id, position, face, .. })) = exits.iter().min_by_key(|(_, exit)| exit.id)
+            && let Some((id, position_m, face)) = through_faces.min_by_key(|(id, ..)| *id)
         {
-            return Err(DemError::Left { id: *id, position_m: *position, face: (*face).to_owned(), time_s });
+            return Err(DemError::Left { id, position_m, face: face.to_owned(), time_s });
         }
         if exits.is_empty() {
             return Ok(false);
@@ -170,13 +207,14 @@ impl Simulation {
         // Charge that contacts have yet to trade goes before the grains do.
         self.trade_between_grains();
         for (i, mut exit) in exits {
-            exit.charge = self.particles.charge[self.grains.original[i].index()];
+            let original = self.grains.original[i].index();
+            exit.charge = self.particles.charge[original];
             let left = &mut self.ways_out.left;
             left.grains += 1;
             left.charge += exit.charge;
-            left.gravity -= exit.position.dot(&self.time.gravity_m_s2) / self.grains.inverse_mass[i];
-            if let Some(feeding) = &mut self.feeding {
-                feeding.book_exit(self.grains.material[i], 1.0 / self.grains.inverse_mass[i], exit.charge);
+            left.gravity -= exit.position.dot(&self.time.gravity_m_s2) * exit.mass;
+            if let Some(books) = &mut self.books {
+                books.book_exit(&self.particles, original, exit.way.outlet());
             }
             self.exits.push(exit);
         }

@@ -34,6 +34,9 @@ impl Simulation {
             if let Some(feeding) = &mut self.feeding {
                 feeding.book(&self.particles, newcomer, self.time.gravity_m_s2);
             }
+            if let Some(books) = &mut self.books {
+                books.book_entry(&self.particles, newcomer.original as usize);
+            }
         }
         if let Some(field) = &mut self.field {
             field.admit(&self.domain, &self.grains, &self.particles, newcomers.len());

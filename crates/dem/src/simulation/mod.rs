@@ -18,6 +18,7 @@ pub(crate) mod timing;
 
 pub use overlaps::Deepest;
 
+use crate::books::Books;
 use crate::charging::Charging;
 use crate::contacts::{Contacts, Depths};
 use crate::error::DemError;
@@ -27,6 +28,7 @@ use crate::gas_stage::GasStage;
 use crate::motion::chunks::{Loads, chunk_count};
 use crate::motion::grains::{Grains, SortKey};
 use crate::motion::verlet::{Bounds, ChunkMotion, drift, kick};
+use crate::outlets::Outlets;
 use amberfield_core::{Domain, Particles, Plan, TimeSettings};
 use exits::{Exit, WaysOut};
 use guards::Limits;
@@ -43,7 +45,8 @@ pub(crate) const HALF_SKIN: f64 = 0.499_999;
 ///
 /// 1. *Begin*: count the step; keep the state where another process may be lost in it.
 /// 2. *Drift*: first half of velocity Verlet ("Motion"); walls that move go where they are at the new time.
-/// 3. *Exits*: grains beyond an open face, or at a face that mirrors charges, end the run or are removed.
+/// 3. *Exits*: grains beyond an open face, or at a face that mirrors charges, end the run or are removed;
+///    those in an outlet are removed.
 /// 4. *Feeds*: grains that are due come where there is room for them, every few steps.
 /// 5. *Lists*: wrap periodic axes, sort grains in space, list neighbours anew, where a grain may have used
 ///    up half the skin; look at the guards ("Time step").
@@ -74,6 +77,8 @@ pub struct Simulation {
     charging: Option<Charging>,
     field: Option<FieldStage>,
     feeding: Option<Feeding>,
+    outlets: Option<Outlets>,
+    books: Option<Books>,
     limits: Limits,
     /// Largest overlaps that the run may have at present.
     allowed: Depths,
@@ -112,7 +117,7 @@ impl Simulation {
         self.begin_step();
         self.move_walls();
         let outside = self.drift();
-        let removed = outside && self.handle_exits()?;
+        let removed = (outside || self.outlets.is_some()) && self.handle_exits()?;
         let admitted = self.admit_grains()?;
         self.renew_lists(removed || admitted)?;
         self.push_grains(step_s);

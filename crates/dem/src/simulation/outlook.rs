@@ -55,7 +55,7 @@ impl Outlook {
         let (level, level_radius) = levels_of(particles.radius.iter().copied());
         let built = contact_walls(walls, shifts(domain), false, Sticking::default(), domain)?;
         let moving = built.and_then(|walls| walls.fastest(time.end_s));
-        let feeding = Feeding::new(setup.feeds.clone(), particles, materials.len(), &level);
+        let feeding = Feeding::new(setup.feeds.clone(), particles, &level);
         let plan = plan(&Planned {
             features: Features { rolling_model: setup.rolling_model, ..table.features() },
             periodic: bounds(domain).is_periodic(),
@@ -63,6 +63,7 @@ impl Outlook {
             moving: moving.is_some(),
             levels: LinkedCells::new(level_radius, skin_m).level_count(),
             feeding: feeding.as_ref(),
+            outlets: setup.outlets.len(),
             gas: None,
             transfer: None,
             field_asked: false,

@@ -18,6 +18,8 @@ pub(super) struct Planned<'a> {
     /// Levels of size of the neighbour search.
     pub(super) levels: usize,
     pub(super) feeding: Option<&'a Feeding>,
+    /// Number of outlets.
+    pub(super) outlets: usize,
     pub(super) gas: Option<&'a GasStage>,
     pub(super) transfer: Option<&'a ChargeTransfer>,
     /// Whether the scene asks for a field, which is left out where nothing is charged.
@@ -27,8 +29,8 @@ pub(super) struct Planned<'a> {
 
 /// The plan of a run, with the field's own plan at its end.
 pub(super) fn plan(planned: &Planned<'_>) -> Plan {
-    let &Planned { features, periodic, walls, moving, levels, feeding, gas, transfer, field_asked, field } =
-        planned;
+    let &Planned { features, periodic, walls, moving, levels, feeding, outlets, .. } = planned;
+    let &Planned { gas, transfer, field_asked, field, .. } = planned;
     let tangential = match features.cohesion {
         Cohesion::None => "a pair of materials has friction",
         _ => "contacts that stick have a memory",
@@ -73,6 +75,7 @@ pub(super) fn plan(planned: &Planned<'_>) -> Plan {
     plan.decide(periodic, "periodic images", "an axis is periodic".to_owned(), "no axis is periodic");
     let [feeds, fed] = feeding.map_or([0; 2], Feeding::size);
     plan.decide(feeds > 0, "feeds", format!("{feeds} feed(s) with {fed} grains"), "no [[feeds]]");
+    plan.decide(outlets > 0, "outlets", format!("{outlets} outlet(s)"), "no [[outlets]]");
     plan.decide(gas.is_some(), "gas", gas.map_or(String::new(), GasStage::about), "no [gas]");
     plan_charging(&mut plan, transfer);
     let reason = if field_asked {

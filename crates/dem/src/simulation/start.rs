@@ -5,6 +5,7 @@ use super::guards::Limits;
 use super::state::{Progress, State};
 use super::timing::StageClock;
 use super::{Scratch, Simulation, checks, overlaps};
+use crate::books::Books;
 use crate::charging::Charging;
 use crate::contacts::cells::{LinkedCells, levels_of, shifts};
 use crate::contacts::material_pairs::{Features, PairTable};
@@ -17,6 +18,7 @@ use crate::field_stage::FieldStage;
 use crate::gas_stage::GasStage;
 use crate::motion::grains::Grains;
 use crate::motion::verlet::Bounds;
+use crate::outlets::Outlets;
 use crate::setup::{FieldStageSetup, Setup};
 use amberfield_core::{Axis, Domain, Particles, Step, Vector3, Wall};
 
@@ -68,6 +70,9 @@ impl Simulation {
         if let (Some(feeding), Some(saved)) = (&mut run.feeding, &state.feeding) {
             feeding.restore(saved).map_err(DemError::State)?;
         }
+        if let (Some(books), Some(saved)) = (&mut run.books, &state.books) {
+            books.restore(saved).map_err(DemError::State)?;
+        }
         if let (Some(charging), Some(saved)) = (&mut run.charging, &state.charging) {
             charging.restore(&run.domain, saved, &mut run.contacts.neighbours).map_err(DemError::State)?;
         }
@@ -103,12 +108,15 @@ impl Simulation {
             gas: None,
             ways_out: self.ways_out,
             feeding: self.feeding.as_ref().map(|feeding| feeding.state.clone()),
+            books: self.books.as_ref().map(|books| books.state.clone()),
         }
     }
 
     /// Builds the stages that a scene needs; grains are in the set-up's order, nothing is listed yet.
     fn assemble(setup: Setup, skin_m: f64, state: Option<&State>) -> Result<Self, DemError> {
         let ways_out = state.map_or_else(|| WaysOut::new(&setup), |state| state.ways_out);
+        let (books, outlets) = (Books::new(&setup), Outlets::new(&setup.outlets));
+        let outlet_count = setup.outlets.len();
         let Setup { domain, materials, rolling_model, cohesion, pairs, .. } = setup;
         let Setup { particles, walls, time, gas, field, feeds, .. } = setup;
         let table = PairTable::new(&materials, &pairs, cohesion);
@@ -116,7 +124,7 @@ impl Simulation {
         let transfer = field.as_ref().and_then(|field| field.transfer);
         let features = Features { charging: transfer.is_some(), rolling_model, ..table.features() };
         let (level, level_radius) = levels_of(particles.radius.iter().copied());
-        let feeding = Feeding::new(feeds, &particles, materials.len(), &level);
+        let feeding = Feeding::new(feeds, &particles, &level);
         let shifts = shifts(&domain);
         let (wall_count, field_asked) = (walls.len(), field.is_some());
         let sticking = Sticking { cohesion, stretch };
@@ -137,6 +145,7 @@ impl Simulation {
             moving: contacts.walls.as_ref().is_some_and(ContactWalls::move_at_all),
             levels: contacts.neighbours.level_count(),
             feeding: feeding.as_ref(),
+            outlets: outlet_count,
             gas: gas.as_ref(),
             transfer: transfer.as_ref(),
             field_asked,
@@ -157,6 +166,8 @@ impl Simulation {
             charging,
             field,
             feeding,
+            outlets,
+            books,
             allowed: Depths { grains: f64::INFINITY, walls: f64::INFINITY },
             scratch: Scratch::default(),
             ways_out,
@@ -353,6 +364,7 @@ mod tests {
             gas: None,
             field: None,
             feeds: Default::default(),
+            outlets: Vec::new(),
         };
         let mut run = Simulation::new(setup).expect("a good scene");
         (0..50).for_each(|_| run.step().expect("a good scene"));

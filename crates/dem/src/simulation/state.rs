@@ -2,6 +2,7 @@
 
 use super::exits::WaysOut;
 use crate::DemError;
+use crate::books::BooksState;
 use crate::charging::ChargingState;
 use crate::contacts::memory::ContactsState;
 use crate::feeding::FeedingState;
@@ -50,6 +51,7 @@ pub struct State {
     pub(crate) gas: Option<ExchangeState>,
     pub(crate) ways_out: WaysOut,
     pub(crate) feeding: Option<FeedingState>,
+    pub(crate) books: Option<BooksState>,
 }
 
 impl State {

@@ -72,6 +72,7 @@ pub(crate) fn setup(grains: Vec<Grain>, material: Material, step_s: f64) -> Setu
         gas: None,
         field: None,
         feeds: Default::default(),
+        outlets: Vec::new(),
     }
 }
 

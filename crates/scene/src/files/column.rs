@@ -36,6 +36,10 @@ pub enum When {
     Stage,
     /// Feed of grains.
     Feeds,
+    /// Grains that come or go.
+    Books,
+    /// Outlet: a column for each.
+    Outlets,
     /// Option `--components`.
     Components,
 }
@@ -55,6 +59,8 @@ impl When {
             Self::Solver => "`[solver]` for the field",
             Self::Stage => "a stage of the scene's plan",
             Self::Feeds => "`[[feeds]]`",
+            Self::Books => "`[[feeds]]`, `[[outlets]]` or `on_exit = \"delete\"`",
+            Self::Outlets => "`[[outlets]]`",
             Self::Components => "`--components`",
         }
     }

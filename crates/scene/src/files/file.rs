@@ -97,7 +97,7 @@ impl FileTable {
 
 /// Whether a name is one of a pattern, in which words in capitals stand for any characters.
 fn fits(pattern: &str, name: &str) -> bool {
-    const WORDS: [&str; 5] = ["STAGE", "STEP", "NAME", "DATE", "LIMIT"];
+    const WORDS: [&str; 6] = ["STAGE", "STEP", "NAME", "OUTLET", "DATE", "LIMIT"];
     let places = WORDS.iter().filter_map(|word| Some((pattern.find(word)?, word.len())));
     let Some((start, length)) = places.min() else { return pattern == name };
     let after = &pattern[start + length..];

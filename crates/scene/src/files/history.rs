@@ -48,36 +48,43 @@ pub static HISTORY: FileTable = FileTable::csv(
             "Number of contacts that have begun since the start, those with walls included.",
         )
         .when(When::Transfer),
-        Column::new(&["grains"], "", "Number of grains that are there.").when(When::Feeds),
-        Column::new(&["grains_kg"], "kg", "Their mass.").when(When::Feeds),
+        Column::new(&["grains"], "", "Number of grains that are there.").when(When::Books),
+        Column::new(&["grains_kg"], "kg", "Their mass.").when(When::Books),
+        Column::new(&["left_grains"], "", "Number of grains that have left.").when(When::Books),
+        Column::new(&["left_kg"], "kg", "Their mass.").when(When::Books),
+        Column::new(&["left_C"], "C", "Charge that they took along.").when(When::Books),
+        Column::new(
+            &["grains_NAME", "left_grains_NAME"],
+            "",
+            "Numbers of grains of a material that are there and that left.",
+        )
+        .when(When::Books),
+        Column::new(
+            &["grains_kg_NAME", "left_kg_NAME"],
+            "kg",
+            "Masses of grains of a material that are there and that left.",
+        )
+        .when(When::Books),
+        Column::new(
+            &["grains_C_NAME", "left_C_NAME", "gained_C_NAME"],
+            "C",
+            "Charges of grains of a material that are there and that left, and what they gained at contacts.",
+        )
+        .when(When::Books),
         Column::new(&["fed_grains"], "", "Number of grains that feeds have brought.").when(When::Feeds),
         Column::new(&["fed_kg"], "kg", "Their mass.").when(When::Feeds),
         Column::new(&["fed_C"], "C", "Charge with which they came.").when(When::Feeds),
         Column::new(&["owed_grains"], "", "Number of grains that were due and have found no place yet.")
             .when(When::Feeds),
         Column::new(&["owed_kg"], "kg", "Their mass, the feeds' shortfall.").when(When::Feeds),
-        Column::new(&["left_grains"], "", "Number of grains that have left.").when(When::Feeds),
-        Column::new(&["left_kg"], "kg", "Their mass.").when(When::Feeds),
-        Column::new(&["left_C"], "C", "Charge that they took along.").when(When::Feeds),
-        Column::new(
-            &["grains_NAME", "fed_grains_NAME", "left_grains_NAME"],
-            "",
-            "Numbers of grains of a material that are there, came and left.",
-        )
-        .when(When::Feeds),
-        Column::new(
-            &["grains_kg_NAME", "fed_kg_NAME", "left_kg_NAME"],
-            "kg",
-            "Masses of grains of a material that are there, came and left.",
-        )
-        .when(When::Feeds),
-        Column::new(
-            &["grains_C_NAME", "fed_C_NAME", "left_C_NAME", "gained_C_NAME"],
-            "C",
-            "Charges of grains of a material that are there, came and left, and what they gained at \
-             contacts.",
-        )
-        .when(When::Feeds),
+        Column::new(&["fed_grains_NAME"], "", "Number of grains of a material that feeds have brought.")
+            .when(When::Feeds),
+        Column::new(&["fed_kg_NAME"], "kg", "Their mass.").when(When::Feeds),
+        Column::new(&["fed_C_NAME"], "C", "Their charge as they came.").when(When::Feeds),
+        Column::new(&["outlet_grains_OUTLET"], "", "Number of grains that left through an outlet.")
+            .when(When::Outlets),
+        Column::new(&["outlet_kg_OUTLET"], "kg", "Their mass.").when(When::Outlets),
+        Column::new(&["outlet_C_OUTLET"], "C", "Charge that they took along.").when(When::Outlets),
         Column::new(&["solver_iterations"], "", "Iterations of the field solver's last solve.")
             .when(When::Solver),
         Column::new(&["wall_s"], "s", "Wall-clock time since the start of the run, earlier parts included."),

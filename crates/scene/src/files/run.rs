@@ -7,6 +7,7 @@ pub(super) static FILES: &[&FileTable] = &[
     &HISTORY,
     &WALL_FORCES,
     &EXITS,
+    &OUTLETS_GRAINS,
     &CHARGE_HISTOGRAM,
     &CHARGE_PLOTS,
     &GRAINS_VTU,
@@ -75,6 +76,25 @@ pub static EXITS: FileTable = FileTable::csv(
     ],
 )
 .when("`particles.on_exit = \"delete\"`");
+
+/// Grains that left through outlets.
+pub static OUTLETS_GRAINS: FileTable = FileTable::csv(
+    "outlets_grains.csv",
+    "Grains that left through an outlet with `each`, a row for each.",
+    &[
+        STEP,
+        TIME,
+        Column::new(&["outlet"], "", "Name of the outlet."),
+        Column::new(&["id"], "", "Number of the grain."),
+        Column::new(&["material"], "", "Name of its material."),
+        Column::new(&["x_m", "y_m", "z_m"], "m", "Place of its centre."),
+        Column::new(&["vx_m_s", "vy_m_s", "vz_m_s"], "m/s", "Velocity in the middle of the step."),
+        Column::new(&["radius_m"], "m", "Radius."),
+        Column::new(&["mass_kg"], "kg", "Mass."),
+        Column::new(&["charge_C"], "C", "Charge that it takes away."),
+    ],
+)
+.when("an outlet with `each = true`");
 
 /// Distribution of charge over the grains.
 pub static CHARGE_HISTOGRAM: FileTable = FileTable::csv(
@@ -248,7 +268,7 @@ pub static SUMMARY: FileTable = FileTable::csv(
             "Energies at its end; `energies_at_end` is null where it failed.",
         ),
         Column::new(&["energies_at_end"], "", "Null in a run that failed."),
-        Column::new(&["books"], "", "Null without feeds, else the keys below."),
+        Column::new(&["books"], "", "Null where grains neither come nor go, else the keys below."),
         Column::new(
             &[
                 "books.NAME.start.grains",
@@ -278,6 +298,21 @@ pub static SUMMARY: FileTable = FileTable::csv(
         ),
         Column::new(&["books.feeds.NAME.fed.kg", "books.feeds.NAME.owed.kg"], "kg", "Their masses."),
         Column::new(&["books.feeds.NAME.fed.C", "books.feeds.NAME.owed.C"], "C", "Their charges."),
+        Column::new(
+            &["books.outlets.NAME.grains", "books.outlets.NAME.materials.NAME.grains"],
+            "",
+            "Numbers of grains that left through an outlet, all and of one material.",
+        ),
+        Column::new(
+            &["books.outlets.NAME.kg", "books.outlets.NAME.materials.NAME.kg"],
+            "kg",
+            "Their masses.",
+        ),
+        Column::new(
+            &["books.outlets.NAME.C", "books.outlets.NAME.materials.NAME.C"],
+            "C",
+            "Charges that they took along.",
+        ),
         Column::new(&["field"], "", "Null without a field, else the keys below."),
         Column::new(
             &["field.parameters"],

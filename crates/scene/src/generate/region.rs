@@ -5,7 +5,7 @@ use super::surfaces::Surfaces;
 use crate::SceneError;
 use crate::table::SceneTable;
 use crate::tree::Value;
-use amberfield_core::{Axis, Domain, FeedRegion, Wall, WallShape};
+use amberfield_core::{Axis, Domain, Volume, Wall, WallShape};
 use nalgebra::Vector3;
 use rand::{RngExt, SeedableRng};
 use rand_chacha::ChaCha8Rng;
@@ -19,13 +19,6 @@ const SLACK: f64 = 1e-9;
 /// Number of places at which it is asked on which side of a closed surface a region lies.
 const PLACES: usize = 200;
 
-/// Shape of a region; lengths in [m].
-#[derive(Clone, Debug)]
-enum RegionShape {
-    Box { min: Vector3<f64>, max: Vector3<f64> },
-    Cylinder { base: Vector3<f64>, axis: Vector3<f64>, radius: f64, length: f64 },
-}
-
 /// Plane wall that bounds a region.
 #[derive(Clone, Debug)]
 struct BoundingPlane {
@@ -38,7 +31,7 @@ struct BoundingPlane {
 /// Region, the axes along which it is periodic, and the planes that bound it.
 #[derive(Clone, Debug)]
 pub(super) struct Region {
-    shape: RegionShape,
+    shape: Volume,
     /// Lower corner of the bounding box [m].
     pub(super) min: Vector3<f64>,
     /// Upper corner of the bounding box [m].
@@ -58,46 +51,40 @@ pub(super) fn read_region(
     context: &GenerateContext<'_>,
 ) -> Result<Region, SceneError> {
     let domain = context.domain;
-    let whole = || RegionShape::Box { min: domain.min(), max: domain.max() };
+    let whole = || Volume::Box { min: domain.min(), max: domain.max() };
     let forms = "\"box\" (the domain), { box = { min_m, max_m } } or \
                  { cylinder = { base_m, axis, radius_m, length_m } }";
     let table = parent.table("region")?;
     let shape = match table {
         None => whole(),
-        Some(table) => match (table.table("box")?, table.table("cylinder")?) {
-            (Some(block), None) => read_box(&block)?,
-            (None, Some(cylinder)) => read_cylinder(&cylinder)?,
-            _ => return Err(parent.bad("region", format!("give {forms}"))),
-        },
+        Some(table) => read_volume(parent, &table, forms)?,
     };
     Region::new(shape, domain, context.walls).map_err(|problem| parent.bad("region", problem))
 }
 
-/// Reads a box or a cylinder from a table `region`, in which a feed's grains appear.
-pub(crate) fn read_volume(parent: &SceneTable<'_>, table: &SceneTable<'_>) -> Result<FeedRegion, SceneError> {
-    let shape = match (table.table("box")?, table.table("cylinder")?) {
-        (Some(block), None) => read_box(&block)?,
-        (None, Some(cylinder)) => read_cylinder(&cylinder)?,
-        _ => return Err(parent.bad("region", "give exactly one of box, cylinder, stl")),
-    };
-    Ok(match shape {
-        RegionShape::Box { min, max } => FeedRegion::Box { min, max },
-        RegionShape::Cylinder { base, axis, radius, length } => {
-            FeedRegion::Cylinder { base, axis, radius, length }
-        }
-    })
+/// Reads a box or a cylinder from a table `region` that takes `forms`.
+pub(crate) fn read_volume(
+    parent: &SceneTable<'_>,
+    table: &SceneTable<'_>,
+    forms: &str,
+) -> Result<Volume, SceneError> {
+    match (table.table("box")?, table.table("cylinder")?) {
+        (Some(block), None) => read_box(&block),
+        (None, Some(cylinder)) => read_cylinder(&cylinder),
+        _ => Err(parent.bad("region", format!("give exactly one of {forms}"))),
+    }
 }
 
-fn read_box(table: &SceneTable<'_>) -> Result<RegionShape, SceneError> {
+fn read_box(table: &SceneTable<'_>) -> Result<Volume, SceneError> {
     let (min, max) = (table.need_vector("min_m")?, table.need_vector("max_m")?);
     if (0..3).all(|axis| max[axis] > min[axis]) {
-        Ok(RegionShape::Box { min, max })
+        Ok(Volume::Box { min, max })
     } else {
         Err(table.bad("max_m", "not above min_m along every axis; exchange the corners"))
     }
 }
 
-fn read_cylinder(table: &SceneTable<'_>) -> Result<RegionShape, SceneError> {
+fn read_cylinder(table: &SceneTable<'_>) -> Result<Volume, SceneError> {
     let base = table.need_vector("base_m")?;
     let radius = table.need_number("radius_m")?;
     let along = match table.vector("top_m")? {
@@ -124,14 +111,14 @@ fn read_cylinder(table: &SceneTable<'_>) -> Result<RegionShape, SceneError> {
     };
     let length = along.norm();
     if length > 0.0 {
-        Ok(RegionShape::Cylinder { base, axis: along / length, radius, length })
+        Ok(Volume::Cylinder { base, axis: along / length, radius, length })
     } else {
         Err(table.bad("top_m", "the cylinder has no length; move it away from base_m"))
     }
 }
 
 impl Region {
-    fn new(shape: RegionShape, domain: &Domain, walls: &[Wall]) -> Result<Self, String> {
+    fn new(shape: Volume, domain: &Domain, walls: &[Wall]) -> Result<Self, String> {
         let [min, max] = shape.bounds();
         let mut periodic = [false; 3];
         for axis in Axis::ALL {
@@ -148,7 +135,7 @@ impl Region {
             }
             let whole = min[k] <= domain.min()[k] + slack && max[k] >= domain.max()[k] - slack;
             // A region wraps only where it is a whole period and its ends fit together.
-            periodic[k] = domain.is_periodic(axis) && whole && shape.is_prism_along(k);
+            periodic[k] = domain.is_periodic(axis) && whole && is_prism_along(&shape, k);
         }
         let planes = walls
             .iter()
@@ -173,10 +160,7 @@ impl Region {
 
     /// Volume [m³], walls not subtracted.
     pub(super) fn volume(&self) -> f64 {
-        match &self.shape {
-            RegionShape::Box { min, max } => (max - min).product(),
-            RegionShape::Cylinder { radius, length, .. } => PI * radius * radius * length,
-        }
+        self.shape.size()
     }
 
     /// Draws a random point for the centre of a grain of a radius [m]; `None` where a wall is too near or the
@@ -187,13 +171,13 @@ impl Region {
         let inset = radius * (1.0 + CLEARANCE);
         let mut point = Vector3::zeros();
         match &self.shape {
-            RegionShape::Box { min, max } => {
+            Volume::Box { min, max } => {
                 for axis in 0..3 {
                     let inset = if self.periodic[axis] { 0.0 } else { inset };
                     point[axis] = uniform(min[axis] + inset, max[axis] - inset);
                 }
             }
-            RegionShape::Cylinder { base, axis, radius: outer, length } => {
+            Volume::Cylinder { base, axis, radius: outer, length } => {
                 let ends = if self.wraps_along(axis) { 0.0 } else { inset };
                 let along = uniform(ends, length - ends);
                 let [first, second] = perpendicular(axis);
@@ -229,14 +213,14 @@ impl Region {
         }
         point = self.surfaces.push_off(point, inset);
         match &self.shape {
-            RegionShape::Box { min, max } => {
+            Volume::Box { min, max } => {
                 for axis in 0..3 {
                     if !self.periodic[axis] {
                         point[axis] = point[axis].min(max[axis] - inset).max(min[axis] + inset);
                     }
                 }
             }
-            RegionShape::Cylinder { base, axis, radius: outer, length } => {
+            Volume::Cylinder { base, axis, radius: outer, length } => {
                 let along = (point - base).dot(axis);
                 let across = point - base - axis * along;
                 let along = if self.wraps_along(axis) { along } else { along.min(length - inset).max(inset) };
@@ -279,33 +263,15 @@ impl Region {
 
     /// Largest radius [m] of a grain that fits into the region.
     pub(super) fn largest_radius(&self) -> f64 {
-        match &self.shape {
-            RegionShape::Box { min, max } => 0.5 * (max - min).min(),
-            RegionShape::Cylinder { radius, length, .. } => radius.min(0.5 * length),
-        }
+        self.shape.inner_radius()
     }
 }
 
-impl RegionShape {
-    /// Lower and upper corner of the bounding box [m].
-    fn bounds(&self) -> [Vector3<f64>; 2] {
-        match self {
-            Self::Box { min, max } => [*min, *max],
-            Self::Cylinder { base, axis, radius, length } => {
-                let top = base + axis * *length;
-                // A disc reaches R √(1 − a²) along each coordinate.
-                let disc = axis.map(|a| radius * (1.0 - a * a).max(0.0).sqrt());
-                [base.inf(&top) - disc, base.sup(&top) + disc]
-            }
-        }
-    }
-
-    /// Tells whether the shape, shifted by its length along an axis, continues itself.
-    fn is_prism_along(&self, k: usize) -> bool {
-        match self {
-            Self::Box { .. } => true,
-            Self::Cylinder { axis, .. } => axis[k].abs() == 1.0,
-        }
+/// Tells whether a shape, shifted by its length along an axis, continues itself.
+fn is_prism_along(shape: &Volume, k: usize) -> bool {
+    match shape {
+        Volume::Box { .. } => true,
+        Volume::Cylinder { axis, .. } => axis[k].abs() == 1.0,
     }
 }
 

@@ -13,6 +13,7 @@ mod form;
 mod gas;
 mod key;
 mod materials;
+mod outlets;
 mod output;
 mod page;
 mod pairs;
@@ -52,6 +53,9 @@ pub static SCENE: &[Key] = &[
         .without("the internal grid computes the field"),
     Key::new("gas", Form::Table(gas::KEYS), "Gas around the grains.").without("no gas"),
     Key::new("feeds", Form::Tables(feeds::KEYS), "Grains that come while a run goes on.").without("none"),
+    Key::new("outlets", Form::Tables(outlets::KEYS), "Places at which grains leave and are counted.")
+        .without("none")
+        .also(&["bins", "sinks", "exits", "collectors"]),
     Key::new("output", Form::Table(output::KEYS), "What a run writes, and how often.")
         .without("the defaults below"),
 ];

@@ -48,7 +48,7 @@ pub(super) static CYLINDER: &[Key] = &[
         .also(&["radius", "diameter_m", "r"]),
 ];
 
-static REGION: &[Key] = &[
+pub(super) static VOLUME: &[Key] = &[
     Key::new("box", Form::Table(BOX), "Box along the axes.")
         .without("cylinder")
         .example("{ min_m = [0.0, 0.0, 0.0], max_m = [0.01, 0.01, 0.01] }")
@@ -237,7 +237,7 @@ static GENERATE: &[Key] = &[
     .also(CHARGE_WORDS),
     Key::new(
         "region",
-        Form::Either(&[Form::Word(&["box"]), Form::Table(REGION)]),
+        Form::Either(&[Form::Word(&["box"]), Form::Table(VOLUME)]),
         "Where grains are placed at random; \"box\" is the domain.",
     )
     .default("\"box\"")

@@ -2,7 +2,7 @@
 
 use super::physics::Physics;
 use amberfield_core::{
-    Cohesion, Domain, Feeds, FieldSettings, Gas, Material, MaterialPair, Particles, RollingModel,
+    Cohesion, Domain, Feeds, FieldSettings, Gas, Material, MaterialPair, Outlet, Particles, RollingModel,
     TimeSettings, Wall,
 };
 use serde::{Deserialize, Serialize};
@@ -44,6 +44,8 @@ pub struct Scene {
     pub particles: Particles,
     /// Grains that come while the run goes on.
     pub feeds: Feeds,
+    /// Places at which grains leave, sorted by name.
+    pub outlets: Vec<Outlet>,
     /// Names of the groups; group 0 is `all`.
     pub groups: Vec<String>,
     /// Settings of the motion; absent only where no motion is asked for.

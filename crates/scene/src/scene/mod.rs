@@ -8,6 +8,7 @@ mod feeds;
 mod gas;
 mod input;
 mod others;
+mod outlets;
 mod pairs;
 mod particles;
 mod physics;

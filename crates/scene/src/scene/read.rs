@@ -7,6 +7,7 @@ use super::feeds::read_feeds;
 use super::gas::read_gas;
 use super::input::SceneInput;
 use super::others::{read_charge_transfer, read_contacts, read_output, read_solver};
+use super::outlets::read_outlets;
 use super::pairs::read_pairs;
 use super::particles::read_section;
 use super::physics::Physics;
@@ -121,6 +122,7 @@ fn read_sections(
     let charge_transfer = problems.keep(read_charge_transfer(document));
     let solver = problems.keep(read_solver(document, source));
     let gas = problems.keep(read_gas(document));
+    let outlets = problems.keep(read_outlets(document));
     let output = problems.keep(read_output(document));
     let time_alone = problems.keep(read_time(document, Default::default(), false));
     // The sections below read files and place grains. With a bad section above they would only repeat its
@@ -133,10 +135,11 @@ fn read_sections(
         Some(charge_transfer),
         Some(solver),
         Some(gas),
+        Some(outlets),
         Some(output),
         Some(_),
         Some(()),
-    ) = (domain, list, contacts, field, charge_transfer, solver, gas, output, time_alone, sections)
+    ) = (domain, list, contacts, field, charge_transfer, solver, gas, outlets, output, time_alone, sections)
     else {
         return Err(problems.finish().expect_err("a section was refused"));
     };
@@ -159,6 +162,7 @@ fn read_sections(
         wall_patches: walls.patches,
         particles: section.read.particles,
         feeds: fed.feeds,
+        outlets,
         groups: section.read.groups,
         time,
         electric_field,

@@ -2,7 +2,7 @@
 
 use super::description::Scene;
 use amberfield_core::constants::VACUUM_PERMITTIVITY;
-use amberfield_core::{Axis, Domain, OnExit, Wall, WallShape};
+use amberfield_core::{Axis, Domain, OnExit, Outlet, OutletRegion, Side, Wall, WallShape};
 use std::f64::consts::PI;
 use std::ops::RangeInclusive;
 
@@ -56,6 +56,10 @@ fn no_floor(scene: &Scene) -> Option<String> {
         true => ("min", domain.min(), 1),
         false => ("max", domain.max(), -1),
     };
+    let at_face = |outlet: &Outlet| matches!(outlet.region, OutletRegion::Face(axis, of) if axis == down && (of == Side::Min) == (towards > 0));
+    if scene.outlets.iter().any(at_face) {
+        return None;
+    }
     let floor = |axis: Axis, at: f64| if axis == down { at } else { 0.0 };
     let point = Axis::ALL.map(|axis| floor(axis, place[axis.index()]));
     let normal = Axis::ALL.map(|axis| if axis == down { towards } else { 0 });

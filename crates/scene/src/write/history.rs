@@ -2,20 +2,21 @@
 
 use crate::SceneError;
 use crate::write::atomic::write_text;
+use std::borrow::Cow;
 use std::fmt::Write as _;
 use std::fs::{File, OpenOptions};
 use std::io::Write as _;
 use std::path::{Path, PathBuf};
 
 /// Value in a row.
-#[derive(Clone, Copy, Debug, PartialEq)]
+#[derive(Clone, Debug, PartialEq)]
 pub enum HistoryValue {
     /// Count.
     Count(u64),
     /// Quantity, written with 17 significant digits.
     Number(f64),
     /// Name.
-    Text(&'static str),
+    Text(String),
 }
 
 /// Open history; a row is given to the operating system as soon as it is appended.
@@ -93,7 +94,7 @@ impl HistoryFile {
             let _ = match cell {
                 HistoryValue::Count(count) => write!(line, "{comma}{count}"),
                 HistoryValue::Number(number) => write!(line, "{comma}{number:.16e}"),
-                HistoryValue::Text(text) => write!(line, "{comma}{text}"),
+                HistoryValue::Text(text) => write!(line, "{comma}{}", quoted(text)),
             };
         }
         line.push('\n');
@@ -101,9 +102,24 @@ impl HistoryFile {
     }
 }
 
+/// Text as a cell of a table: in quotes where it would part cells or rows (RFC 4180).
+fn quoted(text: &str) -> Cow<'_, str> {
+    if text.contains([',', '"', '\r', '\n']) {
+        // A row is a line, so that a torn one is known.
+        Cow::Owned(format!("\"{}\"", text.replace('"', "\"\"").replace(['\r', '\n'], " ")))
+    } else {
+        Cow::Borrowed(text)
+    }
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    #[test]
+    fn names_do_not_part_cells() {
+        assert_eq!((quoted("left bin"), quoted("a,\"b\"\n")), ("left bin".into(), "\"a,\"\"b\"\" \"".into()));
+    }
 
     #[test]
     fn rows_after_the_checkpoint_and_torn_rows_are_removed() {

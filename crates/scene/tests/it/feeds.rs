@@ -1,7 +1,7 @@
 //! Feeds: their grains are drawn with the scene, more of them where the run ends later, in any order.
 
 use crate::common::Folder;
-use amberfield_core::{FeedRegion, Feeds, OnBlocked};
+use amberfield_core::{FeedRegion, Feeds, OnBlocked, Volume};
 use amberfield_scene::Purpose;
 
 const SCENE: &str = r#"
@@ -57,7 +57,7 @@ fn rates_and_sizes_are_kept() {
     let read = feeds(SCENE, &[]);
     assert_eq!(read.list.iter().map(|feed| feed.name.as_str()).collect::<Vec<_>>(), ["fines", "left"]);
     assert!(
-        matches!(read.list[0].region, FeedRegion::Cylinder { length, .. } if (length - 0.04).abs() < 1e-12)
+        matches!(read.list[0].region, FeedRegion::Volume(Volume::Cylinder { length, .. }) if (length - 0.04).abs() < 1e-12)
     );
     assert_eq!([read.list[0].on_blocked, read.list[1].on_blocked], [OnBlocked::Stop, OnBlocked::Wait]);
     assert!(read.due_s.is_sorted() && read.grains.id.is_sorted_by(|a, b| a < b));

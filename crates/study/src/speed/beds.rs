@@ -116,6 +116,7 @@ fn jittered(count: usize, fraction: f64, jitter: f64) -> Setup {
         gas: None,
         field: None,
         feeds: Default::default(),
+        outlets: Vec::new(),
     }
 }
 

@@ -76,6 +76,7 @@ fn built(
         gas: None,
         field: Some(FieldStageSetup { transfer, ..field }),
         feeds: Default::default(),
+        outlets: Vec::new(),
     };
     Simulation::new(setup).expect("a good scene")
 }

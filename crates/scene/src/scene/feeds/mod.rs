@@ -196,7 +196,7 @@ fn read_feed_region(table: &SceneTable<'_>, source: &mut SceneSource) -> Result<
         if region.has("scale") {
             return Err(region.bad("scale", "only an stl has a scale; remove it"));
         }
-        return read_volume(table, &region);
+        return read_volume(table, &region, "box, cylinder, stl").map(FeedRegion::Volume);
     };
     if region.has("box") || region.has("cylinder") {
         return Err(region.bad("stl", "the region has another shape too; give one of box, cylinder, stl"));

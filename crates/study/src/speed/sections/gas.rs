@@ -100,6 +100,7 @@ fn ours(root: &Path, place: &Path, lattice: &[[f64; 3]], looks: (f64, usize)) ->
         gas: Some(GasSetup { gas, solver: Some(solver_of(foam, place)?) }),
         field: None,
         feeds: Default::default(),
+        outlets: Vec::new(),
     })?;
     let begun = Instant::now();
     let mut rows = Vec::new();

@@ -191,6 +191,7 @@ fn start(restitution: f64, young_pa: f64, bed: u64) -> Setup {
         gas: None,
         field: None,
         feeds: Default::default(),
+        outlets: Vec::new(),
     }
 }
 

@@ -36,6 +36,7 @@ impl Bed {
             gas: None,
             field: None,
             feeds: Default::default(),
+            outlets: Vec::new(),
         };
         Ok(Self { plain, settings, end_s: time.end_s })
     }
