@@ -2,8 +2,11 @@
 
 mod common;
 
-use amberfield_core::{Axis, Boundary, Domain, Outlet, OutletRegion, Side, Vector3, Volume};
-use amberfield_dem::{Book, DemError, Setup, Simulation, Tally, WayOut};
+use amberfield_core::{
+    Axis, Boundary, CouplingInterval, Domain, FieldSettings, Method, Outlet, OutletRegion, Side, Vector3,
+    Volume,
+};
+use amberfield_dem::{Book, DemError, ElectricEnergy, FieldStageSetup, Setup, Simulation, Tally, WayOut};
 use common::{RADIUS, domain, floor, grain, lattice, mass, material, run, setup};
 
 const STEP: f64 = 2e-5;
@@ -16,6 +19,10 @@ fn volume(name: &str, min: [f64; 3], max: [f64; 3]) -> Outlet {
 
 fn face(name: &str, axis: Axis, side: Side) -> Outlet {
     Outlet { name: name.into(), region: OutletRegion::Face(axis, side), each: false }
+}
+
+fn direct() -> FieldSettings {
+    FieldSettings { method: Method::Direct, ..FieldSettings::default() }
 }
 
 /// Grains without friction that fall, with outlets.
@@ -133,6 +140,37 @@ fn checkpoints_and_threads_change_nothing() {
         simulation.checkpoint().unwrap()
     });
     assert_eq!(whole.checkpoint().unwrap(), alone);
+}
+
+#[test]
+fn grains_that_leave_are_felt_no_more_as_in_a_run_that_evaluates_every_step() {
+    let run_with = |interval: CouplingInterval| {
+        let mut grains = lattice([-0.02; 3], [0.02; 3], 6.0 * RADIUS, 0.02, 3);
+        for (k, grain) in grains.iter_mut().enumerate() {
+            grain.charge = if k % 3 == 0 { -2e-11 } else { 3e-11 };
+            grain.velocity.x += 1.0;
+        }
+        let count = grains.len();
+        let mut setup = falling(grains, vec![volume("a", [0.03, -0.1, -0.1], [0.05, 0.1, 0.1])]);
+        setup.time.gravity_m_s2.z = 0.0;
+        let settings = FieldSettings { coupling_interval: interval, tolerance: 1e-3, ..direct() };
+        setup.field = Some(FieldStageSetup::new(settings, vec![true; count]));
+        let mut simulation = Simulation::new(setup).unwrap();
+        run(&mut simulation, 1500);
+        let energies = simulation.energies(ElectricEnergy::Forecast).unwrap().electric.unwrap();
+        let exact = simulation.energies(ElectricEnergy::Evaluated).unwrap().electric.unwrap();
+        assert!((energies - exact).abs() < 0.02 * exact.abs(), "{energies:e} {exact:e}");
+        let intervals = simulation.intervals().unwrap();
+        (simulation.particles(), intervals.evaluations, intervals.error(), count)
+    };
+    let (exact, all, ..) = run_with(CouplingInterval::Steps(1));
+    let (forecast, evaluations, error, count) = run_with(CouplingInterval::Auto);
+    assert!(exact.len() + 20 < count && exact.id == forecast.id, "{} of {count}", exact.len());
+    assert!(all > 1500 && evaluations < 500 && error < 1e-3, "{evaluations} of {all}, {error:e}");
+    let gained = exact.velocity.iter().map(|v| v.yz().norm()).fold(0.0, f64::max);
+    let apart =
+        exact.velocity.iter().zip(&forecast.velocity).map(|(a, b)| (a - b).norm()).fold(0.0, f64::max);
+    assert!(apart < 2e-3 * gained, "{apart:e} of {gained:e}");
 }
 
 #[test]

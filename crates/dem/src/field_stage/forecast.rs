@@ -14,8 +14,8 @@ use serde::{Deserialize, Serialize};
 /// Factor of the jump of E at a grain whose charge jumps: contacts overlap, and a jump that is taken for too
 /// small leaves a rest that looks like drift.
 const SPARE: f64 = 1.2;
-/// Share of a newcomer's charge that counts as a jump since the last evaluation: its images, and what has
-/// moved since it came, are not known before the next one.
+/// Share of the charge of a grain that comes or leaves that counts as a jump since the last evaluation: its
+/// images, and what has moved since, are not known before the next one.
 const UNKNOWN: f64 = 0.1;
 
 /// E, its change and the charge of every grain, in sorted order; zero for grains that are no members.
@@ -62,9 +62,11 @@ impl Forecast {
         self.jumps = None;
     }
 
-    /// Adds a field [V/m] at a grain.
+    /// Adds a field [V/m] at a grain; nothing is known before the first evaluation.
     pub(super) fn add(&mut self, grain: usize, e: Vector3<f64>) {
-        self.e[grain] += e;
+        if let Some(known) = self.e.get_mut(grain) {
+            *known += e;
+        }
     }
 
     /// Charge of a grain [C]; zero before the first evaluation.
@@ -132,8 +134,9 @@ impl Forecast {
             pick(&mut self.evaluated, order, &mut self.spare.1);
             if order.len() < self.spare.1.len() {
                 let kept = Change::of(&self.charge);
-                self.left.sum += kept.sum - all.sum;
-                self.left.squares += (all.squares - kept.squares).max(0.0);
+                // The rest of what they did is off the others' E already.
+                self.left.sum += UNKNOWN * (kept.sum - all.sum);
+                self.left.squares += UNKNOWN * UNKNOWN * (all.squares - kept.squares).max(0.0);
                 self.jumps = None;
             }
         }
@@ -338,6 +341,11 @@ impl EnergyForecast {
         FieldEnergy { energy: self.last.energy + self.slope * age as f64, ..self.last }
     }
 
+    /// Adds what grains that come bring, or leave without [J].
+    pub(crate) fn shift(&mut self, energy: f64) {
+        self.last.energy += energy;
+    }
+
     /// Takes a fresh energy, `age` steps after the last evaluation.
     pub(crate) fn renew(&mut self, fresh: FieldEnergy, age: u64) {
         let known = self.evaluated && age > 0;
@@ -394,7 +402,7 @@ mod tests {
         forecast.reorder(&[3, 2, 1, 0]);
         forecast.reorder(&[0, 1, 2]);
         assert!(forecast.fits(3) && forecast.force(2, 3.0) == Vector3::zeros());
-        assert_eq!(forecast.jumps(&CENTRE, 1.0).share2, 0.5);
+        assert_eq!(forecast.jumps(&CENTRE, 1.0).share2, 0.5 * UNKNOWN * UNKNOWN);
     }
 
     #[test]

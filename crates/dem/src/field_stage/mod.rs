@@ -18,13 +18,14 @@ mod forecast;
 mod impacts;
 mod interval;
 mod members;
-mod newcomers;
 mod source;
 mod state;
+mod traffic;
 
 pub use interval::Intervals;
 pub(crate) use members::{Extras, Moment};
 pub(crate) use state::FieldState;
+pub(crate) use traffic::Leaver;
 
 use crate::error::DemError;
 use crate::motion::chunks::{CHUNK, chunk_count, for_each_chunk, is_parallel};
@@ -179,8 +180,7 @@ impl FieldStage {
         self.control.intervals
     }
 
-    /// Follows grains that are reordered to `order[new] = old`; grains that are not named are gone. What they
-    /// did to the field stays until the next evaluation, and counts in the error that it measures.
+    /// Follows grains that are reordered to `order[new] = old`; grains that are not named are gone.
     pub(crate) fn reorder(&mut self, order: &[u32]) {
         self.forecast.reorder(order);
     }

@@ -7,6 +7,7 @@
 
 use super::{HALF_SKIN, Simulation};
 use crate::error::DemError;
+use crate::field_stage::Leaver;
 use crate::motion::verlet::{Beyond, Bounds};
 use crate::outlets::FACES;
 use crate::setup::Setup;
@@ -206,6 +207,7 @@ impl Simulation {
         let gone: Vec<usize> = exits.iter().map(|(i, _)| *i).collect();
         // Charge that contacts have yet to trade goes before the grains do.
         self.trade_between_grains();
+        self.retire_from_field(&gone);
         for (i, mut exit) in exits {
             let original = self.grains.original[i].index();
             exit.charge = self.particles.charge[original];
@@ -220,6 +222,31 @@ impl Simulation {
         }
         self.remove(&gone);
         Ok(true)
+    }
+
+    /// Takes the field of grains that leave (sorted indices) off the others' forces.
+    fn retire_from_field(&mut self, gone: &[usize]) {
+        let leavers: Vec<Leaver> =
+            gone.iter().map(|&index| Leaver { index, image: self.image_where_it_leaves(index) }).collect();
+        if let Some(field) = &mut self.field {
+            field.retire(&self.domain, &self.grains, &self.particles, &leavers);
+        }
+    }
+
+    /// Image of a grain in the face through which it leaves: its place [m] and its charge over the grain's;
+    /// `None` where the face mirrors nothing.
+    fn image_where_it_leaves(&self, i: usize) -> Option<(Vector3<f64>, f64)> {
+        let faces = self.ways_out.at_touch.as_ref()?;
+        let face = self.bounds.beyond(&self.grains.centre[i]).or_else(|| self.face_touched_by(i))?;
+        let Beyond { axis, side: Some(side) } = face else { return None };
+        if !faces[axis][side as usize] {
+            return None;
+        }
+        let plane = [self.domain.min(), self.domain.max()][side as usize][axis];
+        let mut place = self.grains.position(i);
+        place[axis] = 2.0 * plane - place[axis];
+        let boundary = self.domain.faces()[axis][side as usize];
+        Some((place, if boundary.is_conductor() { -1.0 } else { 1.0 }))
     }
 
     /// Removes grains (ascending sorted indices). The lists still have the old numbers: the rebuild that must

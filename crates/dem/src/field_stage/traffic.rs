@@ -1,0 +1,79 @@
+//! Grains that come and leave between two evaluations: until the next one the others feel that as point charges
+//! do. Of images there is only that of a grain which leaves at a face that mirrors it.
+
+use super::FieldStage;
+use crate::motion::grains::Grains;
+use amberfield_core::{Domain, Particles, Vector3};
+use amberfield_laws::point_charge;
+
+/// Grain that leaves.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Leaver {
+    /// Index in sorted order.
+    pub(crate) index: usize,
+    /// Image at a face that mirrors it: its place [m] and its charge over that of the grain.
+    pub(crate) image: Option<(Vector3<f64>, f64)>,
+}
+
+/// Charge of a grain that makes and feels the field [C]; `None` for others.
+fn charge_of(member: &[bool], grains: &Grains, particles: &Particles, i: usize) -> Option<f64> {
+    let original = grains.original[i].index();
+    member[original].then(|| particles.charge[original])
+}
+
+impl FieldStage {
+    /// Takes the field of grains that leave off the others' E, before the grains are reordered.
+    pub(crate) fn retire(
+        &mut self,
+        domain: &Domain,
+        grains: &Grains,
+        particles: &Particles,
+        leavers: &[Leaver],
+    ) {
+        let (k, external) = (self.settings.permittivity.coulomb(), self.settings.external_field_v_m);
+        let mut gone = Vec::with_capacity(leavers.len());
+        for Leaver { index, image } in leavers {
+            gone.push(*index);
+            let charge = charge_of(&self.member, grains, particles, *index);
+            let Some(q) = charge.filter(|q| *q != 0.0) else { continue };
+            let place = grains.position(*index);
+            let mut energy = -q * external.dot(&place);
+            for other in (0..grains.len()).filter(|other| !gone.contains(other)) {
+                let Some(of_other) = charge_of(&self.member, grains, particles, other) else { continue };
+                let at = grains.position(other);
+                let mut feel = |share: f64, from: Vector3<f64>| {
+                    let away = domain.shortest(at - from);
+                    self.forecast.add(other, -point_charge::field(k, share * q, away));
+                    energy += k * share * q * of_other / away.norm();
+                };
+                feel(1.0, place);
+                if let Some((mirrored, share)) = image {
+                    feel(*share, *mirrored);
+                }
+            }
+            self.energy.shift(-energy);
+        }
+    }
+
+    /// Takes in the last `count` grains, which have just come.
+    pub(crate) fn admit(&mut self, domain: &Domain, grains: &Grains, particles: &Particles, count: usize) {
+        let (k, external) = (self.settings.permittivity.coulomb(), self.settings.external_field_v_m);
+        for newcomer in grains.len() - count..grains.len() {
+            let Some(q) = charge_of(&self.member, grains, particles, newcomer) else {
+                self.forecast.admit(Vector3::zeros(), 0.0);
+                continue;
+            };
+            let place = grains.position(newcomer);
+            let (mut own, mut energy) = (external, -q * external.dot(&place));
+            for other in 0..newcomer {
+                let Some(of_other) = charge_of(&self.member, grains, particles, other) else { continue };
+                let from = domain.shortest(place - grains.position(other));
+                own += point_charge::field(k, of_other, from);
+                self.forecast.add(other, point_charge::field(k, q, -from));
+                energy += k * q * of_other / from.norm();
+            }
+            self.energy.shift(energy);
+            self.forecast.admit(own, q);
+        }
+    }
+}
