@@ -4,7 +4,7 @@ use super::good;
 use amberfield_tests::foam_case::{
     brick, foam_program, perturb, write_file, write_gas_case, write_potential,
 };
-use amberfield_tests::{Answer, DEADLINE, Workbench};
+use amberfield_tests::{Answer, CsvTable, DEADLINE, Workbench};
 use std::process::Stdio;
 use std::time::{Duration, Instant};
 
@@ -239,4 +239,39 @@ fn a_fluidised_bed_to_start_from_runs() {
     let bench = Workbench::new("");
     good(&bench.run(&["new", "fluidised-bed"]));
     good(&bench.run(&["run", "fluidised-bed/scene.toml", "--out", "out", "--steps", "60", "--no-progress"]));
+}
+
+/// Scene whose grains come by a feed into the gas, without gravity.
+fn fed() -> String {
+    let (before, rest) = SCENE.split_once("[particles]").unwrap();
+    let (_, after) = rest.split_once("[electric_field]").unwrap();
+    let (_, after) = after.split_once("[gas]").unwrap();
+    let feed = "[particles]\non_exit = 'delete'\n[[feeds]]\nname = 'rain'\nmaterial = 'glass'\n\
+        region = { box = { min_m = [0.001, 0.001, 0.02], max_m = [0.009, 0.009, 0.029] } }\n\
+        rate_per_s = 1e4\nend_s = 4e-3\nradius_m = 5e-4\nvelocity_m_s = [0, 0, -1]\n[gas]";
+    format!("{before}{feed}{after}").replace("gravity_m_s2 = [0, 0, -9.81]", "gravity_m_s2 = [0, 0, 0]")
+}
+
+#[test]
+fn grains_of_a_feed_take_from_the_gas_what_it_says_that_it_gave() {
+    let bench = bed(&fed());
+    let answer = run(&bench, "whole", &[]);
+    good(&answer);
+    let all = grains(&bench, "whole");
+    let table = CsvTable::parse(&all);
+    let speeds = table.numbers("vz_m_s");
+    assert_eq!(speeds.len(), 40, "{}", answer.stderr);
+    let mass = 1000.0 * 4.0 / 3.0 * std::f64::consts::PI * 5e-4_f64.powi(3);
+    let gained: f64 = speeds.iter().map(|speed| mass * (speed + 1.0)).sum();
+    let (_, said) = answer.stderr.split_once("gas: gave the grains ").expect("a line about the gas");
+    let given: f64 = said.split(' ').next().unwrap().parse().unwrap();
+    assert!(gained > 0.0 && (given / gained - 1.0).abs() < 0.01, "{given:e} {gained:e}");
+
+    // A checkpoint while grains come.
+    good(&run(&bench, "parts", &["--steps", "60"]));
+    let checkpoint = bench.names("parts/checkpoints").pop().expect("a checkpoint");
+    good(&run(&bench, "parts", &["--resume", &format!("parts/checkpoints/{checkpoint}")]));
+    assert_eq!(grains(&bench, "parts"), all);
+    good(&run(&bench, "one", &["--threads", "1"]));
+    assert_eq!(grains(&bench, "one"), all);
 }
