@@ -3,6 +3,7 @@
 use super::{exits, histogram, wall_forces};
 use crate::failure::Failure;
 use crate::machine;
+use amberfield_scene::checkpoints;
 use std::fs;
 use std::io::Write as _;
 use std::path::{Path, PathBuf};
@@ -132,16 +133,6 @@ impl Drop for RunFolder {
     fn drop(&mut self) {
         let _ = fs::remove_file(self.path.join(LOCK));
     }
-}
-
-/// Paths of the checkpoints in a folder, oldest first.
-pub(crate) fn checkpoints(folder: &Path) -> Vec<PathBuf> {
-    let files = fs::read_dir(folder).into_iter().flatten().flatten().map(|file| file.path());
-    let mut files: Vec<_> =
-        files.filter(|path| path.extension().is_some_and(|kind| kind == "amber")).collect();
-    // Their names count steps with leading zeros.
-    files.sort();
-    files
 }
 
 /// Id of the process that writes to a run folder.
