@@ -59,6 +59,9 @@ fn print_scene(name: &str, scene: &Scene) {
         range(&particles.charge),
         particles.net_charge()
     ));
+    if let Some(filled) = &scene.filled {
+        line(format_args!("  from {}", filled.checkpoint.display()));
+    }
     for (number, feed) in (0..).zip(&scene.feeds.list) {
         let (mut count, mut mass) = (0, 0.0);
         for k in (0..scene.feeds.due_s.len()).filter(|k| scene.feeds.feed[*k] == number) {

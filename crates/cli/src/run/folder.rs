@@ -80,6 +80,23 @@ impl RunFolder {
         }
     }
 
+    /// Refuses to replace the run from whose checkpoint a scene begins.
+    pub(crate) fn spare(path: &Path, existing: Existing, checkpoint: &Path) -> Result<(), Failure> {
+        let is_inside = match (path.canonicalize(), checkpoint.canonicalize()) {
+            (Ok(folder), Ok(checkpoint)) => checkpoint.starts_with(folder),
+            _ => false,
+        };
+        if existing == Existing::Overwrite && is_inside {
+            return Err(Failure::bad_input(format!(
+                "{}: --overwrite would remove the checkpoint {} with which the scene begins; name another \
+                 folder with --out",
+                path.display(),
+                checkpoint.display()
+            )));
+        }
+        Ok(())
+    }
+
     /// Opens the folder: creates it, removes old results if asked to, and marks it as in use.
     pub(crate) fn open(path: &Path, existing: Existing) -> Result<Self, Failure> {
         let failed = |error: std::io::Error| {

@@ -72,6 +72,9 @@ pub fn simulate(request: &RunRequest, observer: &mut dyn Observer, log: &Log) ->
         clear_solver_folder(&solver_folder)?;
     }
     let mut scene = read_input(&request.scene, &request.set, Purpose::Run, &solver_folder)?;
+    if let Some(filled) = &scene.filled {
+        RunFolder::spare(&out, existing, &filled.checkpoint)?;
+    }
     scene.title = name_of(&request.scene);
     for warning in &scene.warnings {
         tracing::warn!("{warning}");
