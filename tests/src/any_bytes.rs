@@ -7,8 +7,8 @@ use amberfield_core::{Boundary, Domain, Vector3};
 use amberfield_coupling::{GrainsInCells, MeshArrays, MeshPart, Question, assemble};
 use amberfield_field::far::{FarMesh, FarMeshParts};
 use amberfield_scene::{
-    Physics, Purpose, SavedGrains, Snapshot, SnapshotOptions, Units, read_checkpoint, read_scene, write_checkpoint,
-    write_snapshot,
+    Physics, Purpose, SavedGrains, Snapshot, SnapshotOptions, Units, read_checkpoint, read_scene,
+    write_checkpoint, write_snapshot,
 };
 use amberfield_wire::payloads::{
     BoundaryFace, FarAnswer, FarQuestion, FlowAnswer, FlowQuestion, MeshOutline,
