@@ -11,6 +11,7 @@ mod faults;
 mod feeds;
 mod field;
 mod files;
+mod filled;
 mod host_library;
 mod interrupt;
 mod moving_walls;

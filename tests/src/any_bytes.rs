@@ -7,8 +7,8 @@ use amberfield_core::{Boundary, Domain, Vector3};
 use amberfield_coupling::{GrainsInCells, MeshArrays, MeshPart, Question, assemble};
 use amberfield_field::far::{FarMesh, FarMeshParts};
 use amberfield_scene::{
-    Physics, Purpose, Snapshot, SnapshotOptions, Units, read_checkpoint, read_scene, write_checkpoint,
-    write_snapshot,
+    Physics, Purpose, SavedGrains, Snapshot, SnapshotOptions, Units, read_checkpoint, read_scene,
+    write_checkpoint, write_snapshot,
 };
 use amberfield_wire::payloads::{
     BoundaryFace, FarAnswer, FarQuestion, FlowAnswer, FlowQuestion, MeshOutline,
@@ -143,7 +143,7 @@ fn checkpoint(bytes: &[u8]) {
     let path = folder.path().join(format!("{:?}.amber", std::thread::current().id()));
     std::fs::write(&path, bytes).expect("a file");
     let _answer = read_checkpoint::<State>(&path, &Physics::default());
-    write_checkpoint(&path, &Physics::default(), &Raw(bytes)).expect("a file");
+    write_checkpoint(&path, &Physics::default(), &SavedGrains::default(), &Raw(bytes)).expect("a file");
     let _answer = read_checkpoint::<State>(&path, &Physics::default());
 }
 

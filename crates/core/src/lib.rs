@@ -8,6 +8,7 @@
 mod charge_transfer;
 mod cohesion;
 pub mod constants;
+mod contact_rules;
 mod domain;
 mod far_question;
 mod feed;
@@ -28,6 +29,7 @@ mod wall_motion;
 
 pub use charge_transfer::ChargeTransfer;
 pub use cohesion::Cohesion;
+pub use contact_rules::{ContactRules, WallRule};
 pub use domain::{Axis, Boundary, Domain, DomainError, Side};
 pub use far_question::{FarQuestion, SourceCloud};
 pub use feed::{Feed, FeedRegion, Feeds, OnBlocked};

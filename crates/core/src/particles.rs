@@ -31,7 +31,7 @@ pub struct Grain {
     pub group: GroupId,
 }
 
-/// Grains as a structure of arrays; every array has the same length and order.
+/// Grains as a structure of arrays; every array of grains has the same length and order.
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
 pub struct Particles {
     /// Unique ids.
@@ -52,6 +52,8 @@ pub struct Particles {
     pub material: Vec<MaterialId>,
     /// Groups.
     pub group: Vec<GroupId>,
+    /// Groups whose grains never move nor turn.
+    pub fixed_groups: Vec<GroupId>,
 }
 
 impl Particles {
@@ -102,6 +104,20 @@ impl Particles {
             material: self.material[index],
             group: self.group[index],
         }
+    }
+
+    /// Whether the grain at an index never moves.
+    ///
+    /// # Panics
+    /// When the index is out of range.
+    #[must_use]
+    pub fn is_fixed(&self, index: usize) -> bool {
+        self.fixed_groups.contains(&self.group[index])
+    }
+
+    /// Indices of the grains that move.
+    pub fn moving(&self) -> impl Iterator<Item = usize> {
+        (0..self.len()).filter(|&index| !self.is_fixed(index))
     }
 
     /// Mass m = (4/3)πr³ρ [kg] of the grain at an index.

@@ -25,6 +25,7 @@ pub use feeding::{Brought, FeedAccount};
 pub use field_stage::{Intervals, Limited};
 pub use setup::{FieldStageSetup, GasSetup, Setup};
 pub use simulation::books::Book;
+pub use simulation::earlier::Earlier;
 pub use simulation::energy::{ElectricEnergy, Energies};
 pub use simulation::exits::{Exit, Left, WayOut};
 pub use simulation::guards::{Guard, StepRestitution};

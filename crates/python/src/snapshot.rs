@@ -139,6 +139,7 @@ impl<'py> Columns<'_, 'py> {
             charge: charge.unwrap_or_else(zeros),
             material: material.unwrap_or_else(|| vec![MaterialId(0); count]),
             group: vec![GroupId(0); count],
+            fixed_groups: Vec::new(),
         };
         let mut snapshot = Snapshot::with(particles, given);
         snapshot.step = self.value("step")?;

@@ -4,6 +4,7 @@
 //! what to do: see [`SceneError`].
 #![forbid(unsafe_code)]
 
+mod checkpoint;
 mod error;
 pub mod files;
 mod generate;
@@ -20,16 +21,18 @@ mod tree;
 mod weld;
 mod write;
 
+pub use checkpoint::{SavedGrains, checkpoints};
 pub use error::SceneError;
 pub use particles::{Given, Snapshot, SnapshotBox, SnapshotOptions, Units};
 pub use scene::{
-    ChargeTransferSettings, ElectricFieldSettings, OpenFoamSettings, OutputSettings, Physics, Purpose, Scene,
-    SceneInput, SceneOutline, SolverLoss, parse_field_settings, parse_scene, read_outline, read_scene,
+    ChargeTransferSettings, ElectricFieldSettings, Filled, OpenFoamSettings, OutputSettings, Physics,
+    Purpose, Scene, SceneInput, SceneOutline, SolverLoss, parse_field_settings, parse_scene, read_outline,
+    read_scene,
 };
 pub use table::check_keys;
 pub use write::{
     ChargedSquare, FieldColumns, FieldComponents, FieldReport, FieldReportSeconds, HistoryFile, HistoryValue,
-    PvdSeries, WallFace, read_checkpoint, read_table, write_atomically, write_charge_vtu, write_checkpoint,
-    write_field_csv, write_json, write_particles_csv, write_rows, write_snapshot, write_table, write_text,
-    write_vtu, write_walls_vtu,
+    PvdSeries, WallFace, read_checkpoint, read_checkpoint_of_any, read_table, write_atomically,
+    write_charge_vtu, write_checkpoint, write_field_csv, write_json, write_particles_csv, write_rows,
+    write_snapshot, write_table, write_text, write_vtu, write_walls_vtu,
 };

@@ -4,12 +4,12 @@ use crate::arguments::ExplainOptions;
 use crate::failure::Failure;
 use crate::print::line;
 use crate::run::{
-    Charges, SolverConnections, SolverFolder, charges_of, connect_solver, domain_of, field_of, read_scene,
-    scene_name, setup_of,
+    Charges, SolverConnections, SolverFolder, begin, charges_of, connect_solver, domain_of, field_of,
+    read_scene, scene_name, setup_of,
 };
 use crate::{limits, machine, plan_text};
 use amberfield_core::{Axis, Boundary, Domain, OutletRegion, Side};
-use amberfield_dem::{Outlook, Simulation};
+use amberfield_dem::Outlook;
 use amberfield_field::ElectricField;
 use amberfield_field::far::Connect;
 use amberfield_scene::{ElectricFieldSettings, Purpose, Scene};
@@ -59,6 +59,9 @@ fn print_scene(name: &str, scene: &Scene) {
         range(&particles.charge),
         particles.net_charge()
     ));
+    if let Some(filled) = &scene.filled {
+        line(format_args!("  from {}", filled.checkpoint.display()));
+    }
     for (number, feed) in (0..).zip(&scene.feeds.list) {
         let (mut count, mut mass) = (0, 0.0);
         for k in (0..scene.feeds.due_s.len()).filter(|k| scene.feeds.feed[*k] == number) {
@@ -124,13 +127,14 @@ fn explain_run(scene: &mut Scene, solver: SolverConnections) -> Result<(), Failu
     let setup = setup_of(scene, None, solver)?;
     let at_start = |error| Failure::at_start(&error);
     if setup.particles.len() > MANY
+        && scene.filled.is_none()
         && let Some(outlook) = Outlook::of(&setup).map_err(at_start)?
     {
         print_outlook(scene, &outlook, None);
         line(format_args!("more than {MANY} grains: overlaps are looked for when the run starts"));
         return Ok(());
     }
-    let simulation = Simulation::new(setup).map_err(at_start)?;
+    let simulation = begin(scene, setup)?;
     print_outlook(scene, &simulation.outlook(), simulation.field());
     Ok(())
 }

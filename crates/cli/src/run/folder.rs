@@ -3,6 +3,7 @@
 use super::{exits, histogram, wall_forces};
 use crate::failure::Failure;
 use crate::machine;
+use amberfield_scene::checkpoints;
 use std::fs;
 use std::io::Write as _;
 use std::path::{Path, PathBuf};
@@ -80,6 +81,23 @@ impl RunFolder {
         }
     }
 
+    /// Refuses to replace the run from whose checkpoint a scene begins.
+    pub(crate) fn spare(path: &Path, existing: Existing, checkpoint: &Path) -> Result<(), Failure> {
+        let is_inside = match (path.canonicalize(), checkpoint.canonicalize()) {
+            (Ok(folder), Ok(checkpoint)) => checkpoint.starts_with(folder),
+            _ => false,
+        };
+        if existing == Existing::Overwrite && is_inside {
+            return Err(Failure::bad_input(format!(
+                "{}: --overwrite would remove the checkpoint {} with which the scene begins; name another \
+                 folder with --out",
+                path.display(),
+                checkpoint.display()
+            )));
+        }
+        Ok(())
+    }
+
     /// Opens the folder: creates it, removes old results if asked to, and marks it as in use.
     pub(crate) fn open(path: &Path, existing: Existing) -> Result<Self, Failure> {
         let failed = |error: std::io::Error| {
@@ -133,16 +151,6 @@ impl Drop for RunFolder {
     fn drop(&mut self) {
         let _ = fs::remove_file(self.path.join(LOCK));
     }
-}
-
-/// Paths of the checkpoints in a folder, oldest first.
-pub(crate) fn checkpoints(folder: &Path) -> Vec<PathBuf> {
-    let files = fs::read_dir(folder).into_iter().flatten().flatten().map(|file| file.path());
-    let mut files: Vec<_> =
-        files.filter(|path| path.extension().is_some_and(|kind| kind == "amber")).collect();
-    // Their names count steps with leading zeros.
-    files.sort();
-    files
 }
 
 /// Id of the process that writes to a run folder.

@@ -2,6 +2,7 @@
 
 #[cfg(feature = "coupling")]
 mod bare_patches;
+mod begin;
 mod exits;
 mod folder;
 mod health;
@@ -21,6 +22,7 @@ mod summary;
 mod wall_forces;
 mod walls;
 
+pub(crate) use begin::begin;
 pub(crate) use folder::{is_stale, remove_leftovers};
 pub(crate) use name::scene_name;
 pub use observer::Observer;

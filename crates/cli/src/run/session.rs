@@ -9,8 +9,9 @@ use super::setup::CaseContents;
 use super::summary::{Ending, write_summary};
 use crate::failure::Failure;
 use crate::interrupt;
+use amberfield_core::{ContactRules, WallRule};
 use amberfield_dem::{ElectricEnergy, Energies, Simulation, State};
-use amberfield_scene::{Scene, write_checkpoint};
+use amberfield_scene::{SavedGrains, Scene, write_checkpoint};
 use serde::{Deserialize, Serialize};
 use std::path::PathBuf;
 use std::time::Instant;
@@ -217,6 +218,7 @@ impl<'a> Session<'a> {
     fn save(&mut self, state: State) -> Result<(), Failure> {
         let clock = self.clock();
         let step = state.step_index();
+        let grains = self.grains_of(&state)?;
         let saved = Saved {
             state,
             history: self.schedule.history,
@@ -226,9 +228,24 @@ impl<'a> Session<'a> {
             health: self.health,
         };
         let path = self.checkpoint_of(step);
-        write_checkpoint(&path, self.scene.physics(), &saved)?;
+        write_checkpoint(&path, self.scene.physics(), &grains, &saved)?;
         tracing::debug!(step, "checkpoint {}", path.display());
         Ok(())
+    }
+
+    /// Grains of a state, with what other scenes must know of them.
+    fn grains_of(&self, state: &State) -> Result<SavedGrains, Failure> {
+        let Scene { materials, pairs, rolling_model, cohesion, walls, groups, .. } = self.scene;
+        let particles =
+            self.simulation.particles_of(state).map_err(|error| Failure::while_running(&error))?;
+        let rules = ContactRules {
+            materials: materials.clone(),
+            pairs: pairs.clone(),
+            rolling_model: *rolling_model,
+            cohesion: *cohesion,
+            walls: walls.iter().map(WallRule::of).collect(),
+        };
+        Ok(SavedGrains { particles, groups: groups.clone(), rules })
     }
 
     /// Times of the run so far.

@@ -1,6 +1,7 @@
 //! Simulation of a scene from its set-up to its results.
 
-use super::folder::{Existing, RunFolder, checkpoints};
+use super::begin::begin;
+use super::folder::{Existing, RunFolder};
 use super::histogram;
 use super::name::name_of;
 use super::observer::Observer;
@@ -16,7 +17,9 @@ use crate::logging::Log;
 use crate::plan_text;
 use amberfield_core::Tuning;
 use amberfield_dem::{FeedAccount, Simulation};
-use amberfield_scene::{Physics, Purpose, Scene, SceneInput, read_checkpoint, write_json, write_text};
+use amberfield_scene::{
+    Physics, Purpose, Scene, SceneInput, checkpoints, read_checkpoint, write_json, write_text,
+};
 use std::path::{Path, PathBuf};
 
 /// Share of the steps with limited grains above which a run ends with a warning.
@@ -69,6 +72,9 @@ pub fn simulate(request: &RunRequest, observer: &mut dyn Observer, log: &Log) ->
         clear_solver_folder(&solver_folder)?;
     }
     let mut scene = read_input(&request.scene, &request.set, Purpose::Run, &solver_folder)?;
+    if let Some(filled) = &scene.filled {
+        RunFolder::spare(&out, existing, &filled.checkpoint)?;
+    }
     scene.title = name_of(&request.scene);
     for warning in &scene.warnings {
         tracing::warn!("{warning}");
@@ -96,11 +102,11 @@ pub fn simulate(request: &RunRequest, observer: &mut dyn Observer, log: &Log) ->
     let (simulation, earlier) = match saved {
         Some(Saved { state, history, wall_s, stage_s, health, .. }) => {
             let earlier = EarlierPart { history, clock: Clock { wall_s, stages: stage_s }, health };
-            (Simulation::resume(setup, state), Some(earlier))
+            let resumed = Simulation::resume(setup, state).map_err(|error| Failure::at_start(&error))?;
+            (resumed, Some(earlier))
         }
-        None => (Simulation::new(setup), None),
+        None => (begin(&scene, setup)?, None),
     };
-    let simulation = simulation.map_err(|error| Failure::at_start(&error))?;
 
     // The folder is opened only now, so that a scene that cannot start leaves no files behind.
     let folder = RunFolder::open(&out, existing)?;

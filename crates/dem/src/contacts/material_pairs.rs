@@ -44,6 +44,14 @@ impl<T> PairConstants<T> {
     }
 }
 
+impl PairConstants<f64> {
+    /// Whether springs of a contact with other constants mean the same here; dashpots have no memory.
+    pub(crate) fn has_springs_of(&self, other: &Self) -> bool {
+        let springs = |pair: &Self| [pair.hertz, pair.normal, pair.tangential, pair.friction, pair.rolling];
+        springs(self) == springs(other)
+    }
+}
+
 impl<const LANES: usize> PairConstants<[f64; LANES]> {
     /// Sets one of the lanes.
     #[inline(always)]

@@ -115,6 +115,24 @@ pub(crate) struct PairHistory {
     pub(crate) rolling: [f64; 3],
 }
 
+/// Memory of a pair that touched in another run, by the order of the set-up.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(crate) struct CarriedPair {
+    /// The two grains.
+    pub(crate) grains: [Original; 2],
+    /// Tangential spring, as it acts on the first.
+    pub(crate) spring: Spring,
+    /// Rolling torque on the first [N·m].
+    pub(crate) rolling: [f64; 3],
+}
+
+impl CarriedPair {
+    /// Key of a pair in either order.
+    pub(crate) fn key([a, b]: [Original; 2]) -> [Original; 2] {
+        if a < b { [a, b] } else { [b, a] }
+    }
+}
+
 /// History of a contact with a wall.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 pub(crate) struct WallHistory {
@@ -145,6 +163,8 @@ pub(crate) struct ContactsState {
     pub(crate) pairs: Vec<PairHistory>,
     /// Histories of the touching contacts with walls.
     pub(crate) walls: Vec<WallHistory>,
+    /// Number of the wall of each of them in the scene.
+    pub(crate) touched: Vec<u32>,
     /// Walls that move; `None` where all are at rest.
     pub(crate) moving: Option<MoversState>,
 }

@@ -17,7 +17,7 @@ use crate::motion::chunks::Loads;
 use crate::motion::grains::Grains;
 use amberfield_core::Domain;
 use material_pairs::{Features, PairTable};
-use memory::{ContactsState, Follow, WallHistory};
+use memory::{CarriedPair, ContactsState, Follow, WallHistory};
 use neighbours::Neighbours;
 use pairs::pair_forces;
 use walls::ContactWalls;
@@ -110,7 +110,17 @@ impl Contacts {
             reference: self.neighbours.reference.clone(),
             pairs: self.neighbours.histories(grains),
             walls: self.wall_histories(grains),
+            touched: self.walls.as_ref().map(|walls| walls.touched(grains)).unwrap_or_default(),
             moving: self.walls.as_ref().and_then(ContactWalls::moving_state),
+        }
+    }
+
+    /// Gives contacts the memory that they had in another run: pairs sorted by [`CarriedPair::key`], walls by
+    /// grain.
+    pub(crate) fn carry(&mut self, grains: &Grains, pairs: &[CarriedPair], walls: &[WallHistory]) {
+        self.neighbours.carry(grains, pairs);
+        if let Some(of_walls) = &mut self.walls {
+            of_walls.carry(grains, walls);
         }
     }
 

@@ -2,7 +2,7 @@
 
 use crate::contacts::cells::{INDEX_BITS, INDEX_MASK, LinkedCells};
 use crate::contacts::material_pairs::Features;
-use crate::contacts::memory::{Follow, Foreseen, Grown, Growth, PairHistory, Spring};
+use crate::contacts::memory::{CarriedPair, Follow, Foreseen, Grown, Growth, PairHistory, Spring};
 use crate::motion::chunks::{CHUNK, NO_PUSH, Push, chunk_count, for_each_chunk, is_parallel};
 use crate::motion::grains::Grains;
 use amberfield_core::{Domain, Vector3};
@@ -217,6 +217,31 @@ impl Neighbours {
         Ok(())
     }
 
+    /// Gives pairs the memory that they had in another run; `carried` are sorted by [`CarriedPair::key`].
+    pub(crate) fn carry(&mut self, grains: &Grains, carried: &[CarriedPair]) {
+        for k in 0..self.lists.len() {
+            let list = &mut self.lists[k];
+            for local in 0..list.start.len() - 1 {
+                for entry in list.start[local] as usize..list.start[local + 1] as usize {
+                    let i = grains.original[k * CHUNK + local];
+                    let j = grains.original[(list.partner[entry] & INDEX_MASK) as usize];
+                    let key = CarriedPair::key([i, j]);
+                    let found = carried.binary_search_by_key(&key, |pair| CarriedPair::key(pair.grains));
+                    let Ok(found) = found else { continue };
+                    let CarriedPair { grains: [first, _], spring, rolling } = carried[found];
+                    let sign = if first == i { 1.0 } else { -1.0 };
+                    list.touching[entry] = true;
+                    if let Some(kept) = list.spring.get_mut(entry) {
+                        *kept = Spring { force: spring.force.map(|f| sign * f), ..spring };
+                    }
+                    if let Some(kept) = list.rolling.get_mut(entry) {
+                        *kept = rolling.map(|torque| sign * torque);
+                    }
+                }
+            }
+        }
+    }
+
     /// All listed pairs.
     pub(crate) fn pairs(&self) -> impl Iterator<Item = Listed> + '_ {
         self.lists.iter().enumerate().flat_map(|(k, list)| {
@@ -265,8 +290,12 @@ impl ChunkList {
         self.partner.clear();
         let (first, last) = (k * CHUNK, grains.len().min((k + 1) * CHUNK));
         for i in first..last {
-            self.start.push(self.partner.len() as u32);
+            let listed = self.partner.len();
+            self.start.push(listed as u32);
             cells.partners(i as u32, grains.level[i], &grains.centre[i], &mut self.partner);
+            if grains.some_fixed && grains.is_fixed(i) {
+                drop_fixed(&mut self.partner, listed, grains);
+            }
         }
         let entries = self.partner.len();
         self.start.push(entries as u32);
@@ -335,6 +364,18 @@ impl ChunkList {
             }
         }
     }
+}
+
+/// Drops the partners from index `first` on that never move: two such grains do nothing to each other.
+fn drop_fixed(partners: &mut Vec<u32>, first: usize, grains: &Grains) {
+    let mut kept = first;
+    for n in first..partners.len() {
+        if !grains.is_fixed((partners[n] & INDEX_MASK) as usize) {
+            partners[kept] = partners[n];
+            kept += 1;
+        }
+    }
+    partners.truncate(kept);
 }
 
 /// Entry of `j` in the list of `i`; none of a grain that came after the lists were built.

@@ -314,19 +314,21 @@ impl FieldStage {
         self.limited.grain_steps += self.limited.grains;
     }
 
-    /// ω_p of the members in their bounding box.
+    /// ω_p of the members that move, in their bounding box.
     fn watch_plasma(&mut self, grains: &Grains, step: f64) {
         let Members { index, position, charge, .. } = &self.members;
         let mut min = Vector3::repeat(f64::INFINITY);
         let mut max = Vector3::repeat(f64::NEG_INFINITY);
         let mut sum = 0.0;
-        for ((&i, x), q) in index.iter().zip(position).zip(charge) {
+        let members = index.iter().zip(position).zip(charge);
+        for ((&i, x), q) in members.filter(|((i, _), _)| !grains.is_fixed(**i as usize)) {
             let radius = Vector3::repeat(grains.centre[i as usize][3]);
             min = min.inf(&(x - radius));
             max = max.sup(&(x + radius));
             sum += q * q * grains.inverse_mass[i as usize];
         }
-        if index.is_empty() {
+        if min.x > max.x {
+            // None of them moves.
             return;
         }
         let volume = (max - min).product();
@@ -393,7 +395,8 @@ fn largest_force(
     step: f64,
 ) -> Option<impl Fn(usize) -> f64 + Sync> {
     let factor = limit?.factor;
-    Some(move |i: usize| force_limit::largest(factor, 1.0 / grains.inverse_mass[i], skin, step))
+    // A factor of 0 leaves nothing of the force on a grain that never moves too, where 0 · ∞ is no number.
+    Some(move |i: usize| force_limit::largest(factor, 1.0 / grains.inverse_mass[i], skin, step).max(0.0))
 }
 
 #[cfg(test)]

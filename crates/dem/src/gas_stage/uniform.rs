@@ -13,15 +13,15 @@ use std::f64::consts::PI;
 pub(crate) struct UniformGas {
     gas: Gas,
     gravity: Vector3<f64>,
-    /// Smallest diameter of the grains [m].
+    /// Smallest diameter of the grains that move [m].
     least_diameter: f64,
-    /// Lowest density of the grains [kg/m³].
+    /// Lowest density of the grains that move [kg/m³].
     least_density: f64,
 }
 
 impl UniformGas {
     pub(crate) fn new(gas: Gas, gravity: Vector3<f64>, particles: &Particles) -> Self {
-        let least = |values: &[f64]| values.iter().copied().fold(f64::INFINITY, f64::min);
+        let least = |values: &[f64]| particles.moving().map(|i| values[i]).fold(f64::INFINITY, f64::min);
         Self {
             gas,
             gravity,
@@ -60,6 +60,9 @@ impl UniformGas {
     /// grains of one density.
     pub(crate) fn limit(&self, speed: f64) -> f64 {
         let (diameter, density) = (self.least_diameter, self.least_density);
+        if diameter.is_infinite() {
+            return f64::INFINITY;
+        }
         let slip = speed + self.gas.velocity_m_s.norm();
         density * PI / 6.0 * diameter.powi(3) / self.coefficient(diameter, slip)
     }

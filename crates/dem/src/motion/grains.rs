@@ -10,6 +10,11 @@ use serde::{Deserialize, Serialize};
 pub(crate) struct Original(u32);
 
 impl Original {
+    /// Index of a grain of the set-up.
+    pub(crate) fn new(index: usize) -> Self {
+        Self(index as u32)
+    }
+
     /// Index into arrays of the set-up.
     #[inline(always)]
     pub(crate) fn index(self) -> usize {
@@ -37,8 +42,10 @@ pub(crate) struct Grains {
     pub(crate) torque: Vec<Vector3<f64>>,
     /// Rates Γ at which all contacts of a grain slowed it at the last evaluation [1/s].
     pub(crate) slowing: Vec<f64>,
-    /// 1/m [1/kg].
+    /// 1/m [1/kg]; 0 of a grain that never moves, as if it were infinitely heavy.
     pub(crate) inverse_mass: Vec<f64>,
+    /// Whether any grain never moves.
+    pub(crate) some_fixed: bool,
     /// Material index.
     pub(crate) material: Vec<u16>,
     /// Level of the cells.
@@ -109,7 +116,8 @@ impl Grains {
             force: vec![Vector3::zeros(); count],
             torque: vec![Vector3::zeros(); if rotation { count } else { 0 }],
             slowing: vec![0.0; count],
-            inverse_mass: (0..count).map(|i| 1.0 / particles.mass(i)).collect(),
+            inverse_mass: (0..count).map(|i| inverse_mass(particles, i)).collect(),
+            some_fixed: (0..count).any(|i| particles.is_fixed(i)),
             material: particles.material.iter().map(|m| m.0).collect(),
             level,
             spare: Spare::default(),
@@ -118,6 +126,17 @@ impl Grains {
 
     pub(crate) fn len(&self) -> usize {
         self.original.len()
+    }
+
+    /// Whether a grain never moves.
+    #[inline(always)]
+    pub(crate) fn is_fixed(&self, index: usize) -> bool {
+        self.inverse_mass[index] == 0.0
+    }
+
+    /// Sorted indices of the grains that move.
+    pub(crate) fn moving(&self) -> impl Iterator<Item = usize> {
+        (0..self.len()).filter(|&i| !self.is_fixed(i))
     }
 
     pub(crate) fn position(&self, index: usize) -> Vector3<f64> {
@@ -191,7 +210,7 @@ impl Grains {
             self.torque.push(Vector3::zeros());
         }
         self.slowing.push(0.0);
-        self.inverse_mass.push(1.0 / particles.mass(original as usize));
+        self.inverse_mass.push(inverse_mass(particles, original as usize));
         self.material.push(particles.material[original as usize].0);
         self.level.push(level);
     }
@@ -235,6 +254,11 @@ impl Grains {
         order.clear();
         order.extend(keys.iter().map(|key| key.index));
     }
+}
+
+/// 1/m [1/kg] of a grain of the set-up; 0 where it never moves.
+fn inverse_mass(particles: &Particles, index: usize) -> f64 {
+    if particles.is_fixed(index) { 0.0 } else { 1.0 / particles.mass(index) }
 }
 
 /// Key of the sort in space; what comes first in it decides first.

@@ -3,7 +3,8 @@
 //! First pass: v += ½Δt a (a of the last forces), x += Δt v: the velocity of the middle of the step, by which
 //! surfaces slip; v + ½Δt a is its forecast for the end of the step, which a gas and, as far as that is
 //! stable, the damping of contacts see. Second pass: v += ½Δt a_new. Angular velocity likewise; a sphere
-//! needs no orientation.
+//! needs no orientation. Grains that never move have 1/m = 0, and gravity does not pull them; passes over
+//! grains without such ones are built without the question.
 
 use crate::motion::chunks::{CHUNK, Loads, Push, Vectors, chunk_count, for_each_chunk, is_parallel};
 use crate::motion::grains::Grains;
@@ -80,6 +81,32 @@ pub(crate) fn drift(
     bounds: &Bounds,
     found: &mut [ChunkMotion],
 ) -> Motion {
+    if grains.some_fixed {
+        drift_all::<true>(grains, gravity, step, bounds, found)
+    } else {
+        drift_all::<false>(grains, gravity, step, bounds, found)
+    }
+}
+
+/// Acceleration [m/s²] of a grain by a force [N] and gravity; none of one that never moves, whatever acts on
+/// it.
+#[inline(always)]
+fn acceleration<const FIXED: bool>(
+    force: &Vector3<f64>,
+    inverse_mass: f64,
+    gravity: Vector3<f64>,
+) -> Vector3<f64> {
+    if FIXED && inverse_mass == 0.0 { Vector3::zeros() } else { force * inverse_mass + gravity }
+}
+
+/// [`drift`] of grains of which some never move, or none.
+fn drift_all<const FIXED: bool>(
+    grains: &mut Grains,
+    gravity: Vector3<f64>,
+    step: f64,
+    bounds: &Bounds,
+    found: &mut [ChunkMotion],
+) -> Motion {
     let count = grains.len();
     let (parallel, chunks) = (is_parallel(count), chunk_count(count));
     let Grains { centre, velocity, forecast, angular, force, torque, inverse_mass, .. } = grains;
@@ -101,7 +128,7 @@ pub(crate) fn drift(
             let (force, inverse_mass) = (&force[first..first + length], &inverse_mass[first..first + length]);
             let moving = centre.iter_mut().zip(velocity).zip(forecast);
             for (((c, v), later), (f, &im)) in moving.zip(force.iter().zip(inverse_mass)) {
-                let kick = (f * im + gravity) * half;
+                let kick = acceleration::<FIXED>(f, im, gravity) * half;
                 let middle = *v + kick;
                 c[0] += middle.x * step;
                 c[1] += middle.y * step;
@@ -151,6 +178,21 @@ pub(crate) fn kick<'a, P: Iterator<Item = (usize, &'a Push)>>(
     step: f64,
     loads: &mut Loads,
 ) {
+    if grains.some_fixed {
+        kick_all::<true, P>(grains, gravity, pushes, step, loads);
+    } else {
+        kick_all::<false, P>(grains, gravity, pushes, step, loads);
+    }
+}
+
+/// [`kick`] of grains of which some never move, or none.
+fn kick_all<'a, const FIXED: bool, P: Iterator<Item = (usize, &'a Push)>>(
+    grains: &mut Grains,
+    gravity: Vector3<f64>,
+    pushes: impl Fn(usize) -> P + Sync,
+    step: f64,
+    loads: &mut Loads,
+) {
     let half = 0.5 * step;
     let Grains { centre, velocity, angular, force, torque, slowing, inverse_mass, .. } = grains;
     let (centre, inverse_mass) = (&centre[..], &inverse_mass[..]);
@@ -170,7 +212,7 @@ pub(crate) fn kick<'a, P: Iterator<Item = (usize, &'a Push)>>(
                 }
                 let first = k * CHUNK;
                 for (n, (v, f)) in velocity.iter_mut().zip(&*force).enumerate() {
-                    *v += (f * inverse_mass[first + n] + gravity) * half;
+                    *v += acceleration::<FIXED>(f, inverse_mass[first + n], gravity) * half;
                 }
             }
         );

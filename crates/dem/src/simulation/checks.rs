@@ -12,7 +12,8 @@ use crate::feeding;
 use crate::motion::grains::Grains;
 use crate::outlets;
 use crate::setup::Setup;
-use amberfield_core::{Axis, Material, MaterialPair, Particles, Skin, Step};
+use amberfield_core::{Axis, Boundary, Material, MaterialPair, Particles, Skin, Step};
+use std::cmp::Ordering;
 
 /// `skin_m = "auto"` is this fraction of a small radius (see [`skin`]).
 const SKIN_OVER_RADIUS: f64 = 0.2;
@@ -26,6 +27,7 @@ fn bad(text: String) -> DemError {
 /// Checks everything that can be checked without neighbours.
 pub(crate) fn check(setup: &Setup) -> Result<(), DemError> {
     check_particles(&setup.particles, setup)?;
+    check_fixed(setup)?;
     outlets::check(setup)?;
     feeding::check(setup)?;
     for material in &setup.materials {
@@ -102,6 +104,12 @@ fn check_particles(particles: &Particles, setup: &Setup) -> Result<(), DemError>
             return Err(bad(format!("grain {id} has unknown material {}", grain.material.0)));
         }
         let motion = [grain.velocity, grain.angular_velocity];
+        if particles.is_fixed(i) && motion.iter().any(|vector| vector.norm() != 0.0) {
+            return Err(bad(format!(
+                "grain {id} is in a group that never moves, but has a velocity or an angular velocity; give \
+                 it zeros, or take its group out of particles.fixed_groups"
+            )));
+        }
         if !motion.iter().flatten().chain([&grain.charge]).all(|x| x.is_finite()) {
             return Err(bad(format!("grain {id}: velocity, angular velocity and charge must be finite")));
         }
@@ -111,6 +119,49 @@ fn check_particles(particles: &Particles, setup: &Setup) -> Result<(), DemError>
         }
     }
     Ok(())
+}
+
+/// Checks grains that never move: feeds bring none, no two are at one place, and none is at its own image.
+fn check_fixed(setup: &Setup) -> Result<(), DemError> {
+    let (particles, domain) = (&setup.particles, &setup.domain);
+    if particles.fixed_groups.is_empty() {
+        return Ok(());
+    }
+    let starters = particles.len() - setup.feeds.due_s.len().min(particles.len());
+    let mut fixed: Vec<usize> = (0..particles.len()).filter(|&i| particles.is_fixed(i)).collect();
+    if let Some(&grain) = fixed.iter().find(|&&grain| grain >= starters) {
+        let id = particles.id[grain];
+        return Err(bad(format!(
+            "grain {id} of a feed is in a group that never moves; give the feed another group"
+        )));
+    }
+    let charged = setup.field.as_ref().filter(|field| field.solver.is_none());
+    for &grain in fixed.iter().filter(|&&grain| charged.is_some_and(|field| field.member[grain])) {
+        let place = particles.position[grain];
+        for axis in Axis::ALL {
+            let (k, faces) = (axis.index(), &domain.faces()[axis.index()]);
+            let mirrors = |face: &Boundary| face.is_conductor() || face.is_insulating();
+            let on = |face: &Boundary, end: f64| mirrors(face) && place[k] == end;
+            if on(&faces[0], domain.min()[k]) || on(&faces[1], domain.max()[k]) {
+                let id = particles.id[grain];
+                return Err(bad(format!(
+                    "grain {id} never moves and has its centre on a face along {axis} that mirrors its \
+                     charge, where the field has no value; move it off the face"
+                )));
+            }
+        }
+    }
+    let compare = |a: &usize, b: &usize| {
+        let [a, b] = [a, b].map(|grain| particles.position[*grain]);
+        (0..3).map(|k| a[k].total_cmp(&b[k])).find(|order| order.is_ne()).unwrap_or(Ordering::Equal)
+    };
+    fixed.sort_by(compare);
+    // Lists have no pairs of them, so that nobody else would see it.
+    let same = fixed.windows(2).find(|pair| particles.position[pair[0]] == particles.position[pair[1]]);
+    same.map_or(Ok(()), |pair| {
+        let [a, b] = [particles.id[pair[0]], particles.id[pair[1]]];
+        Err(DemError::Coincident { id_i: a.min(b), id_j: a.max(b) })
+    })
 }
 
 fn check_material(material: &Material) -> Result<(), DemError> {

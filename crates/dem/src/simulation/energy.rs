@@ -17,7 +17,7 @@ pub struct Energies {
     /// Elastic energy of the contacts: normal, tangential and rolling springs, less what adhesion gained
     /// since they were made [J].
     pub contact: f64,
-    /// −Σ m g·x [J], zero at the origin; along periodic axes with the coordinates that the run uses.
+    /// −Σ m g·x [J] of the grains that move, zero at the origin; along periodic axes with the coordinates that the run uses.
     pub gravity: f64,
     /// ½ Σ q (V + V_external) [J]; `None` when not asked for or without a field.
     pub electric: Option<f64>,
@@ -40,9 +40,10 @@ pub enum ElectricEnergy {
     Evaluated,
 }
 
-/// ½ m v² + ½ I ω², I = (2/5) m r².
+/// ½ m v² + ½ I ω², I = (2/5) m r², of the grains that move.
 pub(crate) fn kinetic(grains: &Grains) -> f64 {
-    (0..grains.len())
+    grains
+        .moving()
         .map(|i| {
             let r = grains.centre[i][3];
             let spin = 0.4 * r * r * grains.angular[i].norm_squared();
@@ -51,9 +52,9 @@ pub(crate) fn kinetic(grains: &Grains) -> f64 {
         .sum()
 }
 
-/// −Σ m g·x, and the sum of the sizes of its terms.
+/// −Σ m g·x of the grains that move, and the sum of the sizes of its terms.
 pub(crate) fn gravity(grains: &Grains, gravity: Vector3<f64>) -> (f64, f64) {
-    let terms = (0..grains.len()).map(|i| -grains.position(i).dot(&gravity) / grains.inverse_mass[i]);
+    let terms = grains.moving().map(|i| -grains.position(i).dot(&gravity) / grains.inverse_mass[i]);
     terms.fold((0.0, 0.0), |(sum, sizes), term| (sum + term, sizes + term.abs()))
 }
 

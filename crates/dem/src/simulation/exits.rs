@@ -138,6 +138,10 @@ impl Simulation {
     /// Face through which a grain leaves by touching it; `None` where a wall holds the grain off.
     fn face_touched_by(&self, i: usize) -> Option<Beyond> {
         let touched = self.ways_out.touched(&self.bounds, &self.grains.centre[i])?;
+        // What never moves may stand in a face.
+        if self.grains.is_fixed(i) {
+            return None;
+        }
         let mut foot = self.grains.position(i);
         foot[touched.axis] = match touched.side? {
             Side::Min => self.bounds.min[touched.axis],

@@ -54,7 +54,7 @@ pub struct StepRestitution {
 /// Limits on the time step, without the step.
 #[derive(Clone, Debug)]
 pub(crate) struct Limits {
-    /// Radius of the smallest grain [m].
+    /// Radius of the smallest grain that moves [m].
     smallest: f64,
     /// Rayleigh time of the tightest grain [s].
     rayleigh: f64,
@@ -88,7 +88,9 @@ impl PullOff {
     fn of(particles: &Particles, table: &PairTable, materials: usize) -> Option<Self> {
         let mut found: Option<Self> = None;
         for i in 0..particles.len() {
-            let (radius, mass) = (particles.radius[i], particles.mass(i));
+            // A grain that never moves has its stretch with others, and no time of its own.
+            let mass = if particles.is_fixed(i) { f64::INFINITY } else { particles.mass(i) };
+            let radius = particles.radius[i];
             for other in 0..materials {
                 let Some(scale) = table.jkr(particles.material[i].0, other as u16, 0.5 * radius) else {
                     continue;
@@ -129,7 +131,8 @@ impl Limits {
         gas: Option<UniformGas>,
     ) -> Self {
         let (mut rayleigh, mut hertz) = (f64::INFINITY, f64::INFINITY);
-        for i in 0..particles.len() {
+        // A pair of which one never moves has all of the other's mass, so that it is no tighter than two equal.
+        for i in particles.moving() {
             let (radius, material) = (particles.radius[i], &materials[particles.material[i].0 as usize]);
             let shear = hertz_mindlin::shear_modulus(material.young_pa, material.poisson);
             let density = particles.density[i];
@@ -138,7 +141,7 @@ impl Limits {
             let mass = particles.mass(i);
             hertz = hertz.min(hertz_mindlin::contact_time(young, 0.5 * radius, 0.5 * mass, 1.0));
         }
-        let smallest = particles.radius.iter().copied().fold(f64::INFINITY, f64::min);
+        let smallest = particles.moving().map(|i| particles.radius[i]).fold(f64::INFINITY, f64::min);
         let pull_off = PullOff::of(particles, table, materials.len());
         let (flow, electric, walls, warned) = (None, None, 0.0, false);
         Self { smallest, rayleigh, hertz, pull_off, gas, flow, electric, walls, warned }

@@ -3,6 +3,7 @@
 pub(crate) mod books;
 mod check_motion;
 pub(crate) mod checks;
+pub(crate) mod earlier;
 mod electric;
 pub(crate) mod energy;
 pub(crate) mod exits;

@@ -3,6 +3,7 @@
 use super::Simulation;
 use super::energy::{self, ElectricEnergy, Energies};
 use super::guards::Guard;
+use super::state::State;
 use super::timing::STAGE_NAMES;
 use crate::contacts::walls::WallLoad;
 use crate::error::DemError;
@@ -64,7 +65,7 @@ impl Simulation {
     pub fn particles(&self) -> Particles {
         let mut sorted: Vec<u32> = (0..self.grains.len() as u32).collect();
         sorted.sort_unstable_by_key(|&i| self.grains.original[i as usize]);
-        sorted
+        let grains = sorted
             .into_iter()
             .map(|i| {
                 let i = i as usize;
@@ -74,7 +75,16 @@ impl Simulation {
                 grain.angular_velocity = self.grains.angular[i];
                 grain
             })
-            .collect()
+            .collect();
+        Particles { fixed_groups: self.particles.fixed_groups.clone(), ..grains }
+    }
+
+    /// Grains of a state of this run, in the order of the set-up, positions inside the domain.
+    ///
+    /// # Errors
+    /// A state of another run.
+    pub fn particles_of(&self, state: &State) -> Result<Particles, DemError> {
+        state.particles(&self.particles, &self.domain)
     }
 
     /// Electric force on each grain in the last step [N], in the order of [`Self::particles`]; `None` without

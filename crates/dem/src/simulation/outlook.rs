@@ -62,6 +62,7 @@ impl Outlook {
             walls: walls.len(),
             moving: moving.is_some(),
             levels: LinkedCells::new(level_radius, skin_m).level_count(),
+            fixed: particles.len() - particles.moving().count(),
             feeding: feeding.as_ref(),
             outlets: setup.outlets.len(),
             gas: None,

@@ -1,6 +1,7 @@
 //! Overlaps: looked at at the start, and watched in every step.
 
 use super::Simulation;
+use super::earlier::Carried;
 use crate::contacts::neighbours::Listed;
 use crate::contacts::walls::{ContactWalls, TouchingWall};
 use crate::contacts::{Contacts, Depths};
@@ -40,29 +41,36 @@ impl Simulation {
     /// The touching contact with the largest overlap over the smaller radius; `None` without contacts.
     #[must_use]
     pub fn deepest(&self) -> Option<Deepest> {
-        let found = self.deepest_pair().into_iter().chain(self.deepest_in_wall());
+        self.deepest_of(None)
+    }
+
+    /// [`Self::deepest`] of the contacts that are not from another run.
+    fn deepest_of(&self, carried: Option<&Carried>) -> Option<Deepest> {
+        let found = self.deepest_pair(carried).into_iter().chain(self.deepest_in_wall(carried));
         found.max_by(|a, b| a.share.total_cmp(&b.share))
     }
 
-    /// The deepest contact of two grains.
-    fn deepest_pair(&self) -> Option<Deepest> {
+    /// The deepest contact of two grains that is not from another run.
+    fn deepest_pair(&self, carried: Option<&Carried>) -> Option<Deepest> {
         let (grains, neighbours) = (&self.grains, &self.contacts.neighbours);
         let depth = |pair: &Listed| {
             let (a, b) = (grains.centre[pair.i][3], grains.centre[pair.j][3]);
             let overlap_m = a + b - pair.distance(grains, &neighbours.shifts);
             (overlap_m, overlap_m / a.min(b))
         };
-        let pair = neighbours.touching().max_by(|a, b| depth(a).1.total_cmp(&depth(b).1))?;
+        let new = neighbours.touching().filter(|pair| !self.is_carried_pair(carried, pair));
+        let pair = new.max_by(|a, b| depth(a).1.total_cmp(&depth(b).1))?;
         let (overlap_m, share) = depth(&pair);
         let (one, other) = (self.id_of(pair.i), self.id_of(pair.j));
         Some(Deepest { id: one.min(other), partner: format!("grain {}", one.max(other)), overlap_m, share })
     }
 
-    /// The deepest contact of a grain with a wall.
-    fn deepest_in_wall(&self) -> Option<Deepest> {
+    /// The deepest contact of a grain with a wall that is not from another run.
+    fn deepest_in_wall(&self, carried: Option<&Carried>) -> Option<Deepest> {
         let share = |touching: &TouchingWall<'_>| touching.overlap / self.grains.centre[touching.grain][3];
         let touching = self.contacts.walls.iter().flat_map(ContactWalls::touching);
-        let deepest = touching.max_by(|a, b| share(a).total_cmp(&share(b)))?;
+        let new = touching.filter(|touching| !self.is_carried_to_wall(carried, touching));
+        let deepest = new.max_by(|a, b| share(a).total_cmp(&share(b)))?;
         Some(Deepest {
             id: self.id_of(deepest.grain),
             partner: format!("wall '{}'", deepest.name),
@@ -74,7 +82,19 @@ impl Simulation {
     /// Largest overlaps of the contacts as they are, computed anew.
     pub(super) fn depths(&self) -> Depths {
         let share = |found: Option<Deepest>| found.map_or(0.0, |deepest| deepest.share);
-        Depths { grains: share(self.deepest_pair()), walls: share(self.deepest_in_wall()) }
+        Depths { grains: share(self.deepest_pair(None)), walls: share(self.deepest_in_wall(None)) }
+    }
+
+    /// Whether a pair touched in another run already.
+    fn is_carried_pair(&self, carried: Option<&Carried>, pair: &Listed) -> bool {
+        let original = |i: usize| self.grains.original[i];
+        carried.is_some_and(|carried| carried.has_pair([original(pair.i), original(pair.j)]))
+    }
+
+    /// Whether a contact with a wall was as deep in another run already.
+    fn is_carried_to_wall(&self, carried: Option<&Carried>, touching: &TouchingWall<'_>) -> bool {
+        let grain = self.grains.original[touching.grain];
+        carried.is_some_and(|carried| carried.has_wall(grain, &touching.normal, touching.overlap))
     }
 
     /// Id of the grain of a sorted index.
@@ -82,15 +102,18 @@ impl Simulation {
         self.particles.id[self.grains.original[index].index()]
     }
 
-    /// Refuses overlaps at the start that are not allowed, and tells of the largest of the others.
-    pub(super) fn check_overlaps(&mut self) -> Result<(), DemError> {
-        self.allowed = allowed(self.contacts.depths(), self.time.allow_overlap);
-        let Some(deepest) = self.deepest() else { return Ok(()) };
-        let Deepest { id, partner, overlap_m, share } = deepest;
-        if share > DEEPEST_AT_START && !self.time.allow_overlap {
-            let count = self.shares().filter(|share| *share > DEEPEST_AT_START).count();
+    /// Refuses overlaps at the start that are not allowed, and tells of the largest of the others. Those that
+    /// another run had are.
+    pub(super) fn check_overlaps(&mut self, carried: Option<&Carried>) -> Result<(), DemError> {
+        let depths = self.contacts.depths();
+        let was_deep = carried.is_some() && depths.grains > DEEPEST;
+        self.allowed = allowed(depths, self.time.allow_overlap || was_deep);
+        let new = self.deepest_of(carried).filter(|new| new.share > DEEPEST_AT_START);
+        if let Some(Deepest { id, partner, overlap_m, share }) = new.filter(|_| !self.time.allow_overlap) {
+            let count = self.shares(carried).filter(|share| *share > DEEPEST_AT_START).count();
             return Err(DemError::Overlap { count, id, partner, overlap_m, share });
         }
+        let Some(Deepest { id, partner, overlap_m, share }) = self.deepest() else { return Ok(()) };
         tracing::info!(
             "{} contacts at the start; the largest overlap is {overlap_m:.3e} m, {share:.2e} of a radius, of \
              grain {id} and {partner}",
@@ -114,9 +137,9 @@ impl Simulation {
             return Ok(());
         }
         let (deepest, limit) = if is_wall {
-            (self.deepest_in_wall(), allowed.walls)
+            (self.deepest_in_wall(None), allowed.walls)
         } else {
-            (self.deepest_pair(), allowed.grains)
+            (self.deepest_pair(None), allowed.grains)
         };
         let Some(Deepest { id, partner, overlap_m, share }) = deepest else { return Ok(()) };
         let i = (0..self.grains.len()).find(|&i| self.id_of(i) == id);
@@ -133,14 +156,16 @@ impl Simulation {
         })
     }
 
-    /// Overlaps over the smaller radius of all touching contacts.
-    fn shares(&self) -> impl Iterator<Item = f64> + '_ {
+    /// Overlaps over the smaller radius of all touching contacts that are not from another run.
+    fn shares<'a>(&'a self, carried: Option<&'a Carried>) -> impl Iterator<Item = f64> + 'a {
         let (grains, Contacts { neighbours, walls, .. }) = (&self.grains, &self.contacts);
-        let pairs = neighbours.touching().map(move |pair| {
+        let new = neighbours.touching().filter(move |pair| !self.is_carried_pair(carried, pair));
+        let pairs = new.map(move |pair| {
             let (a, b) = (grains.centre[pair.i][3], grains.centre[pair.j][3]);
             (a + b - pair.distance(grains, &neighbours.shifts)) / a.min(b)
         });
         let touching = walls.iter().flat_map(ContactWalls::touching);
+        let touching = touching.filter(move |touching| !self.is_carried_to_wall(carried, touching));
         pairs.chain(touching.map(move |touching| touching.overlap / grains.centre[touching.grain][3]))
     }
 }

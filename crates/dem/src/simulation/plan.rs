@@ -17,6 +17,8 @@ pub(super) struct Planned<'a> {
     pub(super) moving: bool,
     /// Levels of size of the neighbour search.
     pub(super) levels: usize,
+    /// Number of grains that never move.
+    pub(super) fixed: usize,
     pub(super) feeding: Option<&'a Feeding>,
     /// Number of outlets.
     pub(super) outlets: usize,
@@ -29,7 +31,7 @@ pub(super) struct Planned<'a> {
 
 /// The plan of a run, with the field's own plan at its end.
 pub(super) fn plan(planned: &Planned<'_>) -> Plan {
-    let &Planned { features, periodic, walls, moving, levels, feeding, outlets, .. } = planned;
+    let &Planned { features, periodic, walls, moving, levels, fixed, feeding, outlets, .. } = planned;
     let &Planned { gas, transfer, field_asked, field, .. } = planned;
     let tangential = match features.cohesion {
         Cohesion::None => "a pair of materials has friction",
@@ -73,6 +75,12 @@ pub(super) fn plan(planned: &Planned<'_>) -> Plan {
         "nothing can turn a grain",
     );
     plan.decide(periodic, "periodic images", "an axis is periodic".to_owned(), "no axis is periodic");
+    plan.decide(
+        fixed > 0,
+        "fixed grains",
+        format!("{fixed} grain(s) of particles.fixed_groups never move"),
+        "no particles.fixed_groups",
+    );
     let [feeds, fed] = feeding.map_or([0; 2], Feeding::size);
     plan.decide(feeds > 0, "feeds", format!("{feeds} feed(s) with {fed} grains"), "no [[feeds]]");
     plan.decide(outlets > 0, "outlets", format!("{outlets} outlet(s)"), "no [[outlets]]");

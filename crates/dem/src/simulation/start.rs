@@ -1,5 +1,6 @@
 //! Starting a run, afresh or from a checkpoint.
 
+use super::earlier::Carried;
 use super::exits::WaysOut;
 use super::guards::Limits;
 use super::state::{Progress, State};
@@ -32,7 +33,12 @@ impl Simulation {
     /// # Errors
     /// Values that are impossible, overlaps, a step beyond a stability guard, a field that cannot be
     /// computed.
-    pub fn new(mut setup: Setup) -> Result<Self, DemError> {
+    pub fn new(setup: Setup) -> Result<Self, DemError> {
+        Self::begin(setup, None)
+    }
+
+    /// Starts a run, with what its contacts have from another one.
+    pub(super) fn begin(mut setup: Setup, carried: Option<&Carried>) -> Result<Self, DemError> {
         feeding::merge(&mut setup);
         checks::check(&setup)?;
         let skin = checks::skin(&setup);
@@ -41,11 +47,13 @@ impl Simulation {
         run.leave_out_what_has_yet_to_come();
         run.rebuild();
         checks::check_centres(&run.grains, &run.contacts, &run.particles)?;
+        run.carry(carried);
         run.contacts.push_grains(&run.grains, AT_START, None, &mut run.scratch.loads);
         run.push_off_walls(AT_START);
-        run.check_overlaps()?;
+        run.check_overlaps(carried)?;
         run.choose_step()?;
         run.forces_at_start()?;
+        run.carry_exactly(carried);
         Ok(run)
     }
 
@@ -144,6 +152,7 @@ impl Simulation {
             walls: wall_count,
             moving: contacts.walls.as_ref().is_some_and(ContactWalls::move_at_all),
             levels: contacts.neighbours.level_count(),
+            fixed: particles.len() - particles.moving().count(),
             feeding: feeding.as_ref(),
             outlets: outlet_count,
             gas: gas.as_ref(),
@@ -205,7 +214,7 @@ impl Simulation {
         };
         if !self.progress.step_s.is_finite() {
             return Err(DemError::Setup(
-                "step_s = \"auto\" needs at least one grain; give a number".to_owned(),
+                "step_s = \"auto\" needs at least one grain that moves; give a number".to_owned(),
             ));
         }
         if self.field.is_some() {

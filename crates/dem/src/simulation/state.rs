@@ -96,7 +96,8 @@ impl State {
             }
             grain
         };
-        Ok(order.into_iter().map(grain).collect())
+        let there: Particles = order.into_iter().map(grain).collect();
+        Ok(Particles { fixed_groups: start.fixed_groups.clone(), ..there })
     }
 
     /// Fits the charges to the grains of a merged set-up that ends at another time: feeds bring more, or

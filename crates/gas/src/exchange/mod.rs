@@ -59,7 +59,7 @@ pub struct GrainsView<'a> {
     pub velocity: &'a [Vector3<f64>],
     /// Angular velocity [rad/s]; empty where nothing spins.
     pub angular: &'a [Vector3<f64>],
-    /// Inverse mass [1/kg].
+    /// Inverse mass [1/kg]; 0 of a grain that never moves.
     pub inverse_mass: &'a [f64],
 }
 

@@ -260,7 +260,7 @@ pub(super) static KEYS: &[Key] = &[
     )
     .without("generate")
     .example("\"grains.csv\"")
-    .also(&["csv", "path", "from", "snapshot", "dump", "vtk", "vtu"]),
+    .also(&["csv", "path", "snapshot", "dump", "vtk", "vtu"]),
     Key::new(
         "units",
         Form::Word(&["si", "cgs", "micro", "nano", "real", "metal", "electron"]),
@@ -282,6 +282,26 @@ pub(super) static KEYS: &[Key] = &[
         .without("file")
         .example("{ material = \"glass\", count = 1000, radius_m = 5e-4, seed = 1 }")
         .also(&["generator", "create", "insert", "random", "pack"]),
+    Key::new(
+        "from",
+        Form::Text,
+        "Checkpoint of another run, or that run's folder for its newest one, from whose grains this scene \
+         begins at time 0. The scene may differ in everything but the names of the grains' materials. Contacts \
+         keep their springs where stiffness, friction and adhesion of both materials, and the wall, are the \
+         same. Overlaps that the run had are allowed. Charge on walls, fields and gas begin anew.",
+    )
+    .without("file or generate")
+    .example("\"runs/filled/checkpoints/step_000000010000.amber\"")
+    .also(&["checkpoint", "restart", "read_restart", "initial", "start_from"]),
+    Key::new(
+        "fixed_groups",
+        Form::Texts,
+        "Groups whose grains never move nor turn, as if they were infinitely heavy. They touch grains that \
+         move, carry charge and trade it, and a gas feels their drag. Two of them, or one and a wall, do \
+         nothing to each other. Grains of `from` come to rest; other grains must have no velocity.",
+    )
+    .example("[\"bed\"]")
+    .also(&["fixed", "frozen", "freeze", "static", "immobile"]),
     Key::new(
         "on_exit",
         Form::Word(&["stop", "delete"]),

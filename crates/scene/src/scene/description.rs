@@ -2,8 +2,8 @@
 
 use super::physics::Physics;
 use amberfield_core::{
-    Cohesion, Domain, Feeds, FieldSettings, Gas, Material, MaterialPair, Outlet, Particles, RollingModel,
-    TimeSettings, Wall,
+    Cohesion, ContactRules, Domain, Feeds, FieldSettings, Gas, Material, MaterialPair, Outlet, Particles,
+    RollingModel, TimeSettings, Wall,
 };
 use serde::{Deserialize, Serialize};
 use std::path::PathBuf;
@@ -42,6 +42,8 @@ pub struct Scene {
     pub wall_patches: Vec<Option<String>>,
     /// Particles at the start.
     pub particles: Particles,
+    /// Run from whose checkpoint the particles are; `None` where they are from a file or made.
+    pub filled: Option<Filled>,
     /// Grains that come while the run goes on.
     pub feeds: Feeds,
     /// Places at which grains leave, sorted by name.
@@ -64,6 +66,21 @@ pub struct Scene {
     pub warnings: Vec<String>,
     pub(super) resolved: String,
     pub(super) physics: Physics,
+}
+
+/// Run from whose checkpoint a scene has its grains.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Filled {
+    /// Checkpoint.
+    pub checkpoint: PathBuf,
+    /// Rules of the contacts in that run.
+    pub rules: ContactRules,
+    /// Whether the scene is the same as that run's, but for where its grains come from.
+    pub is_same: bool,
+    /// Physics of that run.
+    pub(super) physics: Physics,
+    /// Fingerprint of the checkpoint.
+    pub(super) print: u64,
 }
 
 impl Scene {

@@ -5,6 +5,8 @@ mod description;
 mod domain;
 mod electric_field;
 mod feeds;
+mod filled;
+mod fixed;
 mod gas;
 mod input;
 mod others;
@@ -20,7 +22,7 @@ mod wall_motion;
 mod walls;
 
 pub use description::{
-    ChargeTransferSettings, ElectricFieldSettings, OpenFoamSettings, OutputSettings, Purpose, Scene,
+    ChargeTransferSettings, ElectricFieldSettings, Filled, OpenFoamSettings, OutputSettings, Purpose, Scene,
     SolverLoss,
 };
 pub use input::SceneInput;

@@ -1,5 +1,8 @@
 //! Section `[particles]`.
 
+use super::description::Filled;
+use super::filled::read_filled;
+use super::fixed::fix_groups;
 use crate::SceneError;
 use crate::generate::{GenerateContext, generate};
 use crate::materials::Materials;
@@ -17,6 +20,8 @@ const SAME_PERIOD: f64 = 1e-5;
 #[derive(Debug)]
 pub(super) struct ParticlesSection {
     pub(super) read: ReadParticles,
+    /// Run from whose checkpoint they are.
+    pub(super) filled: Option<Filled>,
     /// Treatment of grains that leave the domain.
     pub(super) on_exit: OnExit,
     /// Switch for grains that overlap at the start.
@@ -46,8 +51,8 @@ pub(super) fn read_section(
     let table = match document.table("particles")? {
         Some(table) => table,
         None if has_feeds => {
-            let (on_exit, allow_overlap, warnings) = Default::default();
-            return Ok(ParticlesSection { read: nothing(), on_exit, allow_overlap, warnings });
+            let (filled, on_exit, allow_overlap, warnings) = Default::default();
+            return Ok(ParticlesSection { read: nothing(), filled, on_exit, allow_overlap, warnings });
         }
         None => {
             let advice = "add [particles] with file = \"grains.csv\" or generate = { … }";
@@ -58,20 +63,21 @@ pub(super) fn read_section(
         table.word("on_exit", &[("stop", OnExit::Stop), ("delete", OnExit::Delete)])?.unwrap_or_default();
     let allow_overlap = table.boolean("allow_overlap")?.unwrap_or(false);
     let mut warnings = Vec::new();
-    let read = match (table.text("file")?, table.table("generate")?) {
-        (Some(_), Some(_)) => {
-            return Err(table.bad("generate", "file is given too; give exactly one of file, generate"));
-        }
-        (None, None) if has_feeds => nothing(),
-        (None, None) => return Err(table.missing("file", "give file = \"grains.csv\" or generate = { … }")),
-        (Some(file), None) => {
+    let mut filled = None;
+    refuse_keys_of_files(&table)?;
+    let mut read = match origin(&table)? {
+        None if has_feeds => nothing(),
+        None => return Err(table.missing("file", "give file = \"grains.csv\" or generate = { … }")),
+        Some(Origin::File(file)) => {
             let context = GrainContext { domain, materials: names(&table, materials)?, allow_points };
             read_file(&table, file, &context, source, &mut warnings)?
         }
-        (None, Some(generator)) => {
-            if let Some(key) = KEYS_OF_FILES.into_iter().find(|key| table.has(key)) {
-                return Err(table.bad(key, "says how a file is read, but there is none; leave it out"));
-            }
+        Some(Origin::Run(from)) => {
+            let (grains, run) = read_filled(&table, from, domain, materials, source)?;
+            filled = Some(run);
+            grains
+        }
+        Some(Origin::Generator(generator)) => {
             let Some(domain) = domain else {
                 return Err(table.bad("generate", "a generator needs [domain]; add it"));
             };
@@ -79,7 +85,41 @@ pub(super) fn read_section(
             generate(&generator, &mut context)?
         }
     };
-    Ok(ParticlesSection { read, on_exit, allow_overlap, warnings })
+    fix_groups(&table, &mut read, filled.is_some())?;
+    Ok(ParticlesSection { read, filled, on_exit, allow_overlap, warnings })
+}
+
+/// Origin of the grains at the start.
+enum Origin<'a> {
+    /// File of grains.
+    File(&'a str),
+    /// Generator.
+    Generator(SceneTable<'a>),
+    /// Another run.
+    Run(&'a str),
+}
+
+/// Origin that a section names; `None` where it names none.
+fn origin<'a>(table: &SceneTable<'a>) -> Result<Option<Origin<'a>>, SceneError> {
+    let file = table.text("file")?.map(Origin::File);
+    let generator = table.table("generate")?.map(Origin::Generator);
+    let run = table.text("from")?.map(Origin::Run);
+    let named = [("file", file.is_some()), ("generate", generator.is_some()), ("from", run.is_some())];
+    let mut named = named.into_iter().filter(|(_, given)| *given).map(|(key, _)| key);
+    if let (Some(first), Some(second)) = (named.next(), named.next()) {
+        let problem = format!("{first} is given too; give exactly one of file, generate, from");
+        return Err(table.bad(second, problem));
+    }
+    Ok(file.or(generator).or(run))
+}
+
+/// Refuses keys that say how a file is read where there is none.
+fn refuse_keys_of_files(table: &SceneTable<'_>) -> Result<(), SceneError> {
+    let key = KEYS_OF_FILES.into_iter().find(|key| table.has(key) && !table.has("file"));
+    let Some((key, _)) = key.zip(["generate", "from"].into_iter().find(|other| table.has(other))) else {
+        return Ok(());
+    };
+    Err(table.bad(key, "says how a file is read, but there is none; leave it out"))
 }
 
 /// Materials that a file's names, or the numbers of its types, stand for.

@@ -25,7 +25,13 @@ const TECHNICAL: [&str; 12] = [
 const OF_SOLVER: &str = "solver";
 const RANKS: &str = "solver.ranks";
 /// Keys whose values are names of files: their contents count instead.
-const FILES: [&str; 4] = ["particles.file", "particles.generate.charge_C.from_file", "stl", "table"];
+const FILES: [&str; 5] =
+    ["particles.file", "particles.from", "particles.generate.charge_C.from_file", "stl", "table"];
+/// Section of where grains come from, and its key that decides more than that.
+const PARTICLES: &str = "particles.";
+const FIXED_GROUPS: &str = "particles.fixed_groups";
+/// Section of grains that come later, by a clock that begins anew.
+const FEEDS: &str = "feeds[";
 /// Differences that a message names at most.
 const MOST_NAMED: usize = 5;
 
@@ -70,6 +76,25 @@ impl Physics {
         let other = pairs.filter(|((_, now), (_, before))| now != before);
         changes.extend(other.map(|((name, _), _)| format!("{name} has other contents")));
         changes
+    }
+}
+
+impl Physics {
+    /// Whether a run of an earlier scene that begins anew here goes on as it did: the scenes differ in
+    /// nothing but where grains come from, which is here the file of a fingerprint, and nothing but the
+    /// grains has a clock.
+    pub(super) fn goes_on_from(&self, earlier: &Self, print: u64) -> bool {
+        let rest = |physics: &Self| {
+            let keys = physics.keys.iter();
+            let of_grains = |key: &str| key.starts_with(PARTICLES) && key != FIXED_GROUPS;
+            let rest = keys.filter(|(key, _)| !of_grains(key));
+            rest.map(|(key, value)| (key.clone(), value.clone())).collect::<Vec<_>>()
+        };
+        let known = |of: u64| of == print || earlier.files.iter().any(|(_, before)| *before == of);
+        let has_clock = |key: &String| key.starts_with(FEEDS) || key.contains("].motion");
+        rest(self) == rest(earlier)
+            && self.files.iter().all(|(_, of)| known(*of))
+            && !self.keys.keys().any(has_clock)
     }
 }
 

@@ -102,6 +102,12 @@ pub(super) fn parse(
     let mut source = SceneSource::new(folder, mesh);
     let mut scene = read_sections(&document, &mut source, purpose)?;
     scene.physics = Physics::new(&entries, &source);
+    if let Some(filled) = &mut scene.filled {
+        filled.is_same = scene.physics.goes_on_from(&filled.physics, filled.print);
+        // A folder stands for its newest checkpoint, which may be another one later.
+        let checkpoint = filled.checkpoint.to_string_lossy().into_owned();
+        change_texts(&mut entries, FROM, &|_| checkpoint.clone());
+    }
     scene.resolved = resolved(&entries, folder);
     Ok(scene)
 }
@@ -161,6 +167,7 @@ fn read_sections(
         walls: walls.walls,
         wall_patches: walls.patches,
         particles: section.read.particles,
+        filled: section.filled,
         feeds: fed.feeds,
         outlets,
         groups: section.read.groups,
@@ -178,9 +185,12 @@ fn read_sections(
     Ok(scene)
 }
 
+/// Key of the run from whose checkpoint grains are.
+const FROM: &[&str] = &["particles", "from"];
 /// Keys whose values are paths relative to the scene's folder.
-const PATHS: [&[&str]; 6] = [
+const PATHS: [&[&str]; 7] = [
     &["particles", "file"],
+    FROM,
     &["particles", "generate", "charge_C", "from_file"],
     &["solver", "openfoam_case"],
     &["walls", "*", "stl"],

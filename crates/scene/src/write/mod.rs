@@ -11,7 +11,7 @@ mod snapshot;
 mod vtu;
 
 pub use atomic::{read_table, write_atomically, write_json, write_rows, write_table, write_text};
-pub use checkpoint::{read_checkpoint, write_checkpoint};
+pub use checkpoint::{read_checkpoint, read_checkpoint_of_any, write_checkpoint};
 pub use field_csv::{FieldColumns, FieldComponents, FieldReport, FieldReportSeconds, write_field_csv};
 pub use history::{HistoryFile, HistoryValue};
 pub use particles_csv::write_particles_csv;

@@ -3,7 +3,7 @@
 use crate::common::{Folder, GRAINS, PLATE, SCENE};
 use amberfield_core::{CouplingInterval, ForceLimit, Method, Permittivity, Tuning};
 use amberfield_scene::{
-    ElectricFieldSettings, Physics, Purpose, parse_scene, read_checkpoint, write_checkpoint,
+    ElectricFieldSettings, Physics, Purpose, SavedGrains, parse_scene, read_checkpoint, write_checkpoint,
 };
 use nalgebra::Vector3;
 use proptest::prelude::*;
@@ -172,7 +172,7 @@ proptest! {
     ) {
         let folder = Folder::good();
         let path = folder.file("a.amber");
-        write_checkpoint(&path, &Physics::default(), &vec![1.0_f64; 20]).unwrap();
+        write_checkpoint(&path, &Physics::default(), &SavedGrains::default(), &vec![1.0_f64; 20]).unwrap();
         let good = std::fs::read(&path).unwrap();
         let mut damaged = good.clone();
         for Change { place, byte, .. } in &changes {

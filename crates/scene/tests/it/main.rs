@@ -8,6 +8,7 @@ mod common;
 mod dialects;
 mod dumps;
 mod feeds;
+mod filled;
 mod generators;
 mod good_scenes;
 mod keys;

@@ -1,8 +1,8 @@
 //! A run of a study.
 
-use crate::run::{SolverFolder, connect_solver, read_scene, setup_of};
+use crate::run::{SolverFolder, begin, connect_solver, read_scene, setup_of};
 use amberfield_core::Vector3;
-use amberfield_dem::{ElectricEnergy, Simulation};
+use amberfield_dem::ElectricEnergy;
 use amberfield_scene::Purpose;
 use amberfield_study::sweep::Moved;
 use std::path::Path;
@@ -21,7 +21,7 @@ pub(super) fn simulate(scene: &Path, set: &[String], nudge: f64, looks: usize) -
     let solver = connect_solver(&mut scene, &folder).map_err(said)?;
     let setup = setup_of(&mut scene, None, solver).map_err(said)?;
     let (domain, end_s) = (setup.domain.clone(), setup.time.end_s);
-    let mut run = Simulation::new(setup).map_err(|error| error.to_string())?;
+    let mut run = begin(&scene, setup).map_err(said)?;
     let start = run.particles();
     // Without the jumps by a period.
     let (mut before, mut now) = (start.position.clone(), start.position.clone());

@@ -13,7 +13,7 @@ use crate::motion::grains::Grains;
 use amberfield_core::{RollingModel, Vector3};
 
 /// Cosine of the largest turn between two steps for which a contact is still the same (60°).
-const SAME_CONTACT: f64 = 0.5;
+pub(crate) const SAME_CONTACT: f64 = 0.5;
 
 /// Data that every chunk reads.
 #[derive(Clone, Copy)]

@@ -10,8 +10,9 @@ mod parts;
 pub(crate) mod surfaces;
 mod touches;
 
+pub(crate) use forces::SAME_CONTACT;
 pub use loads::WallLoad;
-pub(crate) use touches::{Met, Touch, Touching};
+pub(crate) use touches::{Met, Touch, Touching, of_grain};
 
 use crate::contacts::cells::NO_SHIFT;
 use crate::contacts::material_pairs::{Features, PairTable};
@@ -34,6 +35,8 @@ pub(crate) struct TouchingWall<'a> {
     pub(crate) name: &'a str,
     /// Material of the wall.
     pub(crate) material: u16,
+    /// Direction from the grain to the wall.
+    pub(crate) normal: Vector3<f64>,
     /// Overlap, and that with the line where the contact joins a deeper one, as in [`surfaces::Found`] [m].
     pub(crate) overlap: f64,
     pub(crate) joined: f64,
@@ -267,6 +270,7 @@ impl ContactWalls {
                         grain: k * CHUNK + entry.local as usize,
                         name: &part.name,
                         material: part.material,
+                        normal: contact.normal,
                         overlap: contact.overlap,
                         joined: contact.joined,
                         spring: contact.spring,

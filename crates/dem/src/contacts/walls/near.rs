@@ -35,6 +35,10 @@ impl ChunkWalls {
         let mut near = Vec::new();
         let mut most = 0;
         for i in k * CHUNK..grains.len().min((k + 1) * CHUNK) {
+            // Walls do nothing to what never moves.
+            if grains.is_fixed(i) {
+                continue;
+            }
             let (centre, reach) = (grains.position(i), grains.centre[i][3] + skin);
             let first = self.triangles.len();
             for (shift, image) in images(domain, shifts, centre, outside.add_scalar(reach)) {

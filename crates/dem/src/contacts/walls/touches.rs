@@ -1,12 +1,13 @@
 //! Touching contacts with walls, one by one, for those who follow and charge them.
 
 use super::ContactWalls;
+use super::forces::SAME_CONTACT;
 use super::near::images;
 use crate::contacts::cells::NO_SHIFT;
-use crate::contacts::memory::{Follow, Growth};
+use crate::contacts::memory::{Follow, Growth, WallHistory};
 use crate::contacts::walls::surfaces::{Found, MOST_CONTACTS};
 use crate::motion::chunks::CHUNK;
-use crate::motion::grains::Grains;
+use crate::motion::grains::{Grains, Original};
 use amberfield_core::{Cohesion, Domain, Vector3, WallCharging};
 use amberfield_laws::contact_area;
 use rayon::prelude::*;
@@ -120,7 +121,8 @@ impl ContactWalls {
         let chunk = |k: usize| {
             let (mut numbers, mut near) = (Vec::new(), Vec::new());
             let (mut scratch, mut touches) = (Vec::new(), Vec::new());
-            for grain in k * CHUNK..grains.len().min((k + 1) * CHUNK) {
+            let all = k * CHUNK..grains.len().min((k + 1) * CHUNK);
+            for grain in all.filter(|&grain| !grains.is_fixed(grain)) {
                 let (centre, reach) = (grains.position(grain), grains.centre[grain][3] + margin);
                 near.clear();
                 for (shift, image) in images(domain, &self.shifts, centre, outside.add_scalar(reach)) {
@@ -147,10 +149,51 @@ impl ContactWalls {
         self.chunks.iter().flat_map(|chunk| &chunk.met)
     }
 
+    /// Number of the wall of each touching contact, in the order of [`Self::histories`].
+    pub(crate) fn touched(&self, grains: &Grains) -> Vec<u32> {
+        let mut found: Vec<(Original, u32)> = Vec::new();
+        for (k, chunk) in self.chunks.iter().enumerate() {
+            for entry in &chunk.entries {
+                let grain = grains.original[k * CHUNK + entry.local as usize];
+                let touching = entry.contacts as usize..(entry.contacts + entry.count) as usize;
+                let walls = chunk.contacts[touching].iter().map(|contact| self.part(contact.triangle).wall);
+                found.extend(walls.map(|wall| (grain, wall)));
+            }
+        }
+        found.sort_by_key(|(grain, _)| *grain);
+        found.into_iter().map(|(_, wall)| wall).collect()
+    }
+
+    /// Gives contacts the springs that those of the same grain in nearly the same direction had in another
+    /// run; `carried` are sorted by grain.
+    pub(crate) fn carry(&mut self, grains: &Grains, carried: &[WallHistory]) {
+        for (k, chunk) in self.chunks.iter_mut().enumerate() {
+            for entry in &chunk.entries {
+                let grain = grains.original[k * CHUNK + entry.local as usize];
+                let touching = entry.contacts as usize..(entry.contacts + entry.count) as usize;
+                let of_grain = || of_grain(carried, grain).iter();
+                for contact in &mut chunk.contacts[touching] {
+                    let cosine = |history: &&WallHistory| contact.normal.dot(&Vector3::from(history.normal));
+                    let nearest = of_grain().max_by(|a, b| cosine(a).total_cmp(&cosine(b)));
+                    if let Some(history) = nearest.filter(|history| cosine(history) > SAME_CONTACT) {
+                        (contact.spring, contact.rolling) = (history.spring, history.rolling);
+                    }
+                }
+            }
+        }
+    }
+
     /// Growth of a contact's area.
     pub(crate) fn growth_mut(&mut self, WallSlot { chunk, contact }: WallSlot) -> &mut Growth {
         &mut self.chunks[chunk as usize].growth[contact as usize]
     }
+}
+
+/// Histories of a grain among those that are sorted by grain.
+pub(crate) fn of_grain(histories: &[WallHistory], grain: Original) -> &[WallHistory] {
+    let from = histories.partition_point(|history| history.grain < grain);
+    let count = histories[from..].partition_point(|history| history.grain == grain);
+    &histories[from..from + count]
 }
 
 /// Contact with a wall that begins.

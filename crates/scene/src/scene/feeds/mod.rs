@@ -30,6 +30,8 @@ struct FeedContext<'a> {
     materials: &'a Materials,
     /// Names of the groups, to which feeds add theirs.
     groups: &'a mut Vec<String>,
+    /// Groups whose grains never move.
+    fixed: &'a [GroupId],
     /// End of the run [s].
     end_s: f64,
     source: &'a mut SceneSource,
@@ -87,7 +89,8 @@ pub(super) fn read_feeds(
 ) -> Result<ReadFeeds, SceneError> {
     let Some(time) = time else { return Ok(ReadFeeds::default()) };
     let first_id = read.particles.id.iter().max().map_or(1, |id| id.saturating_add(1));
-    let mut context = FeedContext { materials, groups: &mut read.groups, end_s: time.end_s, source };
+    let fixed = &read.particles.fixed_groups[..];
+    let mut context = FeedContext { materials, groups: &mut read.groups, fixed, end_s: time.end_s, source };
     let mut problems = Problems::default();
     let mut specs: Vec<FeedSpec> = Vec::new();
     let mut has_charge = false;
@@ -153,7 +156,7 @@ fn read_feed(table: &SceneTable<'_>, context: &mut FeedContext<'_>) -> Result<Fe
         place: table.place().to_string(),
         material,
         density: context.materials.density(material),
-        group: group_of(table, context.groups)?,
+        group: group_of(table, context)?,
         rate,
         start_s,
         end_s: end_s.unwrap_or(f64::INFINITY).min(context.end_s),
@@ -174,13 +177,23 @@ fn seed_of(name: &str, seed: u64) -> u64 {
 }
 
 /// Group of a feed's grains, which begins to exist where it does not.
-fn group_of(table: &SceneTable<'_>, groups: &mut Vec<String>) -> Result<GroupId, SceneError> {
-    let Some(group) = table.text("group")? else { return Ok(GroupId(0)) };
+fn group_of(table: &SceneTable<'_>, context: &mut FeedContext<'_>) -> Result<GroupId, SceneError> {
+    let groups = &mut *context.groups;
+    let group = table.text("group")?.unwrap_or("all");
     let index = groups.iter().position(|known| known == group).unwrap_or_else(|| {
         groups.push(group.to_owned());
         groups.len() - 1
     });
-    u16::try_from(index).map(GroupId).map_err(|_| table.bad("group", "more than 65536 groups; merge some"))
+    let too_many = |_| table.bad("group", "more than 65536 groups; merge some");
+    let id = u16::try_from(index).map(GroupId).map_err(too_many)?;
+    if context.fixed.contains(&id) {
+        let problem = format!(
+            "grains of \"{group}\" never move (particles.fixed_groups), and those of a feed must; give the \
+             feed another group"
+        );
+        return Err(table.bad("group", problem));
+    }
+    Ok(id)
 }
 
 /// Reads the key `region`.
