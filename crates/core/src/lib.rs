@@ -8,6 +8,7 @@
 mod charge_transfer;
 mod cohesion;
 pub mod constants;
+mod course;
 mod domain;
 mod far_question;
 mod feed;
@@ -26,7 +27,8 @@ mod wall_motion;
 
 pub use charge_transfer::ChargeTransfer;
 pub use cohesion::Cohesion;
-pub use domain::{Axis, Boundary, Domain, DomainError, Side};
+pub use course::{Course, CourseRow, FieldCourse, LEAST_PER_PERIOD, PotentialCourse};
+pub use domain::{Axis, Boundary, Domain, DomainError, FaceCourse, Side};
 pub use far_question::{FarQuestion, SourceCloud};
 pub use feed::{Feed, FeedRegion, Feeds, OnBlocked};
 pub use field_settings::{CouplingInterval, FieldSettings, ForceLimit, Method, Tuning};

@@ -10,7 +10,7 @@ impl FieldStage {
     /// Takes in the last `count` grains, which have just come.
     pub(crate) fn admit(&mut self, domain: &Domain, grains: &Grains, particles: &Particles, count: usize) {
         let first = grains.len() - count;
-        let (k, external) = (self.settings.permittivity.coulomb(), self.settings.external_field_v_m);
+        let (k, external) = (self.settings.permittivity.coulomb(), self.of_newcomer());
         let charge = |i: usize| {
             let original = grains.original[i].index();
             if self.member[original] { particles.charge[original] } else { 0.0 }

@@ -95,7 +95,9 @@ impl Simulation {
     pub fn energies(&mut self, electric: ElectricEnergy) -> Result<Energies, DemError> {
         let electric = match (&mut self.field, electric) {
             (None, _) | (_, ElectricEnergy::LeftOut) => None,
-            (Some(field), ElectricEnergy::Forecast) => Some(field.forecast_energy()),
+            (Some(field), ElectricEnergy::Forecast) => {
+                Some(field.forecast_energy(&self.domain, &self.grains, &self.particles))
+            }
             (Some(field), ElectricEnergy::Evaluated) => {
                 self.scratch.extras.clear();
                 if let Some(charging) = &self.charging {
