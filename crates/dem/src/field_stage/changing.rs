@@ -12,6 +12,9 @@ use crate::motion::grains::Grains;
 use amberfield_core::{CouplingInterval, Domain, Particles, Vector3};
 use amberfield_field::longest_step_s;
 
+/// Longest time between two trades, over that in which what changes goes along a straight line.
+const TRADES: f64 = 0.2;
+
 impl FieldStage {
     /// Goes on to a time [s], at the end of a step [s], whose potentials and external field grains feel from
     /// now on.
@@ -62,9 +65,11 @@ impl FieldStage {
         (self.source.field.longest_forecast_s(self.source.time_s) / step_s) as u64
     }
 
-    /// Most steps between two trades of charge that follow what changes.
+    /// Most steps between two trades of charge that follow what changes: areas grow in a part of that time,
+    /// and the field of its middle stands for theirs.
     pub(crate) fn most_steps_of_trades(&self) -> u64 {
-        (self.source.field.longest_look_s(self.source.time_s) / self.step_s) as u64
+        let longest_s = TRADES * self.source.field.longest_look_s(self.source.time_s);
+        (longest_s / self.step_s) as u64
     }
 
     /// Checks that a step [s], and an interval of steps that the scene fixes, show what changes.

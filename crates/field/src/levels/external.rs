@@ -12,9 +12,11 @@ pub(crate) struct ExternalField {
 }
 
 impl ExternalField {
-    /// The external field of a scene.
+    /// The external field of a scene, at t = 0 where it changes.
     pub(crate) fn new(domain: &Domain, settings: &FieldSettings) -> Self {
-        Self { e: settings.external_field_v_m, centre: domain.centre() }
+        let mut field = Self { e: settings.external_field_v_m, centre: domain.centre() };
+        field.set_time(settings.external_course.as_ref(), 0.0);
+        field
     }
 
     /// Takes the value of a course at a time [s].

@@ -25,7 +25,13 @@ const TECHNICAL: [&str; 12] = [
 const OF_SOLVER: &str = "solver";
 const RANKS: &str = "solver.ranks";
 /// Keys whose values are names of files: their contents count instead.
-const FILES: [&str; 4] = ["particles.file", "particles.generate.charge_C.from_file", "stl", "table"];
+const FILES: [&str; 5] = [
+    "particles.file",
+    "particles.generate.charge_C.from_file",
+    "electric_field.external_field_V_m.table",
+    "stl",
+    "table",
+];
 /// Differences that a message names at most.
 const MOST_NAMED: usize = 5;
 
@@ -108,5 +114,6 @@ fn is_technical(key: &str) -> bool {
 fn names_a_file(key: &str) -> bool {
     let is_wall = |file: &str| key.starts_with("walls[") && key.ends_with(&format!("].{file}"));
     let is_face = key.starts_with("feeds[") && key.ends_with("].region.stl");
-    is_face || FILES.iter().any(|file| key == *file || is_wall(file))
+    let is_potential = key.starts_with("domain.boundary.") && key.ends_with(".potential_V.table");
+    is_face || is_potential || FILES.iter().any(|file| key == *file || is_wall(file))
 }
