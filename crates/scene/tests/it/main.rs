@@ -12,5 +12,6 @@ mod generators;
 mod good_scenes;
 mod keys;
 mod outputs;
+mod potentials;
 mod round_trips;
 mod vtk_files;
