@@ -19,7 +19,7 @@ const FREQUENCY: Key = Key::new("frequency_Hz", Form::Number(Range::positive(1e1
 
 const PHASE: Key = Key::new("phase_rad", Form::Number(Range::closed(-1e6, 1e6)), "Phase at t = 0.")
     .unit("rad")
-    .default("0.0")
+    .without("zero")
     .example("1.5708")
     .also(&["phase"]);
 
