@@ -15,6 +15,7 @@ mod host_library;
 mod interrupt;
 mod moving_walls;
 mod openfoam;
+mod potentials;
 mod run;
 mod scenes;
 mod start;

@@ -4,7 +4,7 @@
 mod common;
 
 use amberfield_core::{
-    Axis, Boundary, ChargeTransfer, Course, CourseRow, CouplingInterval, Domain, FaceCourse, FieldSettings,
+    Axis, Boundary, ChargeTransfer, CouplingInterval, Course, CourseRow, Domain, FaceCourse, FieldSettings,
     Grain, MaterialId, Method, PotentialCourse, Side, Step, Tuning, Vector3, Wall, WallCharging,
 };
 use amberfield_dem::{ElectricEnergy, FieldStageSetup, Setup, Simulation};
@@ -186,7 +186,10 @@ fn p3m_and_direct_move_grains_alike() {
     for faces in [PLATES, BOX] {
         let courses = vec![face(Axis::Z, Side::Max, sine(3000.0, 0.0, 0.0))];
         let of = |method| {
-            final_run(scene(bed(), sign, faces, courses.clone(), settings(method, CouplingInterval::Auto)), 800)
+            final_run(
+                scene(bed(), sign, faces, courses.clone(), settings(method, CouplingInterval::Auto)),
+                800,
+            )
         };
         let apart_by = apart(&of(Method::P3m), &of(Method::Direct), &bed());
         assert!(apart_by < 3e-3, "{apart_by:e}");
@@ -246,7 +249,8 @@ fn energy_between_evaluations_is_that_of_the_present_potentials() {
         external_course: Some(sine(Vector3::new(0.0, 0.0, 1e5), 1.0, Vector3::zeros())),
         ..settings(Method::Direct, CouplingInterval::Steps(50))
     };
-    let mut simulation = Simulation::new(scene(bed(), sign, PLATES, courses, settings)).expect("a good scene");
+    let mut simulation =
+        Simulation::new(scene(bed(), sign, PLATES, courses, settings)).expect("a good scene");
     let mut largest = 0.0_f64;
     let mut worst = 0.0_f64;
     for _ in 0..40 {
@@ -310,10 +314,13 @@ fn contacts_trade_in_the_field_of_their_time() {
     assert!(every != 0.0);
     assert!((rare / every - 1.0).abs() < 0.02, "{rare:e} {every:e}");
     // The contact comes after 333 µs, a third of half a period, and grows for some dozens of steps.
-    let constant = moved(CouplingInterval::Steps(1), Some(Course::Table {
-        name: "e.csv".into(),
-        rows: [0.0, 1.0].map(|time_s| CourseRow { time_s, value: e }).to_vec(),
-    }));
+    let constant = moved(
+        CouplingInterval::Steps(1),
+        Some(Course::Table {
+            name: "e.csv".into(),
+            rows: [0.0, 1.0].map(|time_s| CourseRow { time_s, value: e }).to_vec(),
+        }),
+    );
     let share = every / constant;
     assert!((0.6..1.0).contains(&share), "{share}");
 }
@@ -334,14 +341,15 @@ fn steps_and_intervals_that_do_not_show_a_frequency_are_refused_and_automatic_on
 
     let fast = Course::Sine { amplitude: 1.0, frequency_hz: 1e5, phase: 0.0, offset: 0.0 };
     let courses = vec![face(Axis::Z, Side::Max, fast)];
-    let mut auto =
-        scene(bed(), sign, PLATES, courses, settings(Method::Direct, CouplingInterval::Auto));
+    let mut auto = scene(bed(), sign, PLATES, courses, settings(Method::Direct, CouplingInterval::Auto));
     auto.time.step = Step::Auto;
     let simulation = Simulation::new(auto).expect("a good scene");
     assert!(simulation.step_s() <= 5e-7);
 
-    let kolehmainen =
-        FieldSettings { cutoff_radius_m: Some(5e-3), ..settings(Method::Kolehmainen, CouplingInterval::Auto) };
+    let kolehmainen = FieldSettings {
+        cutoff_radius_m: Some(5e-3),
+        ..settings(Method::Kolehmainen, CouplingInterval::Auto)
+    };
     let courses = vec![face(Axis::Z, Side::Max, sine(6000.0, 0.0, 0.0))];
     let said = refused(scene(bed(), sign, PLATES, courses, kolehmainen));
     assert!(said.contains("kolehmainen") && said.contains("p3m"), "{said}");

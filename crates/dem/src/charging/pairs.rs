@@ -201,9 +201,7 @@ impl Charging {
         let half = 0.5 * self.gathered as f64;
         let foreseen = list.foreseen[pair.entry].at(self.evaluation, self.age as f64 - half);
         let field = match (foreseen, traders.field.changing_uniform_before(half)) {
-            (Some(field), Some(changing)) => {
-                field + changing.dot(&pair.offset(grains, shifts).normalize())
-            }
+            (Some(field), Some(changing)) => field + changing.dot(&pair.offset(grains, shifts).normalize()),
             (Some(field), None) => field,
             (None, _) => self.unforeseen(traders, shifts, pair, [of_i, of_j]),
         };

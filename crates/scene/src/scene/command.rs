@@ -6,7 +6,7 @@ use super::description::ElectricFieldSettings;
 use crate::SceneError;
 use crate::error::shorten;
 use crate::tree::{Entries, Node, Value, nearest};
-use amberfield_core::{Course, CouplingInterval, FieldSettings, Method, Tuning};
+use amberfield_core::{CouplingInterval, Course, FieldSettings, Method, Tuning};
 use nalgebra::Vector3;
 use std::fmt::Write as _;
 

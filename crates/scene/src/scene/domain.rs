@@ -85,11 +85,7 @@ fn read_axis(
     Ok([face(&low)?, face(&high)?])
 }
 
-fn read_face(
-    boundary: &SceneTable<'_>,
-    key: &str,
-    source: &mut SceneSource,
-) -> Result<Face, SceneError> {
+fn read_face(boundary: &SceneTable<'_>, key: &str, source: &mut SceneSource) -> Result<Face, SceneError> {
     let Some(node) = boundary.get(key) else {
         return Err(boundary.missing(key, format!("give {FACE_FORMS}")));
     };

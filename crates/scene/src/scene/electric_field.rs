@@ -33,10 +33,7 @@ pub(super) fn read_electric_field(
     read_keys(&table, source).map(Some)
 }
 
-fn read_keys(
-    table: &SceneTable<'_>,
-    source: &mut SceneSource,
-) -> Result<ElectricFieldSettings, SceneError> {
+fn read_keys(table: &SceneTable<'_>, source: &mut SceneSource) -> Result<ElectricFieldSettings, SceneError> {
     let mut read = ElectricFieldSettings::default();
     read_common(table, &mut read)?;
     let field = &mut read.field;

@@ -47,9 +47,15 @@ fn offset_alone_is_a_constant_and_the_order_of_faces_does_not_matter() {
     assert_eq!(folder().read(&[&format!("{TOP}={offset}")]).unwrap().domain, plain.domain);
     let field = "{ amplitude = [0, 0, 0], frequency_Hz = 50, offset = [1, 2, 3] }";
     let alone = folder().read(&[&format!("{EXTERNAL}={field}")]).unwrap();
-    assert_eq!(alone.electric_field, folder().read(&[&format!("{EXTERNAL}=[1, 2, 3]")]).unwrap().electric_field);
+    assert_eq!(
+        alone.electric_field,
+        folder().read(&[&format!("{EXTERNAL}=[1, 2, 3]")]).unwrap().electric_field
+    );
 
-    let faces = ["z_min = { potential_V = { table = \"v.csv\" } }", "z_max = { potential_V = { table = \"v.csv\" } }"];
+    let faces = [
+        "z_min = { potential_V = { table = \"v.csv\" } }",
+        "z_max = { potential_V = { table = \"v.csv\" } }",
+    ];
     let written = |lines: [&str; 2]| {
         let folder = folder();
         let lines = lines.join("\n");
@@ -84,12 +90,16 @@ fn tables_are_found_from_anywhere_and_belong_to_the_physics() {
 
 #[test]
 fn text_of_the_settings_is_read_as_the_same() {
-    for field in ["{ amplitude = [0, 0, 1e5], frequency_Hz = 50, phase_rad = 0.25 }", "{ table = \"e.csv\" }"] {
+    for field in ["{ amplitude = [0, 0, 1e5], frequency_Hz = 50, phase_rad = 0.25 }", "{ table = \"e.csv\" }"]
+    {
         let folder = folder();
         let scene = folder.read(&[&format!("{EXTERNAL}={field}")]).unwrap();
         let settings = scene.electric_field.unwrap();
         assert!(settings.as_command().is_err());
-        folder.write("scene.toml", SCENE.replacen("[electric_field]\ntolerance = 1e-2\n", &settings.as_section(), 1));
+        folder.write(
+            "scene.toml",
+            SCENE.replacen("[electric_field]\ntolerance = 1e-2\n", &settings.as_section(), 1),
+        );
         assert_eq!(folder.read(&[]).unwrap().electric_field.unwrap(), settings);
     }
 }
