@@ -7,6 +7,7 @@
 
 use super::FieldStage;
 use super::forecast::FieldEnergy;
+use super::members::Extras;
 use crate::error::DemError;
 use crate::motion::grains::Grains;
 use amberfield_core::{CouplingInterval, Domain, Particles, Vector3};
@@ -16,10 +17,15 @@ use amberfield_field::longest_step_s;
 const TRADES: f64 = 0.2;
 
 impl FieldStage {
+    /// Whether a potential or the external field changes with time.
+    pub(crate) fn changes(&self) -> bool {
+        self.source.field.changes()
+    }
+
     /// Goes on to a time [s], at the end of a step [s], whose potentials and external field grains feel from
     /// now on.
     pub(crate) fn advance(&mut self, time_s: f64, step_s: f64, grains: &Grains) {
-        if !self.source.field.changes() {
+        if !self.changes() {
             return;
         }
         let before = self.changing_uniform();
@@ -97,7 +103,7 @@ impl FieldStage {
     /// Energy of the members' charges in the field that is the same everywhere and changes, Σ q (½ V of the
     /// faces + V of the external field) [J]; zero where nothing changes.
     pub(super) fn energy_of_changing(&self, position: &[Vector3<f64>], charge: &[f64]) -> f64 {
-        if !self.source.field.changes() {
+        if !self.changes() {
             return 0.0;
         }
         let energy = |(x, q): (&Vector3<f64>, &f64)| {
@@ -110,22 +116,22 @@ impl FieldStage {
     /// Electric energy extrapolated from the last two evaluations, with what changes and is the same
     /// everywhere as it is at present.
     pub(crate) fn forecast_energy(
-        &self,
+        &mut self,
         domain: &Domain,
         grains: &Grains,
         particles: &Particles,
+        extras: &Extras,
     ) -> FieldEnergy {
-        let forecast = self.energy.at(self.control.age);
-        if !self.source.field.changes() {
-            return forecast;
+        if self.changes() {
+            self.onlookers.collect(&self.member, domain, grains, particles, extras);
         }
-        let members = (0..grains.len()).filter(|grain| self.member[grains.original[*grain].index()]);
-        let (position, charge): (Vec<_>, Vec<_>) = members
-            .map(|grain| {
-                let charge = particles.charge[grains.original[grain].index()];
-                (domain.wrap(grains.position(grain)), charge)
-            })
-            .unzip();
-        FieldEnergy { energy: forecast.energy + self.energy_of_changing(&position, &charge), ..forecast }
+        self.forecast_energy_of_onlookers()
+    }
+
+    /// Electric energy as [`Self::forecast_energy`] has it, for the members at the last look.
+    pub(super) fn forecast_energy_of_onlookers(&self) -> FieldEnergy {
+        let forecast = self.energy.at(self.control.age);
+        let changing = self.energy_of_changing(&self.onlookers.position, &self.onlookers.charge);
+        FieldEnergy { energy: forecast.energy + changing, ..forecast }
     }
 }

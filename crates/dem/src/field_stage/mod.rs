@@ -361,7 +361,7 @@ impl FieldStage {
         self.onlookers.time_s = self.members.time_s;
         let looked = self.source.evaluate_aside(domain, &self.settings, &self.onlookers, &mut self.values)?;
         if !looked {
-            return Ok(self.forecast_energy(domain, grains, particles));
+            return Ok(self.forecast_energy_of_onlookers());
         }
         Ok(self.energy_of(&self.onlookers, domain))
     }
