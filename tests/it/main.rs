@@ -17,6 +17,7 @@ mod interrupt;
 mod moving_walls;
 mod openfoam;
 mod outlets;
+mod potentials;
 mod run;
 mod scenes;
 mod start;

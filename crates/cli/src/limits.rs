@@ -56,6 +56,9 @@ fn has_given_field(scene: &Scene) -> bool {
         Boundary::Insulating { normal_field_v_m } => *normal_field_v_m != 0.0,
         _ => false,
     };
-    external.is_some_and(|external| external > 0.0)
+    let changes = scene.electric_field.as_ref().is_some_and(|field| field.field.external_course.is_some())
+        || scene.domain.as_ref().is_some_and(|domain| !domain.courses().is_empty());
+    changes
+        || external.is_some_and(|external| external > 0.0)
         || scene.domain.as_ref().is_some_and(|domain| domain.faces().iter().flatten().any(has_value))
 }

@@ -1,5 +1,6 @@
 //! The box that bounds the electric field and, where periodic, the motion.
 
+use crate::course::PotentialCourse;
 use nalgebra::Vector3;
 use serde::{Deserialize, Serialize};
 use std::fmt;
@@ -131,12 +132,25 @@ const SAME_PLACE: f64 = 1e-6;
 /// Difference from 1 of the cosine of the angle below which two directions are one (0.26°).
 const SAME_DIRECTION: f64 = 1e-5;
 
+/// Potential of a face that changes with time.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+pub struct FaceCourse {
+    /// Axis of the face.
+    pub axis: Axis,
+    /// Side of the face.
+    pub side: Side,
+    /// Potential [V] over time.
+    pub course: PotentialCourse,
+}
+
 /// Axis-aligned box with a boundary condition per face.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Domain {
     min: Vector3<f64>,
     max: Vector3<f64>,
     faces: [[Boundary; 2]; 3],
+    /// Potentials that change with time; the faces' conditions hold their values at one time.
+    courses: Vec<FaceCourse>,
 }
 
 impl Domain {
@@ -165,7 +179,28 @@ impl Domain {
                 }
             }
         }
-        Ok(Self { min, max, faces })
+        Ok(Self { min, max, faces, courses: Vec::new() })
+    }
+
+    /// Lets potentials of faces change with time; the faces have their values at t = 0.
+    #[must_use]
+    pub fn with_courses(mut self, courses: Vec<FaceCourse>) -> Self {
+        self.courses = courses;
+        self.set_time(0.0);
+        self
+    }
+
+    /// Potentials of faces that change with time.
+    #[must_use]
+    pub fn courses(&self) -> &[FaceCourse] {
+        &self.courses
+    }
+
+    /// Gives the faces whose potentials change their values at a time [s].
+    pub fn set_time(&mut self, time_s: f64) {
+        for FaceCourse { axis, side, course } in &self.courses {
+            self.faces[axis.index()][*side as usize] = Boundary::Potential(course.at(time_s));
+        }
     }
 
     /// Lower corner [m].

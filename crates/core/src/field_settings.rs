@@ -1,5 +1,6 @@
 //! Settings of the electric field.
 
+use crate::course::FieldCourse;
 use crate::permittivity::Permittivity;
 use nalgebra::Vector3;
 use serde::{Deserialize, Serialize};
@@ -97,8 +98,10 @@ pub struct FieldSettings {
     /// Permittivity of the medium.
     #[serde(rename = "relative_permittivity")]
     pub permittivity: Permittivity,
-    /// Uniform external field [V/m].
+    /// Uniform external field [V/m], at t = 0 where it changes.
     pub external_field_v_m: Vector3<f64>,
+    /// Uniform external field over time; `None` where it stays as it is.
+    pub external_course: Option<FieldCourse>,
     /// Whether a net charge in an insulating or periodic box is balanced by a uniform background.
     pub neutralising_background: bool,
     /// Cells of the internal grid per axis, when the scene fixes them.
@@ -122,6 +125,7 @@ impl Default for FieldSettings {
             cutoff_radius_m: None,
             permittivity: Permittivity::VACUUM,
             external_field_v_m: Vector3::zeros(),
+            external_course: None,
             neutralising_background: false,
             grid_cells: None,
             tuning: Tuning::default(),

@@ -120,6 +120,33 @@ mod charged {
     }
 
     #[test]
+    fn steady_step_with_potentials_that_change_allocates_nothing() {
+        use amberfield_core::{Axis, Course, FaceCourse, Side};
+        let course = Course::Sine { amplitude: 500.0, frequency_hz: 400.0, phase: 0.0, offset: 0.0 };
+        for axis in [Axis::Z, Axis::X] {
+            alone(|| {
+                let mut scene = with_field(bed(Boundary::Grounded), 1e-12);
+                let beside = Vector3::x() * RADIUS;
+                let (min, max) = (scene.domain.min() - beside, scene.domain.max() + beside);
+                let mut faces = *scene.domain.faces();
+                faces[axis.index()] = [Boundary::Grounded; 2];
+                let courses = vec![FaceCourse { axis, side: Side::Max, course: course.clone() }];
+                let domain = Domain::new(min, max, faces).expect("a good box");
+                scene.domain = domain.with_courses(courses);
+                scene.field.as_mut().expect("a field").settings.external_course = Some(Course::Sine {
+                    amplitude: Vector3::x(),
+                    frequency_hz: 300.0,
+                    phase: 0.0,
+                    offset: Vector3::y(),
+                });
+                let (silent, simulation) = silent_steps(scene);
+                assert!(silent >= 180, "{silent}");
+                assert!(simulation.intervals().expect("a field").evaluations > 10);
+            });
+        }
+    }
+
+    #[test]
     fn steady_step_with_charge_transfer_allocates_nothing() {
         alone(|| {
             let mut scene = with_field(bed(Boundary::Grounded), 1e-12);

@@ -1,6 +1,7 @@
 //! The evaluator: one scene's field, with the parameters chosen for it.
 
 mod building;
+mod changing;
 
 use crate::choosing::choice::{Choice, Measured};
 use crate::choosing::over_mesh;
@@ -17,6 +18,8 @@ use crate::sum::{Part, Sum};
 use crate::values::{FieldValues, Wanted};
 use amberfield_core::{Domain, FieldSettings, Plan};
 use nalgebra::Vector3;
+
+pub use changing::{ChangingUniform, longest_step_s};
 
 /// Cost of the last evaluation.
 #[derive(Clone, Debug, Default, PartialEq)]
@@ -51,7 +54,8 @@ impl ElectricField {
     /// E = near + middle + far + correction + faces + external
     ///
     /// Near, middle, far and correction come from the charges and their images, faces from potentials and
-    /// normal fields that are given on faces.
+    /// normal fields that are given on faces. Those that change with time are those of the time that was set
+    /// by [`Self::set_time`], and of t = 0 before.
     ///
     /// Allocates nothing once `out` has its size and the number of particles stays.
     ///
@@ -69,7 +73,8 @@ impl ElectricField {
     }
 
     /// Computes E as [`Self::evaluate`] does, at a time [s]. The time is for a field solver of another
-    /// process, which works beside the motion and has to know of when the charges are.
+    /// process, which works beside the motion and has to know of when the charges are. Potentials that
+    /// change follow [`Self::set_time`].
     ///
     /// # Errors
     /// The errors of [`Self::evaluate`].
@@ -116,7 +121,8 @@ impl ElectricField {
         Ok(self.error_measured)
     }
 
-    /// E that is there without charges, external and from the faces' values, at a place of the domain [V/m].
+    /// E that is there without charges, external and from the faces' values, at a place of the domain [V/m]
+    /// and the time that was set.
     ///
     /// A field solver and `kolehmainen` have the faces' values on cells: there it is the external field.
     #[must_use]
@@ -172,6 +178,11 @@ impl ElectricField {
     /// Lists the field stages that are built and those that are left out, with reasons.
     #[must_use]
     pub fn plan(&self) -> Plan {
-        plan::plan(&self.domain, &self.settings, &self.choice, self.mesh_cells)
+        let potentials = match (self.faces.changing_uniform(), self.faces.changing_otherwise()) {
+            (Some(_), _) => plan::Potentials::Uniform,
+            (None, Some(_)) => plan::Potentials::Varied,
+            (None, None) => plan::Potentials::Stay,
+        };
+        plan::plan(&self.domain, &self.settings, &self.choice, self.mesh_cells, potentials)
     }
 }

@@ -3,12 +3,24 @@
 use crate::choosing::choice::Choice;
 use amberfield_core::{Domain, FieldSettings, Plan};
 
+/// Course of the faces' potentials.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(crate) enum Potentials {
+    /// They stay as they are.
+    Stay,
+    /// They change, and make a uniform field.
+    Uniform,
+    /// They change, and make a field that differs from place to place.
+    Varied,
+}
+
 /// Stages of a scene's field and what it leaves out; over a solver's mesh of so many cells, if there is one.
 pub(crate) fn plan(
     domain: &Domain,
     settings: &FieldSettings,
     choice: &Choice,
     mesh_cells: Option<usize>,
+    potentials: Potentials,
 ) -> Plan {
     let mut plan = Plan::new();
     match choice {
@@ -58,10 +70,24 @@ pub(crate) fn plan(
             );
         }
     }
-    if settings.external_field_v_m == nalgebra::Vector3::zeros() {
+    if settings.external_course.is_some() {
+        plan.build("external", "external_field_V_m is given, and changes with time: exact in every step");
+    } else if settings.external_field_v_m == nalgebra::Vector3::zeros() {
         plan.leave_out("external", "external_field_V_m is zero");
     } else {
         plan.build("external", "external_field_V_m is given");
+    }
+    match potentials {
+        Potentials::Stay => {}
+        Potentials::Uniform => plan.build(
+            "potentials",
+            "potentials of faces change with time, and their field is uniform: exact in every step",
+        ),
+        Potentials::Varied => plan.build(
+            "potentials",
+            "potentials of faces change with time, and their field is not uniform: at least 20 evaluations \
+             in a period, or along a line of a table",
+        ),
     }
     let images = domain.faces().iter().flatten().any(|face| face.is_conductor() || face.is_insulating());
     if !images {

@@ -8,7 +8,7 @@ use crate::run::{
     read_scene, scene_name, setup_of,
 };
 use crate::{limits, machine, plan_text};
-use amberfield_core::{Axis, Boundary, Domain, OutletRegion, Side};
+use amberfield_core::{Axis, Boundary, Course, Domain, OutletRegion, PotentialCourse, Side};
 use amberfield_dem::Outlook;
 use amberfield_field::ElectricField;
 use amberfield_field::far::Connect;
@@ -105,10 +105,24 @@ fn faces(domain: &Domain) -> String {
         other => format!("{other:?}"),
     };
     let axes = Axis::ALL.map(|axis| {
-        let [low, high] = [Side::Min, Side::Max].map(|side| name(domain.face(axis, side)));
+        let [low, high] = [Side::Min, Side::Max].map(|side| {
+            let course = domain.courses().iter().find(|face| face.axis == axis && face.side == side);
+            course.map_or_else(|| name(domain.face(axis, side)), |face| potential(&face.course))
+        });
         if low == high { format!("{axis} {low}") } else { format!("{axis} {low} / {high}") }
     });
     axes.join(", ")
+}
+
+/// Text of a potential that changes with time.
+fn potential(course: &PotentialCourse) -> String {
+    match course {
+        Course::Sine { amplitude, frequency_hz, phase, offset } => {
+            format!("at {amplitude} V sin(2π {frequency_hz} Hz t + {phase}) + {offset} V")
+        }
+        Course::Table { name, rows } => format!("at the potential of {name}, {} rows", rows.len()),
+        other => format!("{other:?}"),
+    }
 }
 
 /// Prints the settings of the electric field in both of their forms.

@@ -35,8 +35,8 @@ pub(crate) struct Health {
 /// Facts that a scene permits, so that they are no sign of an unsound run.
 #[derive(Clone, Copy, Debug, Serialize, Deserialize)]
 pub(crate) struct Allowed {
-    /// Switch for energy from outside: charging contacts, limited forces, a gas, walls that move, or a force
-    /// along a periodic axis, which does work in each period.
+    /// Switch for energy from outside: charging contacts, limited forces, a gas, walls that move,
+    /// potentials that change, or a force along a periodic axis, which does work in each period.
     work: bool,
 }
 
@@ -47,6 +47,8 @@ impl Allowed {
         let field = scene.electric_field.as_ref().map(|field| &field.field);
         let external = field.map_or_else(Vector3::zeros, |field| field.external_field_v_m);
         let domain = scene.domain.as_ref();
+        let changing = field.is_some_and(|field| field.external_course.is_some())
+            || domain.is_some_and(|domain| !domain.courses().is_empty());
         let round = Axis::ALL.into_iter().any(|axis| {
             let pull = gravity[axis.index()].abs() + external[axis.index()].abs();
             pull > 0.0 && domain.is_some_and(|domain| domain.is_periodic(axis))
@@ -55,7 +57,7 @@ impl Allowed {
         let charging =
             scene.electric_field.as_ref().is_some_and(|field| field.enable_collision_charge_transfer);
         let moving = scene.walls.iter().any(|wall| !wall.motion.is_empty());
-        Self { work: round || limited || scene.gas.is_some() || charging || moving }
+        Self { work: round || limited || scene.gas.is_some() || charging || moving || changing }
     }
 }
 

@@ -8,11 +8,12 @@ use std::path::Path;
 #[cfg(feature = "plots")]
 pub(crate) fn draw(path: &Path, scene: &Scene, simulation: &Simulation) {
     use amberfield_draw::{PictureScene, write_picture};
-    let Some(domain) = &scene.domain else { return };
+    let Some(mut domain) = scene.domain.clone() else { return };
+    domain.set_time(simulation.time_s());
     let picture = PictureScene {
         title: &scene.title,
         time_s: Some(simulation.time_s()),
-        domain,
+        domain: &domain,
         walls: &super::walls::now(scene, simulation),
         particles: &simulation.particles(),
     };

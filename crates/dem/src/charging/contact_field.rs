@@ -8,7 +8,8 @@
 //! an external field or that of electrodes, has no images and stays as it is.
 //!
 //! Between evaluations E_x follows the line through the last two, where both foresaw the contact, to the
-//! middle of the time in which the area grew.
+//! middle of the time in which the area grew. A part that changes with time and is the same everywhere is not
+//! on that line: it is added as it was in the middle of that time.
 //!
 //! A contact that was not foreseen has a stand-in until the next evaluation: the mean of E at the two centres
 //! without the partner's field, or at a wall E at the centre without the grain's own image.
@@ -20,7 +21,7 @@ use crate::contacts::Contacts;
 use crate::contacts::memory::Foreseen;
 use crate::contacts::neighbours::{Listed, Neighbours};
 use crate::contacts::walls::Touch;
-use crate::field_stage::Extras;
+use crate::field_stage::{Extras, FieldStage};
 use crate::motion::grains::{Grains, Original};
 use amberfield_core::{Domain, Vector3, WallCharging};
 use serde::{Deserialize, Serialize};
@@ -140,14 +141,16 @@ impl Charging {
         self.probes = probes;
     }
 
-    /// Takes E [V/m] at what was asked for.
-    pub(super) fn take(&mut self, e: &[Vector3<f64>], neighbours: &mut Neighbours, charge: &[f64]) {
+    /// Takes E at what was asked for.
+    pub(super) fn take(&mut self, field: &FieldStage, neighbours: &mut Neighbours, charge: &[f64]) {
+        let (e, changing) = (field.beside(), field.changing_uniform_before(0.0));
         let sources = e.len() - self.probes.len();
         self.evaluation += 1;
         let (evaluation, age) = (self.evaluation, std::mem::take(&mut self.age));
         let mut at_walls = Vec::with_capacity(self.at_walls.len());
         for (probe, e) in self.probes.iter().zip(&e[sources..]) {
             let field = probe.mirror.of_others(e.dot(&probe.normal) - probe.own);
+            let field = changing.map_or(field, |changing| field - changing.dot(&probe.normal));
             match probe.slot {
                 Slot::Pair { chunk, entry } => {
                     let known = &mut neighbours.lists[chunk].foreseen[entry];
@@ -183,7 +186,10 @@ impl Charging {
     /// E_x·n of a contact with a wall [V/m] in the middle of the step, if it was foreseen.
     pub(super) fn foreseen_at_wall(&self, traders: Traders<'_>, touch: &Touch) -> Option<f64> {
         let grain = traders.grains.original[touch.grain];
-        at_wall(&self.at_walls, grain, &touch.normal)?.at(self.evaluation, self.age as f64 - 0.5)
+        let field =
+            at_wall(&self.at_walls, grain, &touch.normal)?.at(self.evaluation, self.age as f64 - 0.5)?;
+        let changing = traders.field.changing_uniform_before(0.5);
+        Some(changing.map_or(field, |changing| field + changing.dot(&touch.normal)))
     }
 
     /// E_x·n of a contact with a wall that was not foreseen [V/m].

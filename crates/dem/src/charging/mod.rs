@@ -205,9 +205,9 @@ impl Charging {
         Ok(())
     }
 
-    /// Whether pairs trade in a step.
-    pub(crate) fn is_due(step: u64) -> bool {
-        step.is_multiple_of(EVERY)
+    /// Whether pairs trade in a step, where it may be put off for so many steps.
+    pub(crate) fn is_due(step: u64, most: u64) -> bool {
+        step.is_multiple_of(EVERY.min(most).max(1))
     }
 
     /// Rule by which contact areas are followed in a step.

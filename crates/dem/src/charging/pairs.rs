@@ -198,10 +198,13 @@ impl Charging {
         let grains = traders.grains;
         let materials = self.table.get(grains.material[i], grains.material[j]);
         // Half of the growth came earlier.
-        let middle = self.age as f64 - 0.5 * self.gathered as f64;
-        let field = list.foreseen[pair.entry]
-            .at(self.evaluation, middle)
-            .unwrap_or_else(|| self.unforeseen(traders, shifts, pair, [of_i, of_j]));
+        let half = 0.5 * self.gathered as f64;
+        let foreseen = list.foreseen[pair.entry].at(self.evaluation, self.age as f64 - half);
+        let field = match (foreseen, traders.field.changing_uniform_before(half)) {
+            (Some(field), Some(changing)) => field + changing.dot(&pair.offset(grains, shifts).normalize()),
+            (Some(field), None) => field,
+            (None, _) => self.unforeseen(traders, shifts, pair, [of_i, of_j]),
+        };
         let colliders = [(of_i, i), (of_j, j)]
             .map(|(charge, grain)| ChargedSphere { charge, radius: grains.centre[grain][3] });
         let drive = between_grains(self.permittivity, materials.work, colliders, field);

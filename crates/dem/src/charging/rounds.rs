@@ -4,7 +4,7 @@ use super::{Charging, Traders};
 use crate::contacts::Contacts;
 use crate::field_stage::{Extras, FieldStage};
 use crate::motion::grains::Grains;
-use amberfield_core::{Domain, Vector3};
+use amberfield_core::Domain;
 
 /// Time for which contacts are foreseen, over the field's present interval: the field may be evaluated later
 /// than thought.
@@ -65,8 +65,8 @@ impl Charging {
         self.ask(round.traders(), round.contacts, round.charge, margins, extras);
     }
 
-    /// Takes E [V/m] at what was asked for.
-    pub(crate) fn take_field(&mut self, e: &[Vector3<f64>], contacts: &mut Contacts, charge: &[f64]) {
-        self.take(e, &mut contacts.neighbours, charge);
+    /// Takes E at what was asked for.
+    pub(crate) fn take_field(&mut self, field: &FieldStage, contacts: &mut Contacts, charge: &[f64]) {
+        self.take(field, &mut contacts.neighbours, charge);
     }
 }

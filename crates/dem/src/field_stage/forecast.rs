@@ -69,6 +69,12 @@ impl Forecast {
         }
     }
 
+    /// Adds what a field [V/m] that is the same everywhere has gained, at the grains that feel it.
+    pub(super) fn gain(&mut self, gained: Vector3<f64>, feels: impl Fn(usize) -> bool) {
+        let grains = self.e.iter_mut().enumerate().filter(|(grain, _)| feels(*grain));
+        grains.for_each(|(_, e)| *e += gained);
+    }
+
     /// Charge of a grain [C]; zero before the first evaluation.
     pub(crate) fn charge(&self, grain: usize) -> f64 {
         self.charge.get(grain).copied().unwrap_or(0.0)
@@ -242,7 +248,7 @@ fn near_jump(change: f64, centre: &[f64; 4], coulomb: f64) -> f64 {
 pub(crate) struct Medium<'a> {
     /// Centres and radii of all grains, sorted order [m].
     pub(crate) centre: &'a [[f64; 4]],
-    /// External field, which forecasts know [V/m].
+    /// External field at present, which forecasts know [V/m].
     pub(crate) external: Vector3<f64>,
     /// Scale of E where symmetry makes it vanish [V/m].
     pub(crate) least: f64,

@@ -9,11 +9,13 @@
 //! * as soon as charges, or E by what their changes do to it, have changed by the tolerance in RMS, at
 //!   contacts or because grains have left;
 //! * as soon as impacts have turned grains so that the extrapolation errs by the tolerance ([`impacts`]);
-//! * at the latest after 0.2/ω_p.
+//! * at the latest after 0.2/ω_p;
+//! * twenty times in a period of potentials that change, where their field is not uniform ([`changing`]).
 //!
 //! A number of steps is kept as it is. All depends on the grains only.
 
 mod answers;
+mod changing;
 mod forecast;
 mod impacts;
 mod interval;
@@ -98,6 +100,8 @@ pub(crate) struct FieldStage {
     impacts: Impacts,
     /// Travel of the fastest grain since the last evaluation [m].
     travel: f64,
+    /// Length of a step [s], for what changes with time.
+    step_s: f64,
     /// Most steps between evaluations under the plasma limit.
     plasma_steps: u64,
     /// Longest stable step at the present interval [s].
@@ -138,6 +142,7 @@ impl FieldStage {
             control: IntervalControl::new(),
             impacts: Impacts::default(),
             travel: 0.0,
+            step_s: 0.0,
             plasma_steps: 1,
             plasma_limit: f64::INFINITY,
             limited: Limited::default(),
@@ -227,10 +232,12 @@ impl FieldStage {
         self.solver_iterations = far.map_or(0, FarSolver::iterations);
         let missed = far.map_or(0.0, FarSolver::missed);
         let age = self.control.age;
-        self.energy.renew(self.energy_of(&self.members, domain), age);
+        let energy = self.energy_of(&self.members, domain);
+        let changing = self.energy_of_changing(&self.members.position, &self.members.charge);
+        self.energy.renew(FieldEnergy { energy: energy.energy - changing, ..energy }, age);
         let medium = Medium {
             centre: &grains.centre,
-            external: self.settings.external_field_v_m,
+            external: self.source.field.external(),
             least: self.least_scale(domain),
             coulomb: self.settings.permittivity.coulomb(),
         };
@@ -241,7 +248,8 @@ impl FieldStage {
         }
         self.watch_plasma(grains, moment.step_s);
         let FieldSettings { coupling_interval, tolerance, .. } = self.settings;
-        self.control.evaluated(check, coupling_interval, tolerance, self.plasma_steps);
+        let most = self.plasma_steps.min(self.most_steps(moment.step_s));
+        self.control.evaluated(check, coupling_interval, tolerance, most);
         self.impacts.evaluated(age);
         self.travel = 0.0;
         self.source.recheck(domain, &self.settings, &self.members, self.control.intervals.evaluations)?;
@@ -251,7 +259,7 @@ impl FieldStage {
     /// RMS of E less the external field [V/m].
     fn rms(&self) -> f64 {
         let e = &self.values.e[..self.members.index.len()];
-        let external = self.settings.external_field_v_m;
+        let external = self.source.field.external();
         (e.iter().map(|e| (e - external).norm_squared()).sum::<f64>() / e.len().max(1) as f64).sqrt()
     }
 
@@ -355,21 +363,16 @@ impl FieldStage {
         self.onlookers.time_s = self.members.time_s;
         let looked = self.source.evaluate_aside(domain, &self.settings, &self.onlookers, &mut self.values)?;
         if !looked {
-            return Ok(self.forecast_energy());
+            return Ok(self.forecast_energy_of_onlookers());
         }
         Ok(self.energy_of(&self.onlookers, domain))
-    }
-
-    /// ½ Σ q (V + V_external) [J], extrapolated from the last two evaluations.
-    pub(crate) fn forecast_energy(&self) -> FieldEnergy {
-        self.energy.at(self.control.age)
     }
 
     /// ½ Σ q (V + V_external) of the field's last values. The potential of the field contains the external
     /// field's once, whose energy has no factor ½.
     fn energy_of(&self, members: &Members, domain: &Domain) -> FieldEnergy {
         let Members { position, charge, .. } = members;
-        let (external, centre) = (self.settings.external_field_v_m, domain.centre());
+        let (external, centre) = (self.source.field.external(), domain.centre());
         let (mut energy, mut sizes) = (0.0, 0.0);
         for ((x, q), v) in position.iter().zip(charge).zip(&self.values.potential) {
             let outer = -external.dot(&(x - centre));

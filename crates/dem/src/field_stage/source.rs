@@ -24,6 +24,8 @@ pub(crate) struct Source {
     pub(crate) field: ElectricField,
     /// The internal grid's parameters, should the solver be lost; `None`: then the run ends.
     fallback: Option<Choice>,
+    /// Time of potentials that change [s].
+    pub(super) time_s: f64,
 }
 
 impl Source {
@@ -58,7 +60,19 @@ impl Source {
             None if fallback && has_solver => Some(provide(domain, &settings, charges, &mut field)?),
             None => None,
         };
-        Ok(Self { field, fallback })
+        Ok(Self { field, fallback, time_s: 0.0 })
+    }
+
+    /// Takes the potentials and the external field of a time [s].
+    pub(super) fn set_time(&mut self, time_s: f64) {
+        self.time_s = time_s;
+        self.field.set_time(time_s);
+    }
+
+    /// Takes another field.
+    fn replace(&mut self, field: ElectricField) {
+        self.field = field;
+        self.field.set_time(self.time_s);
     }
 
     /// Evaluates E; the internal grid does it, from now on, when the solver is lost.
@@ -82,7 +96,7 @@ impl Source {
         };
         let Some(choice) = self.fallback.take() else { return Err(lost.into()) };
         tracing::warn!("{lost}; from here on the internal grid takes the field solver's place");
-        self.field = ElectricField::with_choice(domain, settings, &choice)?;
+        self.replace(ElectricField::with_choice(domain, settings, &choice)?);
         Ok(self.field.evaluate_at(*time_s, position, charge, WANTED, values)?)
     }
 
@@ -118,7 +132,7 @@ impl Source {
         let by_model = FieldSettings { tuning: Tuning::Model, ..settings.clone() };
         match ElectricField::new(domain, &by_model, position, charge) {
             Ok(field) => {
-                self.field = field;
+                self.replace(field);
                 tracing::warn!(
                     "error of the field on a sample: {error:.2e}, above the tolerance {tolerance:e}; \
                      new parameters: {:?}",

@@ -22,6 +22,15 @@ fn charge_of(member: &[bool], grains: &Grains, particles: &Particles, i: usize) 
 }
 
 impl FieldStage {
+    /// Energy of a charge [C] at a place [m] in an external field that stays as it is [J]; one that changes is
+    /// not part of the forecasts' energy.
+    fn energy_of_external(&self, domain: &Domain, charge: f64, place: &Vector3<f64>) -> f64 {
+        match self.settings.external_course {
+            Some(_) => 0.0,
+            None => -charge * self.settings.external_field_v_m.dot(&(place - domain.centre())),
+        }
+    }
+
     /// Takes the field of grains that leave off the others' E, before the grains are reordered.
     pub(crate) fn retire(
         &mut self,
@@ -30,14 +39,14 @@ impl FieldStage {
         particles: &Particles,
         leavers: &[Leaver],
     ) {
-        let (k, external) = (self.settings.permittivity.coulomb(), self.settings.external_field_v_m);
+        let k = self.settings.permittivity.coulomb();
         let mut gone = Vec::with_capacity(leavers.len());
         for Leaver { index, image } in leavers {
             gone.push(*index);
             let charge = charge_of(&self.member, grains, particles, *index);
             let Some(q) = charge.filter(|q| *q != 0.0) else { continue };
             let place = grains.position(*index);
-            let mut energy = -q * external.dot(&place);
+            let mut energy = self.energy_of_external(domain, q, &place);
             for other in (0..grains.len()).filter(|other| !gone.contains(other)) {
                 let Some(of_other) = charge_of(&self.member, grains, particles, other) else { continue };
                 let at = grains.position(other);
@@ -57,14 +66,14 @@ impl FieldStage {
 
     /// Takes in the last `count` grains, which have just come.
     pub(crate) fn admit(&mut self, domain: &Domain, grains: &Grains, particles: &Particles, count: usize) {
-        let (k, external) = (self.settings.permittivity.coulomb(), self.settings.external_field_v_m);
+        let (k, external) = (self.settings.permittivity.coulomb(), self.of_newcomer());
         for newcomer in grains.len() - count..grains.len() {
             let Some(q) = charge_of(&self.member, grains, particles, newcomer) else {
                 self.forecast.admit(Vector3::zeros(), 0.0);
                 continue;
             };
             let place = grains.position(newcomer);
-            let (mut own, mut energy) = (external, -q * external.dot(&place));
+            let (mut own, mut energy) = (external, self.energy_of_external(domain, q, &place));
             for other in 0..newcomer {
                 let Some(of_other) = charge_of(&self.member, grains, particles, other) else { continue };
                 let from = domain.shortest(place - grains.position(other));

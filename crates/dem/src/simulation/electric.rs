@@ -17,7 +17,8 @@ impl Simulation {
             return;
         }
         self.follow_contact_areas();
-        if Charging::is_due(self.progress.step_index) {
+        let most = self.field.as_ref().map_or(u64::MAX, FieldStage::most_steps_of_trades);
+        if Charging::is_due(self.progress.step_index, most) {
             self.trade_between_grains();
         }
         self.trade_with_walls();
@@ -81,7 +82,7 @@ impl Simulation {
         field.evaluate(&self.domain, &self.grains, &self.particles, extras, moment)?;
         self.limits.set_plasma(field.plasma_limit);
         if let Some(charging) = &mut self.charging {
-            charging.take_field(field.beside(), &mut self.contacts, &self.particles.charge);
+            charging.take_field(field, &mut self.contacts, &self.particles.charge);
         }
         Ok(())
     }

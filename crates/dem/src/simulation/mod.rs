@@ -44,7 +44,8 @@ pub(crate) const HALF_SKIN: f64 = 0.499_999;
 /// A step ([`Self::step`]) runs them in this order; the equations are in `docs/equations.md`, the sections
 /// are named here:
 ///
-/// 1. *Begin*: count the step; keep the state where another process may be lost in it.
+/// 1. *Begin*: count the step; keep the state where another process may be lost in it; potentials that
+///    change go on to the step's end ("Potentials that change").
 /// 2. *Drift*: first half of velocity Verlet ("Motion"); walls that move go where they are at the new time.
 /// 3. *Exits*: grains beyond an open face, or at a face that mirrors charges, end the run or are removed;
 ///    those in an outlet are removed.
@@ -140,7 +141,8 @@ impl Simulation {
         self.rescued.take()
     }
 
-    /// Counts the step, and keeps the state before it where a field solver may be lost in it.
+    /// Counts the step, and keeps the state before it where a field solver may be lost in it. Potentials that
+    /// change are those of the step's end from here on.
     fn begin_step(&mut self) {
         self.watch.start();
         let Progress { step_s, speed, .. } = self.progress;
@@ -149,6 +151,10 @@ impl Simulation {
         let flows = self.gas.as_ref().is_some_and(|gas| gas.flowing().is_some());
         self.rescued = (may_be_lost && !flows).then(|| self.state());
         self.progress.step_index += 1;
+        let time_s = self.progress.time_s();
+        if let Some(field) = &mut self.field {
+            field.advance(time_s, step_s, &self.grains);
+        }
     }
 
     /// Moves walls that move to the end of the step.

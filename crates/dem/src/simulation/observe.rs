@@ -103,15 +103,20 @@ impl Simulation {
     /// # Errors
     /// A field that fails.
     pub fn energies(&mut self, electric: ElectricEnergy) -> Result<Energies, DemError> {
+        if electric == ElectricEnergy::Evaluated || self.field.as_ref().is_some_and(FieldStage::changes) {
+            self.scratch.extras.clear();
+            if let Some(charging) = &self.charging {
+                charging.add_spots(&self.domain, &mut self.scratch.extras);
+            }
+        }
+        let extras = &self.scratch.extras;
         let electric = match (&mut self.field, electric) {
             (None, _) | (_, ElectricEnergy::LeftOut) => None,
-            (Some(field), ElectricEnergy::Forecast) => Some(field.forecast_energy()),
+            (Some(field), ElectricEnergy::Forecast) => {
+                Some(field.forecast_energy(&self.domain, &self.grains, &self.particles, extras))
+            }
             (Some(field), ElectricEnergy::Evaluated) => {
-                self.scratch.extras.clear();
-                if let Some(charging) = &self.charging {
-                    charging.add_spots(&self.domain, &mut self.scratch.extras);
-                }
-                Some(field.fresh_energy(&self.domain, &self.grains, &self.particles, &self.scratch.extras)?)
+                Some(field.fresh_energy(&self.domain, &self.grains, &self.particles, extras)?)
             }
         };
         let contact = energy::contact(&self.grains, &self.contacts);

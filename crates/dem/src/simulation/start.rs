@@ -86,6 +86,9 @@ impl Simulation {
         }
         run.grains.restore(state.grains);
         run.progress = state.progress;
+        if let Some(field) = &mut run.field {
+            field.set_time(run.progress.time_s(), run.progress.step_s);
+        }
         run.contacts.move_walls(run.progress.time_s(), AT_START);
         run.allowed = overlaps::allowed(run.depths(), run.time.allow_overlap);
         run.resize_scratch();
@@ -210,7 +213,7 @@ impl Simulation {
         self.update_electric_limits();
         self.progress.step_s = match self.time.step {
             Step::Seconds(step) => step,
-            Step::Auto => self.limits.auto_step(&self.progress),
+            Step::Auto => self.auto_step(),
         };
         if !self.progress.step_s.is_finite() {
             return Err(DemError::Setup(
@@ -220,14 +223,24 @@ impl Simulation {
         if self.field.is_some() {
             self.evaluate_field()?;
             self.update_electric_limits();
-            let shorter = self.limits.auto_step(&self.progress);
+            let shorter = self.auto_step();
             if self.time.step == Step::Auto && shorter < self.progress.step_s {
                 self.progress.step_s = shorter;
                 self.evaluate_field()?;
             }
         }
+        if let Some(field) = &mut self.field {
+            field.check_step(&self.domain, self.progress.step_s)?;
+            field.set_time(self.progress.time_s(), self.progress.step_s);
+        }
         self.set_step_of_gas();
         self.watch_guards()
+    }
+
+    /// Length of an automatic step [s], within the limits of the grains and of what changes with time.
+    fn auto_step(&self) -> f64 {
+        let shows = self.field.as_ref().map_or(f64::INFINITY, |field| field.longest_step_s(&self.domain));
+        self.limits.auto_step(&self.progress).min(shows)
     }
 
     /// Tells a gas that flows how long a step is.

@@ -1,6 +1,6 @@
 //! The way from settings and particles to a field: parameters are chosen, and what they need is built.
 
-use super::ElectricField;
+use super::{ElectricField, changing};
 use crate::choosing::candidates::Candidate;
 use crate::choosing::choice::Choice;
 use crate::choosing::over_mesh::{self, OverMesh};
@@ -36,6 +36,7 @@ impl ElectricField {
         charges: &[f64],
     ) -> Result<Self, FieldError> {
         check_finite(positions, charges)?;
+        changing::check(domain, settings)?;
         let (mut error_estimated, mut error_measured) = (None, None);
         let choice = match settings.method {
             Method::Cutoff => Choice::Cutoff { cutoff_m: cutoff_radius(settings)? },
@@ -156,6 +157,7 @@ impl ElectricField {
         settings: &FieldSettings,
         choice: &Choice,
     ) -> Result<Self, FieldError> {
+        changing::check(domain, settings)?;
         let permittivity = settings.permittivity;
         let background = settings.neutralising_background;
         let method: Box<dyn FieldMethod> = match choice {

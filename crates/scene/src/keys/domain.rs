@@ -1,16 +1,20 @@
 //! Keys of `[domain]`.
 
-use super::{Form, Key};
+use super::{Form, Key, course};
 use crate::limits::{COORDINATE, ELECTRIC};
 
 /// Conditions of a face that are given as a word.
 pub(crate) const FACE_WORDS: &[&str] = &["grounded", "insulating", "periodic", "open"];
 
 static FACE: &[Key] = &[
-    Key::new("potential_V", Form::Number(ELECTRIC), "Potential of a conductor.")
-        .unit("V")
-        .example("1000.0")
-        .also(&["potential", "voltage", "v", "dirichlet", "fixed_value"]),
+    Key::new(
+        "potential_V",
+        Form::Either(&[Form::Number(ELECTRIC), Form::Table(course::POTENTIAL)]),
+        "Potential of a conductor; a table gives one that changes with time.",
+    )
+    .unit("V")
+    .example("1000.0")
+    .also(&["potential", "voltage", "v", "dirichlet", "fixed_value"]),
     Key::new("normal_field_V_m", Form::Number(ELECTRIC), "Field that leaves the box through an insulator.")
         .unit("V/m")
         .example("0.0")

@@ -1,6 +1,6 @@
 //! Keys of `[electric_field]`.
 
-use super::{Form, Key};
+use super::{Form, Key, course};
 use crate::limits::{ELECTRIC, FRACTION, LENGTH, TOLERANCE};
 use crate::tree::Range;
 
@@ -28,11 +28,15 @@ pub(super) static KEYS: &[Key] = &[
     .default("1.0")
     .example("1.0")
     .also(&["permittivity", "epsilon_r", "epsilon", "dielectric_constant", "eps_r"]),
-    Key::new("external_field_V_m", Form::Vector(ELECTRIC), "Even field that is added everywhere.")
-        .unit("V/m")
-        .default("[0.0, 0.0, 0.0]")
-        .example("[0.0, 0.0, 1e5]")
-        .also(&["external_field", "field_V_m", "background_field", "e0", "applied_field"]),
+    Key::new(
+        "external_field_V_m",
+        Form::Either(&[Form::Vector(ELECTRIC), Form::Table(course::FIELD)]),
+        "Even field that is added everywhere; a table gives one that changes with time.",
+    )
+    .unit("V/m")
+    .default("[0.0, 0.0, 0.0]")
+    .example("[0.0, 0.0, 1e5]")
+    .also(&["external_field", "field_V_m", "background_field", "e0", "applied_field"]),
     Key::new(
         "coupling_interval",
         Form::Either(&[Form::Whole(1, u32::MAX as i64), Form::Word(&["auto"])]),

@@ -6,6 +6,7 @@
 mod advice;
 mod charge_transfer;
 mod contacts;
+mod course;
 mod domain;
 mod electric_field;
 mod feeds;

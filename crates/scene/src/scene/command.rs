@@ -6,7 +6,7 @@ use super::description::ElectricFieldSettings;
 use crate::SceneError;
 use crate::error::shorten;
 use crate::tree::{Entries, Node, Value, nearest};
-use amberfield_core::{CouplingInterval, FieldSettings, Method, Tuning};
+use amberfield_core::{CouplingInterval, Course, FieldSettings, Method, Tuning};
 use nalgebra::Vector3;
 use std::fmt::Write as _;
 
@@ -92,6 +92,23 @@ pub(super) fn command_entries(command: &str, node: &Node) -> Result<Entries, Sce
     }
 }
 
+/// Text of the external field.
+fn external_field(field: &FieldSettings) -> String {
+    let vector = |v: Vector3<f64>| format!("[{:?}, {:?}, {:?}]", v.x, v.y, v.z);
+    match &field.external_course {
+        None => vector(field.external_field_v_m),
+        Some(Course::Sine { amplitude, frequency_hz, phase, offset }) => format!(
+            "{{ amplitude = {}, frequency_Hz = {frequency_hz:?}, phase_rad = {phase:?}, offset = {} }}",
+            vector(*amplitude),
+            vector(*offset)
+        ),
+        Some(Course::Table { name, .. }) => {
+            format!("{{ table = {} }}", toml::Value::String(name.clone()))
+        }
+        Some(other) => format!("{other:?}"),
+    }
+}
+
 impl ElectricFieldSettings {
     /// Text of the settings as a section of a scene, with every key written out.
     #[must_use]
@@ -117,8 +134,7 @@ impl ElectricFieldSettings {
         line("limit_field_force", self.limit_field_force.to_string());
         line("field_force_limit_factor", format!("{:?}", self.field_force_limit_factor));
         line("relative_permittivity", format!("{:?}", field.permittivity.relative()));
-        let external = field.external_field_v_m;
-        line("external_field_V_m", format!("[{:?}, {:?}, {:?}]", external.x, external.y, external.z));
+        line("external_field_V_m", external_field(field));
         line(
             "coupling_interval",
             match field.coupling_interval {
@@ -144,7 +160,10 @@ impl ElectricFieldSettings {
         let radius = field.cutoff_radius_m.ok_or("the command needs field_cutoff_radius")?;
         let plain = FieldSettings::default();
         for (key, differs) in [
-            ("external_field_V_m", field.external_field_v_m != Vector3::zeros()),
+            (
+                "external_field_V_m",
+                field.external_field_v_m != Vector3::zeros() || field.external_course.is_some(),
+            ),
             ("coupling_interval", field.coupling_interval != CouplingInterval::Auto),
             ("overlap", self.field.overlap),
             ("tuning", field.tuning != plain.tuning),

@@ -1,8 +1,10 @@
 //! Section `[electric_field]`, as keys or as one command line.
 
 use super::command::command_entries;
+use super::course::{Given, read_field};
 use super::description::ElectricFieldSettings;
 use crate::SceneError;
+use crate::source::SceneSource;
 use crate::table::SceneTable;
 use crate::tree::{Entries, Node, Value};
 use amberfield_core::{CouplingInterval, ForceLimit, Method, Permittivity, Tuning};
@@ -10,9 +12,10 @@ use amberfield_core::{CouplingInterval, ForceLimit, Method, Permittivity, Tuning
 /// Reads `[electric_field]`.
 pub(super) fn read_electric_field(
     document: &SceneTable<'_>,
+    source: &mut SceneSource,
 ) -> Result<Option<ElectricFieldSettings>, SceneError> {
     let Some(table) = document.table("electric_field")? else { return Ok(None) };
-    let Some(command) = table.text("command")? else { return read_keys(&table).map(Some) };
+    let Some(command) = table.text("command")? else { return read_keys(&table, source).map(Some) };
     if let Some(key) = table.keys().find(|key| !["command", "method", "tolerance"].contains(key)) {
         return Err(table.bad(
             key,
@@ -26,17 +29,25 @@ pub(super) fn read_electric_field(
         entries.extend(table.get(key).map(|node| (key.to_owned(), node.clone())));
     }
     let inner = Node { value: Value::Table(entries), place: node.place.clone() };
-    read_keys(&SceneTable::new(&inner, "electric_field", document.entry("electric_field"))?).map(Some)
+    let table = SceneTable::new(&inner, "electric_field", document.entry("electric_field"))?;
+    read_keys(&table, source).map(Some)
 }
 
-fn read_keys(table: &SceneTable<'_>) -> Result<ElectricFieldSettings, SceneError> {
+fn read_keys(table: &SceneTable<'_>, source: &mut SceneSource) -> Result<ElectricFieldSettings, SceneError> {
     let mut read = ElectricFieldSettings::default();
     read_common(table, &mut read)?;
     let field = &mut read.field;
     let methods = Method::ALL.map(|method| (method.name(), method));
     field.method = table.word("method", &methods)?.unwrap_or(field.method);
     field.tolerance = table.number("tolerance")?.unwrap_or(field.tolerance);
-    field.external_field_v_m = table.vector("external_field_V_m")?.unwrap_or(field.external_field_v_m);
+    match read_field(table, "external_field_V_m", source)? {
+        Some(Given::Constant(external)) => field.external_field_v_m = external,
+        Some(Given::Changing(course)) => {
+            field.external_field_v_m = course.at(0.0);
+            field.external_course = Some(course);
+        }
+        None => {}
+    }
     field.coupling_interval = read_interval(table)?;
     let tunings = [("timed", Tuning::Timed), ("model", Tuning::Model)];
     field.tuning = table.word("tuning", &tunings)?.unwrap_or_default();

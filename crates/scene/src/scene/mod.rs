@@ -1,6 +1,7 @@
 //! Validation of a scene file, one source file for each section.
 
 mod command;
+mod course;
 mod description;
 mod domain;
 mod electric_field;
@@ -16,6 +17,7 @@ mod particles;
 mod physics;
 mod read;
 mod time;
+mod time_table;
 mod together;
 mod unusual;
 mod wall_motion;

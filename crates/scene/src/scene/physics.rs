@@ -25,13 +25,21 @@ const TECHNICAL: [&str; 12] = [
 const OF_SOLVER: &str = "solver";
 const RANKS: &str = "solver.ranks";
 /// Keys whose values are names of files: their contents count instead.
-const FILES: [&str; 5] =
-    ["particles.file", "particles.from", "particles.generate.charge_C.from_file", "stl", "table"];
+const FILES: [&str; 6] = [
+    "particles.file",
+    "particles.from",
+    "particles.generate.charge_C.from_file",
+    "electric_field.external_field_V_m.table",
+    "stl",
+    "table",
+];
 /// Section of where grains come from, and its key that decides more than that.
 const PARTICLES: &str = "particles.";
 const FIXED_GROUPS: &str = "particles.fixed_groups";
 /// Section of grains that come later, by a clock that begins anew.
 const FEEDS: &str = "feeds[";
+/// Ends of the keys of what changes by a clock.
+const CLOCKS: [&str; 2] = ["frequency_Hz", "table"];
 /// Differences that a message names at most.
 const MOST_NAMED: usize = 5;
 
@@ -91,7 +99,11 @@ impl Physics {
             rest.map(|(key, value)| (key.clone(), value.clone())).collect::<Vec<_>>()
         };
         let known = |of: u64| of == print || earlier.files.iter().any(|(_, before)| *before == of);
-        let has_clock = |key: &String| key.starts_with(FEEDS) || key.contains("].motion");
+        let has_clock = |key: &String| {
+            key.starts_with(FEEDS)
+                || key.contains("].motion")
+                || CLOCKS.iter().any(|clock| key.ends_with(clock))
+        };
         rest(self) == rest(earlier)
             && self.files.iter().all(|(_, of)| known(*of))
             && !self.keys.keys().any(has_clock)
@@ -133,5 +145,6 @@ fn is_technical(key: &str) -> bool {
 fn names_a_file(key: &str) -> bool {
     let is_wall = |file: &str| key.starts_with("walls[") && key.ends_with(&format!("].{file}"));
     let is_face = key.starts_with("feeds[") && key.ends_with("].region.stl");
-    is_face || FILES.iter().any(|file| key == *file || is_wall(file))
+    let is_potential = key.starts_with("domain.boundary.") && key.ends_with(".potential_V.table");
+    is_face || is_potential || FILES.iter().any(|file| key == *file || is_wall(file))
 }

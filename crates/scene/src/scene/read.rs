@@ -66,7 +66,8 @@ pub fn read_outline(path: &Path) -> Result<SceneOutline, SceneError> {
     let entries = parse_document(&origin, &text)?;
     let document = SceneTable::document(&entries, origin.line(0), SCENE)?;
     let materials = read_materials(&document)?.into_iter().map(|material| material.name).collect();
-    Ok(SceneOutline { materials, domain: read_domain(&document)? })
+    let mut source = SceneSource::new(path.parent().unwrap_or(Path::new("")), None);
+    Ok(SceneOutline { materials, domain: read_domain(&document, &mut source)? })
 }
 
 /// Reads the box and the settings of the electric field from a text that a program made: the sections
@@ -78,8 +79,9 @@ pub fn parse_field_settings(text: &str) -> Result<(Domain, FieldSettings), Scene
     let entries = parse_document(&Origin::Program, text)?;
     let document = SceneTable::document(&entries, Origin::Program.line(0), SCENE)?;
     let mut problems = Problems::default();
-    let domain = problems.keep(read_domain(&document));
-    let field = problems.keep(read_electric_field(&document));
+    let mut source = SceneSource::new(Path::new(""), None);
+    let domain = problems.keep(read_domain(&document, &mut source));
+    let field = problems.keep(read_electric_field(&document, &mut source));
     problems.finish()?;
     let (Some(Some(domain)), Some(Some(field))) = (domain, field) else {
         return Err(document.missing("domain", "give the box and the settings of the field"));
@@ -121,10 +123,10 @@ fn read_sections(
     let mut problems = Problems::default();
     let motion = purpose == Purpose::Run || (purpose == Purpose::Explain && document.has("time"));
     let sections = problems.keep(check_sections(document, motion, purpose));
-    let domain = problems.keep(read_domain(document));
+    let domain = problems.keep(read_domain(document, source));
     let list = problems.keep(read_materials(document));
     let contacts = problems.keep(read_contacts(document));
-    let field = problems.keep(read_electric_field(document));
+    let field = problems.keep(read_electric_field(document, source));
     let charge_transfer = problems.keep(read_charge_transfer(document));
     let solver = problems.keep(read_solver(document, source));
     let gas = problems.keep(read_gas(document));
@@ -188,7 +190,7 @@ fn read_sections(
 /// Key of the run from whose checkpoint grains are.
 const FROM: &[&str] = &["particles", "from"];
 /// Keys whose values are paths relative to the scene's folder.
-const PATHS: [&[&str]; 7] = [
+const PATHS: [&[&str]; 9] = [
     &["particles", "file"],
     FROM,
     &["particles", "generate", "charge_C", "from_file"],
@@ -196,6 +198,8 @@ const PATHS: [&[&str]; 7] = [
     &["walls", "*", "stl"],
     &["feeds", "*", "region", "stl"],
     &["walls", "*", "motion", "*", "table"],
+    &["domain", "boundary", "*", "potential_V", "table"],
+    &["electric_field", "external_field_V_m", "table"],
 ];
 
 /// Text of the scene as TOML, with absolute paths of files so that it can be run from any folder.
@@ -214,10 +218,10 @@ fn resolved(entries: &Entries, folder: &Path) -> String {
     }
 }
 
-/// Changes each text at a path of keys; `*` stands for each item of an array.
+/// Changes each text at a path of keys; `*` stands for each item of an array, or each key of a table.
 fn change_texts(entries: &mut Entries, path: &[&str], change: &dyn Fn(&str) -> String) {
     let Some((first, rest)) = path.split_first() else { return };
-    for (_, node) in entries.iter_mut().filter(|(key, _)| key == first) {
+    for (_, node) in entries.iter_mut().filter(|(key, _)| key == first || *first == "*") {
         match &mut node.value {
             Value::Text(text) if rest.is_empty() => *text = change(text),
             Value::Table(inner) => change_texts(inner, rest, change),

@@ -7,8 +7,8 @@ use crate::error::{Problems, shorten};
 use crate::table::SceneTable;
 use crate::tree::nearest;
 use amberfield_core::{
-    Axis, Boundary, Cohesion, Domain, FieldSettings, Method, MotionKind, Vector3, Wall, WallCharging,
-    WallShape,
+    Axis, Boundary, Cohesion, Domain, FieldCourse, FieldSettings, LEAST_PER_PERIOD, Method, MotionKind, Step,
+    Vector3, Wall, WallCharging, WallShape,
 };
 
 /// Number of grains beyond which the direct sum causes a warning.
@@ -30,6 +30,7 @@ pub(super) fn check_together(
     if let (Some(field), Some(domain)) = (&scene.electric_field, &scene.domain) {
         problems.keep(check_reach(document, domain, &field.field));
     }
+    problems.keep(check_courses(document, scene));
     problems.keep(check_charge_transfer(document, scene));
     problems.keep(check_cohesion(document, scene));
     problems.finish()?;
@@ -140,6 +141,40 @@ pub(super) fn check_reach(
                 "{:e} nodes with the padding beside open faces are more than {MOST_NODES:e}; \
                  take fewer, or \"auto\"",
                 nodes(cells)
+            ),
+        )));
+    }
+    problems.finish()
+}
+
+/// Checks that the method knows potentials that change, and that the step shows them.
+fn check_courses(document: &SceneTable<'_>, scene: &Scene) -> Result<(), SceneError> {
+    let Some(field) = scene.electric_field.as_ref().map(|field| &field.field) else { return Ok(()) };
+    let faces = scene.domain.iter().flat_map(Domain::courses);
+    let mut problems = Problems::default();
+    if field.method == Method::Kolehmainen && faces.clone().next().is_some() {
+        problems.keep::<()>(Err(document.bad_below(
+            "electric_field",
+            "method",
+            "\"kolehmainen\"",
+            "it has no potentials that change with time; choose method = \"p3m\", or give potential_V as a \
+             number",
+        )));
+    }
+    let of_faces = faces.map(|face| face.course.longest_step_s());
+    let longest = of_faces.chain(field.external_course.iter().map(FieldCourse::longest_step_s));
+    let longest = longest.fold(f64::INFINITY, f64::min);
+    if let Some(Step::Seconds(step)) = scene.time.as_ref().map(|time| time.step)
+        && step > longest
+    {
+        problems.keep::<()>(Err(document.bad_below(
+            "time",
+            "step_s",
+            &format!("{step:e}"),
+            format!(
+                "a potential or the external field has a frequency of {:e} Hz, and fewer than \
+                 {LEAST_PER_PERIOD} steps in a period do not show it; give a step of at most {longest:e} s",
+                1.0 / (LEAST_PER_PERIOD * longest)
             ),
         )));
     }

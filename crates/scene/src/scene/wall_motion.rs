@@ -1,9 +1,10 @@
 //! Key `motion` of `[[walls]]`.
 
+use super::time_table::TimeTable;
 use crate::SceneError;
 use crate::error::Problems;
 use crate::limits::COORDINATE;
-use crate::source::{SceneSource, decode};
+use crate::source::SceneSource;
 use crate::table::SceneTable;
 use amberfield_core::{MotionKind, MotionRow, Vector3, WallMotion};
 
@@ -13,8 +14,13 @@ const MINUTE: f64 = 60.0;
 const SHORTEST: f64 = 1e-100;
 /// Kinds of motion, by their keys.
 const KINDS: [&str; 6] = ["rotate", "velocity_m_s", "vibrate", "surface_velocity_m_s", "table", "servo"];
-/// Columns of a table of poses.
-const COLUMNS: [&str; 7] = ["t_s", "x_m", "y_m", "z_m", "rx_rad", "ry_rad", "rz_rad"];
+/// Table of poses.
+const POSES: TimeTable<7> = TimeTable {
+    columns: ["t_s", "x_m", "y_m", "z_m", "rx_rad", "ry_rad", "rz_rad"],
+    may_lack: true,
+    values: COORDINATE,
+    of: "a motion",
+};
 
 /// Reads the motions of a wall.
 pub(super) fn read_motion(
@@ -115,79 +121,14 @@ fn direction(table: &SceneTable<'_>, key: &str, vector: Vector3<f64>) -> Result<
     Ok(vector.normalize())
 }
 
-/// Reads a table of poses: a header row with names of columns, then a row for each time.
+/// Reads a table of poses.
 fn read_rows(file: &str, bytes: &[u8]) -> Result<Vec<MotionRow>, SceneError> {
-    let text = decode(file, bytes)?;
-    let lines = (1..).zip(text.lines()).map(|(number, line)| (number, line.trim()));
-    let mut lines = lines.filter(|(_, line)| !line.is_empty() && !line.starts_with('#'));
-    let Some((number, header)) = lines.next() else {
-        return Err(SceneError::file(file, format!("has no header row; begin with {}", COLUMNS.join(","))));
+    let pose = |[time_s, x, y, z, rx, ry, rz]: [f64; 7]| MotionRow {
+        time_s,
+        displacement: Vector3::new(x, y, z),
+        rotation: Vector3::new(rx, ry, rz),
     };
-    let names: Vec<&str> = cells(header).collect();
-    let known = |name: &&str| COLUMNS.iter().position(|column| column == name);
-    if let Some(unknown) = names.iter().find(|name| known(name).is_none()) {
-        let problem = format!("unknown column \"{unknown}\"; columns are {}", COLUMNS.join(", "));
-        return Err(SceneError::data(file, number, problem));
-    }
-    let places: Vec<usize> = names.iter().filter_map(known).collect();
-    if !places.contains(&0) || places.len() < 2 || (1..places.len()).any(|k| places[..k].contains(&places[k]))
-    {
-        let problem = format!(
-            "the header row needs t_s and some of {}, each once; a column that is not there is 0",
-            COLUMNS[1..].join(", ")
-        );
-        return Err(SceneError::data(file, number, problem));
-    }
-    let mut rows: Vec<MotionRow> = Vec::new();
-    for (number, line) in lines {
-        let row = read_row(line, &places).map_err(|problem| SceneError::data(file, number, problem))?;
-        if let Some(before) = rows.last().filter(|before| row.time_s <= before.time_s) {
-            let problem = format!(
-                "t_s = {} follows t_s = {}; times must rise from row to row: sort the rows, remove what is \
-                 twice",
-                row.time_s, before.time_s
-            );
-            return Err(SceneError::data(file, number, problem));
-        }
-        rows.push(row);
-    }
-    if rows.len() < 2 {
-        let problem = format!("has {} row(s) below its header; a motion needs two at least", rows.len());
-        return Err(SceneError::file(file, problem));
-    }
-    Ok(rows)
-}
-
-/// Reads a row whose cells belong to some of the columns.
-fn read_row(line: &str, places: &[usize]) -> Result<MotionRow, String> {
-    let found: Vec<&str> = cells(line).collect();
-    if found.len() != places.len() {
-        let (count, asked) = (found.len(), places.len());
-        return Err(format!("{count} cells where the header has {asked}; give one for each column"));
-    }
-    let mut numbers = [0.0; COLUMNS.len()];
-    for (cell, place) in found.into_iter().zip(places) {
-        let number = cell.parse::<f64>().ok().filter(|number| COORDINATE.contains(*number));
-        numbers[*place] = number.ok_or_else(|| {
-            format!("{} = \"{}\": give a number {COORDINATE}", COLUMNS[*place], crate::error::shorten(cell))
-        })?;
-    }
-    let [time_s, x, y, z, rx, ry, rz] = numbers;
-    Ok(MotionRow { time_s, displacement: Vector3::new(x, y, z), rotation: Vector3::new(rx, ry, rz) })
-}
-
-/// Cells of a line, between commas, semicolons, or blanks.
-fn cells(line: &str) -> impl Iterator<Item = &str> {
-    let sign = [',', ';'].into_iter().find(|sign| line.contains(*sign));
-    let mut parts: Vec<&str> = match sign {
-        Some(sign) => line.split(sign).map(str::trim).collect(),
-        None => line.split_whitespace().collect(),
-    };
-    // A sign at the end of a line begins no cell.
-    if parts.last().is_some_and(|last| last.is_empty()) {
-        parts.pop();
-    }
-    parts.into_iter()
+    Ok(POSES.read(file, bytes)?.into_iter().map(pose).collect())
 }
 
 #[cfg(test)]

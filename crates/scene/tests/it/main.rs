@@ -13,5 +13,6 @@ mod generators;
 mod good_scenes;
 mod keys;
 mod outputs;
+mod potentials;
 mod round_trips;
 mod vtk_files;

@@ -89,6 +89,14 @@ impl General {
         Ok(Self { min: domain.min(), max: domain.max(), kinds, faces, decay, step })
     }
 
+    /// Takes the present potentials of a domain's faces.
+    pub(super) fn set_potentials(&mut self, domain: &Domain) {
+        for face in self.faces.iter_mut().filter(|face| face.is_conductor) {
+            let condition = domain.faces()[face.axis][face.side];
+            face.value = condition.potential().expect("a conductor stays one");
+        }
+    }
+
     /// Field [V/m] and potential [V] at a point.
     pub(super) fn evaluate(&self, x: &Vector3<f64>) -> FieldAt {
         let least = (self.max - self.min) * LEAST_DISTANCE;

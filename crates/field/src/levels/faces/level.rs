@@ -12,6 +12,8 @@ use rayon::prelude::*;
 pub(crate) struct FacesLevel {
     /// `None` where the faces have no values, or the method holds them in boundary conditions of its own.
     field: Option<BoundaryField>,
+    /// Domain whose faces have the potentials of the present time; `None` where they stay as they are.
+    changing: Option<Domain>,
     values: Vec<FieldAt>,
 }
 
@@ -29,7 +31,35 @@ impl FacesLevel {
             Method::P3m => BoundaryField::with_tolerance(domain, SHARE * settings.tolerance)?,
             _ => BoundaryField::new(domain)?,
         };
-        Ok(Self { field, values: Vec::new() })
+        let changes = field.is_some() && !domain.courses().is_empty();
+        Ok(Self { field, changing: changes.then(|| domain.clone()), values: Vec::new() })
+    }
+
+    /// Takes the potentials of a time [s].
+    pub(crate) fn set_time(&mut self, time_s: f64) {
+        if let (Some(field), Some(domain)) = (&mut self.field, &mut self.changing) {
+            domain.set_time(time_s);
+            field.set_potentials(domain);
+        }
+    }
+
+    /// Field that changes with time and is the same everywhere, if it is one.
+    pub(crate) fn changing_uniform(&self) -> Option<&BoundaryField> {
+        self.changing.as_ref().and(self.field.as_ref()).filter(|field| field.is_uniform())
+    }
+
+    /// E of a field that changes with time and is the same everywhere, at any time [s], in V/m; zero for
+    /// other fields.
+    pub(crate) fn changing_uniform_at(&self, time_s: f64) -> Vector3<f64> {
+        match (&self.changing, self.changing_uniform()) {
+            (Some(domain), Some(field)) => field.uniform_at(domain, time_s),
+            _ => Vector3::zeros(),
+        }
+    }
+
+    /// Domain whose potentials change and make a field that is not the same everywhere.
+    pub(crate) fn changing_otherwise(&self) -> Option<&Domain> {
+        self.changing.as_ref().filter(|_| self.changing_uniform().is_none())
     }
 
     /// E [V/m] and potential [V] at a place [m].

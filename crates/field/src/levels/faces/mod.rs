@@ -30,6 +30,9 @@ const ROUND_OFF: f64 = 1e-12;
 /// Normal fields without any conductor whose fluxes do not cancel go with a uniform background charge that
 /// takes them; the charges' own background, see [`crate::Direct`], cancels it when the net charge matches.
 /// Where the faces leave the potential free its mean over the domain is 0.
+///
+/// Potentials that change with time have the values that the domain's faces have at present; which of the
+/// solutions it is does not depend on them.
 #[derive(Clone, Debug, PartialEq)]
 pub struct BoundaryField {
     solution: Solution,
@@ -69,7 +72,7 @@ impl BoundaryField {
             Boundary::Insulating { normal_field_v_m } => *normal_field_v_m,
             face => face.potential().unwrap_or(0.0),
         });
-        if values.into_iter().all(|value| value == 0.0) {
+        if domain.courses().is_empty() && values.into_iter().all(|value| value == 0.0) {
             return Ok(None);
         }
         let solution = match carrier(domain) {
@@ -79,6 +82,26 @@ impl BoundaryField {
             Carrier::Several => Solution::General(General::new(domain, tolerance)?),
         };
         Ok(Some(Self { solution }))
+    }
+
+    /// Takes the present potentials of a domain's faces, of which the field was built.
+    pub(crate) fn set_potentials(&mut self, domain: &Domain) {
+        match (&mut self.solution, carrier(domain)) {
+            (Solution::Linear(linear), Carrier::Axis(axis)) => *linear = along(domain, axis),
+            (Solution::General(general), _) => general.set_potentials(domain),
+            // Without a conductor there is no potential.
+            _ => {}
+        }
+    }
+
+    /// E of a field that is the same everywhere, at a time [s] of a domain's potentials [V/m].
+    pub(crate) fn uniform_at(&self, domain: &Domain, time_s: f64) -> Vector3<f64> {
+        let Carrier::Axis(axis) = carrier(domain) else { return Vector3::zeros() };
+        let potential = |side: Side| {
+            let course = domain.courses().iter().find(|face| face.axis == axis && face.side == side);
+            course.map_or_else(|| domain.face(axis, side).potential(), |face| Some(face.course.at(time_s)))
+        };
+        field_along(domain, axis, [Side::Min, Side::Max].map(potential)).0
     }
 
     /// Whether E is the same everywhere.
@@ -122,8 +145,7 @@ enum Carrier {
 
 fn carrier(domain: &Domain) -> Carrier {
     let kinds = axis_kinds(domain);
-    let conducting: Vec<Axis> =
-        Axis::ALL.into_iter().filter(|axis| kinds[axis.index()].has_conductor()).collect();
+    let mut conducting = Axis::ALL.into_iter().filter(|axis| kinds[axis.index()].has_conductor());
     let has_flux = |axis: Axis| {
         [Side::Min, Side::Max].into_iter().any(|side| {
             matches!(
@@ -136,12 +158,14 @@ fn carrier(domain: &Domain) -> Carrier {
     let Some(first) = potentials.next() else {
         return Carrier::Nowhere;
     };
-    if potentials.all(|other| other == first) && !Axis::ALL.into_iter().any(has_flux) {
+    // Potentials that change may be the same at times.
+    let stay = domain.courses().is_empty();
+    if stay && potentials.all(|other| other == first) && !Axis::ALL.into_iter().any(has_flux) {
         return Carrier::Everywhere(first);
     }
-    match conducting.as_slice() {
-        [axis] if !Axis::ALL.into_iter().any(|other| other != *axis && has_flux(other)) => {
-            Carrier::Axis(*axis)
+    match (conducting.next(), conducting.next()) {
+        (Some(axis), None) if !Axis::ALL.into_iter().any(|other| other != axis && has_flux(other)) => {
+            Carrier::Axis(axis)
         }
         _ => Carrier::Several,
     }
@@ -156,10 +180,18 @@ fn normal_field(face: Boundary) -> f64 {
 
 /// One axis has conductors, and it alone has values.
 fn along(domain: &Domain, axis: Axis) -> Linear {
+    let potentials = [Side::Min, Side::Max].map(|side| domain.face(axis, side).potential());
+    let (field, potential) = field_along(domain, axis, potentials);
+    Linear { origin: domain.min(), potential, field, ..Linear::default() }
+}
+
+/// Field [V/m], and potential at the lower corner [V], between two faces across an axis with potentials [V]
+/// or none.
+fn field_along(domain: &Domain, axis: Axis, potentials: [Option<f64>; 2]) -> (Vector3<f64>, f64) {
     let index = axis.index();
     let length = domain.extent()[index];
     let [lower, upper] = [Side::Min, Side::Max].map(|side| domain.face(axis, side));
-    let (field, potential) = match (lower.potential(), upper.potential()) {
+    let (along, potential) = match (potentials[0], potentials[1]) {
         (Some(low), Some(high)) => ((low - high) / length, low),
         // An open or insulating face opposite: the field is the insulator's, none for an open one.
         (Some(low), None) => (normal_field(upper), low),
@@ -168,9 +200,9 @@ fn along(domain: &Domain, axis: Axis) -> Linear {
             (field, high.unwrap_or(0.0) + field * length)
         }
     };
-    let mut linear = Linear { origin: domain.min(), potential, ..Linear::default() };
-    linear.field[index] = field;
-    linear
+    let mut field = Vector3::zeros();
+    field[index] = along;
+    (field, potential)
 }
 
 /// Normal fields alone: along each axis E runs linearly from one face's value to the other's.
