@@ -62,7 +62,8 @@ fn bad_outlets_are_refused_with_advice() {
             &["outlet \"b\"", "outlet \"a\" has the face"],
         ),
         (
-            "[[outlets]]\nname = \"a\"\nregion = { box = { min_m = [0,0,0.01], max_m = [0.02,0.01,0.02] } }\n",
+            "[[outlets]]\nname = \"a\"\n\
+             region = { box = { min_m = [0,0,0.01], max_m = [0.02,0.01,0.02] } }\n",
             &["outlet \"a\"", "beyond the domain"],
         ),
         (

@@ -43,7 +43,7 @@ pub(crate) struct BooksState {
     pub(crate) fed: Vec<Tally>,
     /// Grains that have left, by material.
     pub(crate) left: Vec<Tally>,
-    /// Those of them that left through an outlet, by outlet and material.
+    /// Grains that left through an outlet, by outlet and material; they are among `left`.
     pub(crate) outlets: Vec<Vec<Tally>>,
 }
 

@@ -26,7 +26,7 @@ fn rules(setup: &Setup) -> ContactRules {
     }
 }
 
-/// Other run of a simulation's grains, whose scene was that of a set-up.
+/// Earlier run as another scene sees it: a simulation of a set-up.
 fn earlier(before: &Setup, simulation: &Simulation, is_same: bool) -> Earlier {
     Earlier { state: simulation.state(), rules: rules(before), is_same }
 }

@@ -6,11 +6,11 @@ use amberfield_core::{Domain, FieldSettings, Plan};
 /// Course of the faces' potentials.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) enum Potentials {
-    /// They stay as they are.
+    /// Potentials that stay as they are.
     Stay,
-    /// They change, and make a uniform field.
+    /// Potentials that change, and make a uniform field.
     Uniform,
-    /// They change, and make a field that differs from place to place.
+    /// Potentials that change, and make a field that differs from place to place.
     Varied,
 }
 
@@ -70,6 +70,16 @@ pub(crate) fn plan(
             );
         }
     }
+    plan_given(&mut plan, settings, potentials);
+    let images = domain.faces().iter().flatten().any(|face| face.is_conductor() || face.is_insulating());
+    if !images {
+        plan.leave_out("images", "no conducting or insulating face");
+    }
+    plan
+}
+
+/// Plans what the scene gives: the external field, and potentials that change.
+fn plan_given(plan: &mut Plan, settings: &FieldSettings, potentials: Potentials) {
     if settings.external_course.is_some() {
         plan.build("external", "external_field_V_m is given, and changes with time: exact in every step");
     } else if settings.external_field_v_m == nalgebra::Vector3::zeros() {
@@ -89,9 +99,4 @@ pub(crate) fn plan(
              in a period, or along a line of a table",
         ),
     }
-    let images = domain.faces().iter().flatten().any(|face| face.is_conductor() || face.is_insulating());
-    if !images {
-        plan.leave_out("images", "no conducting or insulating face");
-    }
-    plan
 }

@@ -20,6 +20,7 @@ mod forecast;
 mod impacts;
 mod interval;
 mod members;
+mod plasma;
 mod source;
 mod state;
 mod traffic;
@@ -33,10 +34,10 @@ use crate::error::DemError;
 use crate::motion::chunks::{CHUNK, chunk_count, for_each_chunk, is_parallel};
 use crate::motion::grains::Grains;
 use crate::setup::FieldStageSetup;
-use amberfield_core::{CouplingInterval, Domain, FieldSettings, ForceLimit, Method, Particles, Vector3};
+use amberfield_core::{Domain, FieldSettings, ForceLimit, Method, Particles, Vector3};
 use amberfield_field::far::FarSolver;
 use amberfield_field::{FieldValues, Wanted};
-use amberfield_laws::{force_limit, time_step_limits};
+use amberfield_laws::force_limit;
 use forecast::{EnergyForecast, FieldEnergy, Forecast, Medium};
 use impacts::Impacts;
 use interval::IntervalControl;
@@ -320,34 +321,6 @@ impl FieldStage {
     pub(crate) fn book_step(&mut self) {
         self.limited.steps += u64::from(self.limited.grains > 0);
         self.limited.grain_steps += self.limited.grains;
-    }
-
-    /// ω_p of the members that move, in their bounding box.
-    fn watch_plasma(&mut self, grains: &Grains, step: f64) {
-        let Members { index, position, charge, .. } = &self.members;
-        let mut min = Vector3::repeat(f64::INFINITY);
-        let mut max = Vector3::repeat(f64::NEG_INFINITY);
-        let mut sum = 0.0;
-        let members = index.iter().zip(position).zip(charge);
-        for ((&i, x), q) in members.filter(|((i, _), _)| !grains.is_fixed(**i as usize)) {
-            let radius = Vector3::repeat(grains.centre[i as usize][3]);
-            min = min.inf(&(x - radius));
-            max = max.sup(&(x + radius));
-            sum += q * q * grains.inverse_mass[i as usize];
-        }
-        if min.x > max.x {
-            // None of them moves.
-            return;
-        }
-        let volume = (max - min).product();
-        let frequency = time_step_limits::plasma_frequency(sum, volume, self.permittivity());
-        let accurate = (time_step_limits::PLASMA_ACCURATE / (frequency * step)).floor();
-        self.plasma_steps = (accurate as u64).max(1);
-        let interval = match self.settings.coupling_interval {
-            CouplingInterval::Steps(steps) => u64::from(steps.max(1)),
-            CouplingInterval::Auto => 1,
-        };
-        self.plasma_limit = time_step_limits::PLASMA_STABLE / (frequency * interval as f64);
     }
 
     /// ½ Σ q (V + V_external) [J] at the present positions, from an evaluation that the motion does not see.

@@ -1,5 +1,5 @@
-//! Grains that come and leave between two evaluations: until the next one the others feel that as point charges
-//! do. Of images there is only that of a grain which leaves at a face that mirrors it.
+//! Grains that come and leave between two evaluations: until the next one the others feel that as point
+//! charges do. Of images there is only that of a grain which leaves at a face that mirrors it.
 
 use super::FieldStage;
 use crate::motion::grains::Grains;
@@ -22,8 +22,8 @@ fn charge_of(member: &[bool], grains: &Grains, particles: &Particles, i: usize) 
 }
 
 impl FieldStage {
-    /// Energy of a charge [C] at a place [m] in an external field that stays as it is [J]; one that changes is
-    /// not part of the forecasts' energy.
+    /// Energy of a charge [C] at a place [m] in an external field that stays as it is [J]; one that changes
+    /// is not part of the forecasts' energy.
     fn energy_of_external(&self, domain: &Domain, charge: f64, place: &Vector3<f64>) -> f64 {
         match self.settings.external_course {
             Some(_) => 0.0,

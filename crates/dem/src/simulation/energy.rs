@@ -17,7 +17,8 @@ pub struct Energies {
     /// Elastic energy of the contacts: normal, tangential and rolling springs, less what adhesion gained
     /// since they were made [J].
     pub contact: f64,
-    /// −Σ m g·x [J] of the grains that move, zero at the origin; along periodic axes with the coordinates that the run uses.
+    /// −Σ m g·x [J] of the grains that move, zero at the origin; along periodic axes with the coordinates
+    /// that the run uses.
     pub gravity: f64,
     /// ½ Σ q (V + V_external) [J]; `None` when not asked for or without a field.
     pub electric: Option<f64>,

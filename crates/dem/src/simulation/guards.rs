@@ -131,7 +131,7 @@ impl Limits {
         gas: Option<UniformGas>,
     ) -> Self {
         let (mut rayleigh, mut hertz) = (f64::INFINITY, f64::INFINITY);
-        // A pair of which one never moves has all of the other's mass, so that it is no tighter than two equal.
+        // A pair of which one never moves has all of the other's mass: it is no tighter than two equal ones.
         for i in particles.moving() {
             let (radius, material) = (particles.radius[i], &materials[particles.material[i].0 as usize]);
             let shear = hertz_mindlin::shear_modulus(material.young_pa, material.poisson);

@@ -285,8 +285,8 @@ pub(super) static KEYS: &[Key] = &[
     Key::new(
         "from",
         Form::Text,
-        "Checkpoint of another run, or that run's folder for its newest one, from whose grains this scene \
-         begins at time 0. The scene may differ in everything but the names of the grains' materials. Contacts \
+        "Checkpoint of another run, or that run's folder for its newest one, with whose grains this scene \
+         begins at time 0. The scene may differ in all but the names of the grains' materials. Contacts \
          keep their springs where stiffness, friction and adhesion of both materials, and the wall, are the \
          same. Overlaps that the run had are allowed. Charge on walls, fields and gas begin anew.",
     )

@@ -56,9 +56,8 @@ fn refusal(from: &str, to: &str) -> String {
 fn rates_and_sizes_are_kept() {
     let read = feeds(SCENE, &[]);
     assert_eq!(read.list.iter().map(|feed| feed.name.as_str()).collect::<Vec<_>>(), ["fines", "left"]);
-    assert!(
-        matches!(read.list[0].region, FeedRegion::Volume(Volume::Cylinder { length, .. }) if (length - 0.04).abs() < 1e-12)
-    );
+    let FeedRegion::Volume(Volume::Cylinder { length, .. }) = read.list[0].region else { panic!("a tube") };
+    assert!((length - 0.04).abs() < 1e-12);
     assert_eq!([read.list[0].on_blocked, read.list[1].on_blocked], [OnBlocked::Stop, OnBlocked::Wait]);
     assert!(read.due_s.is_sorted() && read.grains.id.is_sorted_by(|a, b| a < b));
     let of = |feed: u16| (0..read.due_s.len()).filter(|k| read.feed[*k] == feed).collect::<Vec<_>>();

@@ -181,8 +181,11 @@ fn fixed_grains_have_no_velocity_and_come_from_no_feed() {
     let particles = folder.read(&["particles.fixed_groups=[\"fine\"]"]).unwrap().particles;
     assert_eq!((particles.velocity[0], particles.angular_velocity[0]), (Vector3::zeros(), Vector3::zeros()));
     assert_eq!(particles.velocity[1..], grains.particles.velocity[1..]);
-    let feed = "feeds=[{ name = \"f\", region = { box = { min_m = [0.01, 0.01, 0.02], max_m = [0.015, 0.015, \
-                0.03] } }, rate_per_s = 100, radius_m = 1e-4, material = \"glass\", velocity_m_s = [0, 0, -1]";
+    let region = "{ box = { min_m = [0.01, 0.01, 0.02], max_m = [0.015, 0.015, 0.03] } }";
+    let feed = format!(
+        "feeds=[{{ name = \"f\", region = {region}, rate_per_s = 100, radius_m = 1e-4, material = \"glass\", \
+         velocity_m_s = [0, 0, -1]"
+    );
     let bound = format!("{feed}, group = \"fine\" }}]");
     let said = folder.refusal(&["particles.fixed_groups=[\"fine\"]", &bound]);
     assert!(said.contains("feeds[0].group") && said.contains("never move"), "{said}");
