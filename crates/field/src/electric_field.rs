@@ -19,7 +19,7 @@ use crate::values::{FieldValues, Wanted};
 use amberfield_core::{Domain, FieldSettings, Plan};
 use nalgebra::Vector3;
 
-pub use changing::{ChangingUniform, longest_step_s};
+pub use changing::{GivenField, longest_step_s};
 
 /// Cost of the last evaluation.
 #[derive(Clone, Debug, Default, PartialEq)]
@@ -127,7 +127,14 @@ impl ElectricField {
     /// A field solver and `kolehmainen` have the faces' values on cells: there it is the external field.
     #[must_use]
     pub fn without_charges(&self, place: &Vector3<f64>) -> Vector3<f64> {
-        self.external.at(place).e + self.faces.at(place).e
+        let given = self.given(place);
+        given.external.e + given.faces.e
+    }
+
+    /// Field that is there without charges, by its sources, as [`Self::without_charges`] has it.
+    #[must_use]
+    pub fn given(&self, place: &Vector3<f64>) -> GivenField {
+        GivenField { external: self.external.at(place), faces: self.faces.at(place) }
     }
 
     /// The field solver of another process that has a part in it, and its state.

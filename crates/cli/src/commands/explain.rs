@@ -210,13 +210,13 @@ fn explain_field(scene: &Scene, solver: Option<Connect>) -> Result<(), Failure> 
 /// Prints the estimated and the measured error of the field.
 fn print_error(scene: &Scene, field: &ElectricField) {
     let tolerance = scene.electric_field.as_ref().map_or(0.0, |settings| settings.field.tolerance);
-    let show =
-        |error: Option<f64>| error.map_or_else(|| "not stated".to_owned(), |error| format!("{error:.2e}"));
-    line(format_args!(
-        "relative error of E: {} estimated, {} measured, tolerance {tolerance:e}",
-        show(field.error_estimated()),
-        show(field.error_measured().map(|measured| measured.relative_rms))
-    ));
+    let measured = field.error_measured().map(|measured| measured.relative_rms);
+    let stated: Vec<String> = [(field.error_estimated(), "estimated"), (measured, "measured")]
+        .into_iter()
+        .filter_map(|(error, how)| Some(format!("{:.2e} {how}", error?)))
+        .collect();
+    let stated = if stated.is_empty() { "none beyond round-off".to_owned() } else { stated.join(", ") };
+    line(format_args!("relative error of E: {stated}, tolerance {tolerance:e}"));
 }
 
 /// Prints the memory for the grains [bytes] and for the field.

@@ -1,5 +1,5 @@
 //! Grains that left: `exits.csv` and `outlets_grains.csv`, a row for each, and a line of the log for each
-//! face or outlet and row of the history.
+//! face or outlet and file of the grains.
 
 use super::folder::RunFolder;
 use crate::failure::Failure;

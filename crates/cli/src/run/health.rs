@@ -163,7 +163,8 @@ fn whereabouts(simulation: &Simulation, id: u64) -> String {
 /// brought it.
 fn potential(simulation: &Simulation, energies: &Energies) -> f64 {
     let gravity = energies.gravity + simulation.left().gravity - simulation.brought().gravity;
-    gravity + energies.contact + energies.electric.unwrap_or(0.0)
+    let electric = energies.electric.map_or(0.0, |electric| electric - simulation.brought().electric);
+    gravity + energies.contact + electric
 }
 
 /// Charges of a run.

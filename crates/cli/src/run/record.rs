@@ -221,7 +221,6 @@ impl Record {
         row.extend(self.columns.solver.then(|| HistoryValue::Count(simulation.solver_iterations())));
         row.push(HistoryValue::Number(clock.wall_s));
         row.extend(clock.stages.iter().map(|seconds| HistoryValue::Number(*seconds)));
-        self.exits.tell(simulation.time_s());
         if let Some(forces) = &mut self.wall_forces {
             forces.append(simulation)?;
         }
@@ -239,6 +238,7 @@ impl Record {
         if self.last_frame.replace(step) == Some(step) {
             return Ok(false);
         }
+        self.exits.tell(simulation.time_s());
         let particles = simulation.particles();
         let name = format!("particles/grains_{step:012}");
         if scene.output.csv {

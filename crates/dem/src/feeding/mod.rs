@@ -46,6 +46,8 @@ pub struct Brought {
     pub kinetic: f64,
     /// Energy −Σ m g·x where they came [J].
     pub gravity: f64,
+    /// Electric energy, by the charges and fields that were there [J].
+    pub electric: f64,
     /// Charge [C].
     pub charge: f64,
 }

@@ -41,12 +41,6 @@ impl FieldStage {
         self.source.set_time(time_s);
     }
 
-    /// Field that a grain feels which has just come, without that of charges [V/m].
-    pub(super) fn of_newcomer(&self) -> Vector3<f64> {
-        let field = &self.source.field;
-        field.external() + field.changing_uniform(&Vector3::zeros()).faces.e
-    }
-
     /// E_u at present [V/m]; zero where nothing changes.
     fn changing_uniform(&self) -> Vector3<f64> {
         let field = self.source.field.changing_uniform(&Vector3::zeros());

@@ -29,6 +29,8 @@ pub(crate) struct Forecast {
     charge: Vec<f64>,
     /// Charge at the last evaluation [C].
     evaluated: Vec<f64>,
+    /// Grains that have come since; empty where none has.
+    new: Vec<bool>,
     /// Charges of the grains that have left since.
     left: Change,
     /// Scales of E at the last evaluation.
@@ -55,6 +57,8 @@ impl Forecast {
 
     /// Takes in a grain that has come, with E [V/m] and its charge [C].
     pub(super) fn admit(&mut self, e: Vector3<f64>, charge: f64) {
+        self.new.resize(self.e.len(), false);
+        self.new.push(true);
         self.e.push(e);
         self.slope.push(Vector3::zeros());
         self.charge.push(charge);
@@ -138,6 +142,9 @@ impl Forecast {
             pick(&mut self.slope, order, &mut self.spare.0);
             pick(&mut self.charge, order, &mut self.spare.1);
             pick(&mut self.evaluated, order, &mut self.spare.1);
+            if !self.new.is_empty() {
+                self.new = order.iter().map(|&old| self.new[old as usize]).collect();
+            }
             if order.len() < self.spare.1.len() {
                 let kept = Change::of(&self.charge);
                 // The rest of what they did is off the others' E already.
@@ -153,7 +160,7 @@ impl Forecast {
     ///
     /// As much of the difference as charges may have made ([`Self::jumps`]) counts as jump, the rest as
     /// drift; all of it where there were no charges before. The slope takes the drift alone: a jump does not
-    /// go on.
+    /// go on. A grain that has just come has none yet.
     pub(crate) fn renew(
         &mut self,
         members: &Members,
@@ -182,9 +189,10 @@ impl Forecast {
             let jump2 = difference2.min(made2);
             let drift2 = difference2 - jump2;
             sums.add(charge * charge, drift2, jump2);
-            if known && difference2 > 0.0 {
+            let is_new = self.new.get(i).is_some_and(|new| *new);
+            if known && !is_new && difference2 > 0.0 {
                 self.slope[i] += difference * ((drift2 / difference2).sqrt() / age);
-            } else if !known {
+            } else if !known || is_new {
                 self.slope[i] = Vector3::zeros();
             }
             self.e[i] = *fresh;
@@ -192,6 +200,7 @@ impl Forecast {
             self.evaluated[i] = *charge;
         }
         let check = known.then(|| sums.check(index.len(), &scale, jumps));
+        self.new.clear();
         (self.left, self.scale, self.jumps) = (Change::default(), scale, Some(Jumps::default()));
         check
     }

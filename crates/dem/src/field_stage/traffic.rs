@@ -22,13 +22,15 @@ fn charge_of(member: &[bool], grains: &Grains, particles: &Particles, i: usize) 
 }
 
 impl FieldStage {
-    /// Energy of a charge [C] at a place [m] in an external field that stays as it is [J]; one that changes
-    /// is not part of the forecasts' energy.
-    fn energy_of_external(&self, domain: &Domain, charge: f64, place: &Vector3<f64>) -> f64 {
-        match self.settings.external_course {
-            Some(_) => 0.0,
-            None => -charge * self.settings.external_field_v_m.dot(&(place - domain.centre())),
-        }
+    /// Energy of a charge [C] at a place [m] in the external field and in that of the faces, whose potential
+    /// counts by half, as far as they stay as they are [J]; what changes and is the same everywhere is not
+    /// part of the forecasts' energy.
+    fn energy_of_given(&self, charge: f64, place: &Vector3<f64>) -> f64 {
+        let field = &self.source.field;
+        let (given, changing) = (field.given(place), field.changing_uniform(place));
+        charge
+            * (given.external.potential - changing.external.potential
+                + 0.5 * (given.faces.potential - changing.faces.potential))
     }
 
     /// Takes the field of grains that leave off the others' E, before the grains are reordered.
@@ -46,7 +48,7 @@ impl FieldStage {
             let charge = charge_of(&self.member, grains, particles, *index);
             let Some(q) = charge.filter(|q| *q != 0.0) else { continue };
             let place = grains.position(*index);
-            let mut energy = self.energy_of_external(domain, q, &place);
+            let mut energy = self.energy_of_given(q, &domain.wrap(place));
             for other in (0..grains.len()).filter(|other| !gone.contains(other)) {
                 let Some(of_other) = charge_of(&self.member, grains, particles, other) else { continue };
                 let at = grains.position(other);
@@ -64,16 +66,29 @@ impl FieldStage {
         }
     }
 
-    /// Takes in the last `count` grains, which have just come.
-    pub(crate) fn admit(&mut self, domain: &Domain, grains: &Grains, particles: &Particles, count: usize) {
-        let (k, external) = (self.settings.permittivity.coulomb(), self.of_newcomer());
+    /// Electric force on a grain in the present step, as it is forecast [N].
+    pub(crate) fn force_on(&self, grain: usize) -> Vector3<f64> {
+        self.forecast.force(grain, self.control.age as f64)
+    }
+
+    /// Takes in the last `count` grains, which have just come; returns the energy that they brought [J].
+    pub(crate) fn admit(
+        &mut self,
+        domain: &Domain,
+        grains: &Grains,
+        particles: &Particles,
+        count: usize,
+    ) -> f64 {
+        let k = self.settings.permittivity.coulomb();
+        let mut brought = 0.0;
         for newcomer in grains.len() - count..grains.len() {
             let Some(q) = charge_of(&self.member, grains, particles, newcomer) else {
                 self.forecast.admit(Vector3::zeros(), 0.0);
                 continue;
             };
             let place = grains.position(newcomer);
-            let (mut own, mut energy) = (external, self.energy_of_external(domain, q, &place));
+            let mut own = self.source.field.without_charges(&place);
+            let mut energy = self.energy_of_given(q, &place);
             for other in 0..newcomer {
                 let Some(of_other) = charge_of(&self.member, grains, particles, other) else { continue };
                 let from = domain.shortest(place - grains.position(other));
@@ -82,7 +97,9 @@ impl FieldStage {
                 energy += k * q * of_other / from.norm();
             }
             self.energy.shift(energy);
+            brought += energy;
             self.forecast.admit(own, q);
         }
+        brought
     }
 }

@@ -38,14 +38,26 @@ impl Simulation {
                 books.book_entry(&self.particles, newcomer.original as usize);
             }
         }
-        if let Some(field) = &mut self.field {
-            field.admit(&self.domain, &self.grains, &self.particles, newcomers.len());
-        }
+        self.admit_to_field(newcomers.len());
         if let Some(gas) = self.gas.as_mut().and_then(GasStage::flowing_mut) {
             gas.admit(newcomers.len());
         }
         self.resize_scratch();
         Ok(true)
+    }
+
+    /// Lets the last `count` grains feel and make the field. Velocities in the middle of the step are without
+    /// the half of it that the kick adds at its end.
+    fn admit_to_field(&mut self, count: usize) {
+        let Some(field) = &mut self.field else { return };
+        let brought = field.admit(&self.domain, &self.grains, &self.particles, count);
+        for i in self.grains.len() - count..self.grains.len() {
+            let gained = field.force_on(i) * (0.5 * self.progress.step_s * self.grains.inverse_mass[i]);
+            self.grains.velocity[i] -= gained;
+        }
+        if let Some(feeding) = &mut self.feeding {
+            feeding.state.brought.electric += brought;
+        }
     }
 
     /// Accounts of the feeds, sorted by name; none without feeds.

@@ -32,10 +32,10 @@ impl ElectricField {
     /// time that was set: the external one, and that of faces across one axis. E is the same at all places,
     /// the potential is not. Zero where nothing changes.
     #[must_use]
-    pub fn changing_uniform(&self, place: &Vector3<f64>) -> ChangingUniform {
+    pub fn changing_uniform(&self, place: &Vector3<f64>) -> GivenField {
         let external = self.settings.external_course.as_ref().map(|_| self.external.at(place));
         let faces = self.faces.changing_uniform().map(|faces| faces.evaluate(place));
-        ChangingUniform { external: external.unwrap_or_default(), faces: faces.unwrap_or_default() }
+        GivenField { external: external.unwrap_or_default(), faces: faces.unwrap_or_default() }
     }
 
     /// E of the part of the field that changes with time and is the same everywhere, at any time [s], in V/m.
@@ -64,9 +64,9 @@ impl ElectricField {
     }
 }
 
-/// Field that changes with time and is the same everywhere, by its sources.
+/// Field that is there without charges, or the part of it that changes and is the same everywhere.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
-pub struct ChangingUniform {
+pub struct GivenField {
     /// External field.
     pub external: FieldAt,
     /// Field of the faces' potentials.

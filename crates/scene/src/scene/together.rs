@@ -74,11 +74,12 @@ fn check_field(document: &SceneTable<'_>, scene: &Scene, has_charge: bool) -> Re
     let Some(field) = &scene.electric_field else { return Ok(()) };
     let mut problems = Problems::default();
     if !has_charge {
+        let section = if document.has("particles") { "particles" } else { "feeds" };
         problems.keep::<()>(Err(SceneError::Missing {
-            place: document.place_of("particles").to_string(),
-            key: "particles: charge_C".to_owned(),
+            place: document.place_of(section).to_string(),
+            key: format!("{section}: charge_C"),
             advice: "the scene has an electric field but its grains have no charge; add the column charge_C \
-                     to the file, or charge_C to the generator (0 where they are neutral)"
+                     to the file, or charge_C to the generator or the feed (0 where they are neutral)"
                 .to_owned(),
         }));
     }

@@ -2,7 +2,7 @@
 
 use super::description::Scene;
 use amberfield_core::constants::VACUUM_PERMITTIVITY;
-use amberfield_core::{Axis, Domain, OnExit, OutletRegion, Side, Wall, WallShape};
+use amberfield_core::{Axis, Domain, OnExit, Outlet, OutletRegion, Side, Wall, WallShape};
 use std::f64::consts::PI;
 use std::ops::RangeInclusive;
 
@@ -56,8 +56,12 @@ fn no_floor(scene: &Scene) -> Option<String> {
         true => ("min", domain.min(), 1),
         false => ("max", domain.max(), -1),
     };
-    let below = OutletRegion::Face(down, if towards > 0 { Side::Min } else { Side::Max });
-    if scene.outlets.iter().any(|outlet| outlet.region == below) {
+    let k = down.index();
+    let takes = |outlet: &Outlet| match &outlet.region {
+        OutletRegion::Face(axis, of) => *axis == down && (*of == Side::Min) == (towards > 0),
+        OutletRegion::Volume(volume) => volume.bounds().iter().any(|corner| corner[k] == place[k]),
+    };
+    if scene.outlets.iter().any(takes) {
         return None;
     }
     let floor = |axis: Axis, at: f64| if axis == down { at } else { 0.0 };
