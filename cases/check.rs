@@ -25,6 +25,8 @@ mod error_vs_runtime;
 mod extremes;
 #[path = "falling-in-air/check.rs"]
 mod falling_in_air;
+#[path = "faraday-cup/check.rs"]
+mod faraday_cup;
 #[path = "fluidised-charged-bed/check.rs"]
 mod fluidised_charged_bed;
 #[path = "grounded-plane/check.rs"]
@@ -33,6 +35,8 @@ mod grounded_plane;
 mod grounded_sphere;
 #[path = "heap/check.rs"]
 mod heap;
+#[path = "hopper/check.rs"]
+mod hopper;
 #[path = "impact/check.rs"]
 mod impact;
 #[path = "madelung/check.rs"]
@@ -41,8 +45,12 @@ mod madelung;
 mod particle_impacts;
 #[path = "pull-off/check.rs"]
 mod pull_off;
+#[path = "separator/check.rs"]
+mod separator;
 #[path = "settling-charged-bed/check.rs"]
 mod settling_charged_bed;
+#[path = "shaken-bed/check.rs"]
+mod shaken_bed;
 #[path = "shaker/check.rs"]
 mod shaker;
 #[path = "stiffness-collapse/check.rs"]

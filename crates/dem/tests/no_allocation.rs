@@ -1,5 +1,6 @@
 //! Allocations: none in a step between two rebuilds, none for a field that is not there.
 
+#[expect(dead_code, reason = "the other tests use all of it")]
 mod common;
 
 use amberfield_core::{Boundary, Domain, Vector3};

@@ -19,9 +19,9 @@
 //! *Exact to second order where θ = 1.* The forecast is too large by the part k/2, since the spring's force
 //! changes in the step. With f the restitution of a Hertz contact in 4.4 steps is 0.103, 0.193, 0.279, 0.493
 //! and 0.903 for 0.1, 0.2, 0.3, 0.5 and 0.9 (0.075, 0.127, 0.210, 0.410, 0.879 with f = θ = 1, 0.048, 0.158,
-//! 0.241, 0.481, 0.901 with f = 1 and θ = 0); `crates/dem/tests/few_steps.rs` has them. Source: derived here;
-//! both velocities are those of velocity Verlet (Hairer, Lubich & Wanner, *Geometric Numerical Integration*,
-//! §I.1.4).
+//! 0.241, 0.481, 0.901 with f = 1 and θ = 0); `crates/dem/tests/it/few_steps.rs` has them. Source: derived
+//! here; both velocities are those of velocity Verlet (Hairer, Lubich & Wanner, *Geometric Numerical
+//! Integration*, §I.1.4).
 //!
 //! Each number may be that of one contact, or of several contacts side by side.
 //!

@@ -1,5 +1,6 @@
 //! Changes of walls and scenes that physics does not see, after which grains move as before: a line each.
 
+#[expect(dead_code, reason = "the tests of the motion use all of it")]
 #[path = "../../../crates/dem/tests/common/mod.rs"]
 pub(super) mod common;
 

@@ -1,5 +1,4 @@
 //! Scenes that several tests share.
-#![expect(dead_code, reason = "no test uses every helper")]
 
 use amberfield_core::{
     Boundary, Domain, Grain, GroupId, Material, MaterialId, OnExit, RollingModel, Skin, Step, TimeSettings,

@@ -27,9 +27,9 @@ pub static HISTORY: FileTable = FileTable::csv(
         Column::new(
             &["electric_J"],
             "J",
-            "Energy of the charges in their own field and the external one, ½ Σ q (V + V_external). V has the \
-             potentials of the faces, which count by half: the sum of energies changes where grains move \
-             between electrodes.",
+            "Energy of the charges in their own field and the external one, ½ Σ q (V + V_external). The \
+             potentials of faces are part of V and count by half: the sum of energies changes where grains \
+             move between electrodes.",
         )
         .when(When::Field),
         Column::new(&["net_charge_C"], "C", "Sum of the charges of all grains.").when(When::Field),

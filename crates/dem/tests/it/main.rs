@@ -1,0 +1,30 @@
+//! Motion, contacts, charge and field of whole runs.
+
+#[path = "../common/mod.rs"]
+mod common;
+
+mod beds;
+mod boxes;
+mod charged_gas;
+mod charging;
+mod cohesion;
+mod collisions;
+mod determinism;
+mod feeds;
+mod few_steps;
+mod field;
+mod filled;
+mod fixed_grains;
+mod forecasts;
+mod gas;
+mod guards;
+mod mesh_motion;
+mod moving_walls;
+mod oblique;
+mod outlets;
+mod overlaps;
+mod potentials;
+mod rolling;
+mod start;
+mod wall_loads;
+mod walls;
