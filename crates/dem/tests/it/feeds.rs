@@ -285,6 +285,34 @@ fn newcomers_are_felt_as_in_a_run_that_evaluates_every_step() {
 }
 
 #[test]
+fn newcomers_between_plates_fall_sideways_at_once_and_alike() {
+    let charge = |_: usize, grain: &mut Grain| grain.charge = 1e-16;
+    let mut scene = scene(feeds(vec![feed("a", high())], 3, 100.0 * STEP, charge), material(0.8, 0.0, 0.0));
+    scene.particles = Particles::default();
+    scene.walls.clear();
+    let mut scene = charged(scene, None);
+    let (min, max, open) = (scene.domain.min(), scene.domain.max(), [Boundary::Open; 2]);
+    let plates = [Boundary::Potential(1e3), Boundary::Potential(-1e3)];
+    scene.domain = Domain::new(min, max, [plates, open, open]).expect("a good box");
+    let mut simulation = Simulation::new(scene).unwrap();
+    let (mut entered, mut steps) = (Vec::new(), 0_u32);
+    while steps < 260 {
+        run(&mut simulation, 1);
+        steps += 1;
+        entered.resize(simulation.len(), steps);
+    }
+    let field = 2e3 / (max.x - min.x);
+    let particles = simulation.particles();
+    assert_eq!(particles.len(), 3);
+    for (i, entered) in entered.iter().enumerate() {
+        let due = particles.charge[i] * field / particles.mass(i) * f64::from(steps - entered) * STEP;
+        let found = particles.velocity[i].x;
+        assert!((found / due - 1.0).abs() < 2e-4, "grain {i}: {found:e} m/s after {due:e}");
+    }
+    assert!(simulation.intervals().unwrap().evaluations < 130);
+}
+
+#[test]
 fn an_empty_box_is_filled_and_empties_again() {
     let mut scene = scene(feeds(vec![feed("a", high())], 40, 5.0 * STEP, |_, _| {}), material(0.7, 0.3, 0.1));
     scene.particles = Particles::default();
