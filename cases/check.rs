@@ -55,6 +55,8 @@ mod shaken_bed;
 mod shaker;
 #[path = "stiffness-collapse/check.rs"]
 mod stiffness_collapse;
+#[path = "tribo-separator/check.rs"]
+mod tribo_separator;
 #[path = "two-grains/check.rs"]
 mod two_grains;
 #[path = "two-materials/check.rs"]

@@ -48,6 +48,9 @@ pub(crate) fn restitution(scene: &Scene, outlook: &Outlook) -> String {
     let fastest = outlook.fastest_m_s;
     let speed = if fastest > 0.0 { 2.0 * fastest } else { USUAL_SPEED };
     let (steps, found) = outlook.restitutions(&scene.materials, speed);
+    if !steps.is_finite() {
+        return "restitution: no grain moves".to_owned();
+    }
     let found: Vec<String> =
         found.iter().map(|of| format!("{} {} acts as {:.4}", of.material, of.asked, of.found)).collect();
     format!("restitution: {steps:.1} steps in a contact at {speed:.3} m/s; {}", found.join(", "))

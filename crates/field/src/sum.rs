@@ -131,12 +131,19 @@ impl<'a> Sum<'a> {
     /// Writes what is wanted at every particle; what is not wanted becomes empty. Memory is kept.
     pub(crate) fn write(&self, wanted: Wanted, out: &mut FieldValues) {
         let particles = self.positions.len();
-        let potentials = if wanted.potential { particles } else { 0 };
         let components = if wanted.components { particles } else { 0 };
         let Levels { coulomb, near, middle, far_of_charges, far_of_cells, correction, .. } = self.levels;
 
-        fill(&mut out.e, particles, |particle| self.at(particle).e);
-        fill(&mut out.potential, potentials, |particle| self.at(particle).potential);
+        if wanted.potential {
+            let both = |particle| {
+                let sum = self.at(particle);
+                (sum.e, sum.potential)
+            };
+            numbers(particles).map(both).unzip_into_vecs(&mut out.e, &mut out.potential);
+        } else {
+            fill(&mut out.e, particles, |particle| self.at(particle).e);
+            out.potential.clear();
+        }
 
         let parts = &mut out.components;
         fill(&mut parts.near, components, |particle| coulomb * near.at(particle).e);
@@ -150,8 +157,12 @@ impl<'a> Sum<'a> {
     }
 }
 
-/// Gives `values` this many values, each by its number.
-fn fill<T: Copy + Default + Send>(values: &mut Vec<T>, count: usize, value: impl Fn(usize) -> T + Sync) {
-    values.resize(count, T::default());
-    values.par_iter_mut().with_min_len(TASK).enumerate().for_each(|(number, slot)| *slot = value(number));
+/// Gives `values` this many values, each by its number; memory is kept, and not written twice.
+fn fill<T: Send>(values: &mut Vec<T>, count: usize, value: impl Fn(usize) -> T + Sync + Send) {
+    numbers(count).map(value).collect_into_vec(values);
+}
+
+/// Numbers of particles, in tasks.
+fn numbers(count: usize) -> impl IndexedParallelIterator<Item = usize> {
+    (0..count).into_par_iter().with_min_len(TASK)
 }

@@ -71,19 +71,24 @@ pub fn largest<T: SimdRealField<Element = f64> + Copy>(normal: T, tangential: T,
 }
 
 /// Restitution of an impact that takes a number of steps, elastic, of a Hertz contact with the damping ratio
-/// β of [`crate::restitution`]: the mean over where in a step it begins.
+/// β of [`crate::restitution`]: the mean over where in a step it begins. More than a thousand steps are
+/// counted as so many, where it is the one that was asked for to 1e-5.
 ///
 /// ```
 /// use amberfield_laws::{damped_step::restitution_in_steps, restitution::damping_ratio};
 /// assert!((restitution_in_steps(damping_ratio(0.5), 4.4) - 0.493).abs() < 1e-3);
 /// assert!((restitution_in_steps(damping_ratio(0.5), 100.0) - 0.5).abs() < 1e-3);
+/// assert!((restitution_in_steps(damping_ratio(0.5), f64::INFINITY) - 0.5).abs() < 1e-5);
 /// ```
 #[must_use]
 pub fn restitution_in_steps(damping_ratio: f64, steps: f64) -> f64 {
+    let steps = steps.min(MOST_STEPS);
     (0..PHASES).map(|n| rebound(damping_ratio, steps, (f64::from(n) + 0.5) / f64::from(PHASES))).sum::<f64>()
         / f64::from(PHASES)
 }
 
+/// Most steps of an impact that are followed.
+const MOST_STEPS: f64 = 1e3;
 /// Places in a step over which [`restitution_in_steps`] takes the mean.
 const PHASES: u32 = 20;
 

@@ -30,8 +30,9 @@ pub(crate) fn doctor(options: &DoctorOptions) -> Result<(), Failure> {
         )),
         None => line(format_args!("shared memory: no /dev/shm; a run cannot have a field solver")),
     }
-    if openfoam().is_none() {
-        line(format_args!("OpenFOAM: not found; without [solver] the internal grid is used"));
+    match openfoam() {
+        Some(path) => line(format_args!("OpenFOAM: {}", path.display())),
+        None => line(format_args!("OpenFOAM: not found; without [solver] the internal grid is used")),
     }
     solver(options.clean);
     stale_runs(options.clean)

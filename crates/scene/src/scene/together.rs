@@ -173,7 +173,7 @@ fn check_courses(document: &SceneTable<'_>, scene: &Scene) -> Result<(), SceneEr
             "step_s",
             &format!("{step:e}"),
             format!(
-                "a potential or the external field has a frequency of {:e} Hz, and fewer than \
+                "a potential or the external field has a frequency of {:.3e} Hz, and fewer than \
                  {LEAST_PER_PERIOD} steps in a period do not show it; give a step of at most {longest:e} s",
                 1.0 / (LEAST_PER_PERIOD * longest)
             ),
