@@ -93,4 +93,10 @@ impl Placement {
     pub fn place(&self, point: &Vector3<f64>) -> Vector3<f64> {
         self.turn * point + self.shift
     }
+
+    /// Point of a wall that has not moved, of which a place [m] is the moved one.
+    #[must_use]
+    pub fn home_of(&self, place: &Vector3<f64>) -> Vector3<f64> {
+        self.turn.tr_mul(&(place - self.shift))
+    }
 }

@@ -30,7 +30,7 @@ pub(crate) use state::ChargingState;
 
 use crate::contacts::memory::{Follow, Foreseen, Growth, PairGrowth};
 use crate::contacts::neighbours::Neighbours;
-use crate::contacts::walls::Touching;
+use crate::contacts::walls::{ContactWalls, Touching};
 use crate::field_stage::FieldStage;
 use crate::motion::grains::Grains;
 use amberfield_core::{ChargeTransfer, Domain, FieldSettings, Material, Particles, Vector3};
@@ -203,6 +203,11 @@ impl Charging {
         (self.evaluation, self.age, self.gathered) = (state.evaluation, state.age, state.gathered);
         self.at_walls.clone_from(&state.at_walls);
         Ok(())
+    }
+
+    /// Takes the charge of walls that move along with them.
+    pub(crate) fn follow_walls(&mut self, domain: &Domain, walls: &ContactWalls) {
+        self.spots.follow(domain, walls.placements());
     }
 
     /// Whether pairs trade in a step, where it may be put off for so many steps.

@@ -5,10 +5,10 @@
 //! of places alone, never of how a wall is cut into triangles, files or periods. Spots of insulating walls
 //! keep their charge, and act as `amberfield_laws::kept_charge` says. In an evaluation of the field that is a
 //! point charge just before the surface; near a spot, contacts and grains get the law's field in its place.
-//! Spots of grounded walls book what flowed off there.
+//! Spots of grounded walls book what flowed off there. Spots of a wall that moves go along with it.
 
 use super::inside;
-use amberfield_core::{Domain, Vector3};
+use amberfield_core::{Domain, Placement, Vector3};
 use amberfield_laws::charge_transfer::ChargeOfInsulator;
 use amberfield_laws::kept_charge::KeptCharge;
 use amberfield_laws::point_charge;
@@ -52,6 +52,16 @@ pub struct ChargedSpot {
     keeps: bool,
     /// Whether the field has images in the surface.
     bounds_field: bool,
+    /// Place on a wall that moves, where the wall has not moved; `None` on a wall at rest.
+    home: Option<AtHome>,
+}
+
+/// Spot of a wall that moves, as it lies where the wall has not moved.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
+struct AtHome {
+    place: Vector3<f64>,
+    normal: Vector3<f64>,
+    first: Vector3<f64>,
 }
 
 impl ChargedSpot {
@@ -61,6 +71,15 @@ impl ChargedSpot {
         let across = self.normal.cross(&Vector3::ith(self.normal.iamin(), 1.0)).normalize();
         let [u, v] = [across, self.normal.cross(&across)].map(|axis| axis * (0.5 * DRAWN * self.scale));
         [self.place - u - v, self.place + u - v, self.place + u + v, self.place - u + v]
+    }
+
+    /// Goes along with its wall.
+    fn carry(&mut self, domain: &Domain, placement: &Placement) {
+        if let Some(AtHome { place, normal, first }) = &self.home {
+            self.place = domain.wrap(placement.place(place));
+            self.first = domain.wrap(placement.place(first));
+            self.normal = placement.turn * normal;
+        }
     }
 
     fn shape(&self, radius: f64) -> KeptCharge {
@@ -96,7 +115,21 @@ pub(crate) struct Spots {
     spots: Vec<ChargedSpot>,
     /// Edge of a cell [m].
     cell: f64,
-    /// Spots in each cell and the cells around it, ascending.
+    /// Spots of walls at rest in each cell and the cells around it, ascending.
+    around: HashMap<[i64; 3], Vec<u32>>,
+    /// Walls that move.
+    movers: Vec<MovingWall>,
+}
+
+/// Wall that moves, with its spots.
+#[derive(Clone, Debug)]
+struct MovingWall {
+    /// Number of the wall.
+    wall: u32,
+    placement: Placement,
+    /// Numbers of its spots.
+    spots: Vec<u32>,
+    /// Spots in each cell and the cells around it, by where they are when the wall has not moved.
     around: HashMap<[i64; 3], Vec<u32>>,
 }
 
@@ -113,6 +146,7 @@ impl Spots {
     /// Goes on from the spots of a state.
     pub(super) fn restore(&mut self, domain: &Domain, spots: &[ChargedSpot]) {
         self.around.clear();
+        self.movers.clear();
         self.spots.clear();
         spots.iter().for_each(|spot| {
             self.push(domain, spot.clone());
@@ -123,9 +157,58 @@ impl Spots {
         [0, 1, 2].map(|axis| (place[axis] / self.cell).floor() as i64)
     }
 
+    /// Number of a wall that moves among those; `None` for others.
+    fn mover_of(&self, wall: u32) -> Option<usize> {
+        self.movers.iter().position(|mover| mover.wall == wall)
+    }
+
+    /// Takes spots along with the walls that move.
+    pub(super) fn follow(&mut self, domain: &Domain, placements: impl Iterator<Item = (u32, Placement)>) {
+        for (wall, placement) in placements {
+            let mover = self.provide_mover(wall);
+            if self.movers[mover].placement != placement {
+                self.movers[mover].placement = placement;
+                for &spot in &self.movers[mover].spots {
+                    self.spots[spot as usize].carry(domain, &placement);
+                }
+            }
+        }
+    }
+
+    /// Number among the walls that move of one that does.
+    fn provide_mover(&mut self, wall: u32) -> usize {
+        self.mover_of(wall).unwrap_or_else(|| {
+            let (placement, spots) = (Placement::home(), Vec::new());
+            self.movers.push(MovingWall { wall, placement, spots, around: HashMap::new() });
+            self.movers.len() - 1
+        })
+    }
+
     fn push(&mut self, domain: &Domain, spot: ChargedSpot) -> usize {
         let number = self.spots.len();
+        let cells = self.cells_around(domain, spot.home.map_or(spot.first, |home| domain.wrap(home.first)));
+        let mover = spot.home.map(|_| self.provide_mover(spot.wall));
+        let around = match mover {
+            Some(mover) => {
+                self.movers[mover].spots.push(number as u32);
+                &mut self.movers[mover].around
+            }
+            None => &mut self.around,
+        };
+        for cell in cells {
+            let list = around.entry(cell).or_default();
+            if list.last() != Some(&(number as u32)) {
+                list.push(number as u32);
+            }
+        }
+        self.spots.push(spot);
+        number
+    }
+
+    /// Cells of a place [m] and its periodic copies, and those around them.
+    fn cells_around(&self, domain: &Domain, place: Vector3<f64>) -> Vec<[i64; 3]> {
         let extent = domain.extent();
+        let mut cells = Vec::with_capacity(27);
         for code in 0..27_i32 {
             let periods = Vector3::new(code / 9 - 1, code / 3 % 3 - 1, code % 3 - 1);
             let is_there =
@@ -133,24 +216,22 @@ impl Spots {
             if !amberfield_core::Axis::ALL.into_iter().all(is_there) {
                 continue;
             }
-            let [x, y, z] = self.cell_of(spot.first + periods.map(f64::from).component_mul(&extent));
-            for near in 0..27 {
-                let cell = [x + near / 9 - 1, y + near / 3 % 3 - 1, z + near % 3 - 1];
-                let list = self.around.entry(cell).or_default();
-                if list.last() != Some(&(number as u32)) {
-                    list.push(number as u32);
-                }
-            }
+            let [x, y, z] = self.cell_of(place + periods.map(f64::from).component_mul(&extent));
+            cells.extend((0..27).map(|near| [x + near / 9 - 1, y + near / 3 % 3 - 1, z + near % 3 - 1]));
         }
-        self.spots.push(spot);
-        number
+        cells
     }
 
     /// Spots around a place [m] with their numbers, in order.
     fn around(&self, domain: &Domain, place: Vector3<f64>) -> impl Iterator<Item = (usize, &ChargedSpot)> {
-        let numbers =
+        let at_rest =
             if self.spots.is_empty() { None } else { self.around.get(&self.cell_of(domain.wrap(place))) };
-        numbers.into_iter().flatten().map(|&number| (number as usize, &self.spots[number as usize]))
+        let moving = self.movers.iter().filter(|mover| !mover.spots.is_empty()).filter_map(move |mover| {
+            let home = domain.wrap(mover.placement.home_of(&place));
+            mover.around.get(&self.cell_of(home))
+        });
+        let numbers = at_rest.into_iter().chain(moving).flatten();
+        numbers.map(|&number| (number as usize, &self.spots[number as usize]))
     }
 
     /// Spots that keep charge near a place [m], felt by a grain of a radius [m], with the offset from each.
@@ -173,12 +254,16 @@ impl Spots {
     /// Number of the spot that a contact charges; it begins to exist where it did not.
     pub(super) fn at(&mut self, domain: &Domain, contact: &Contact) -> usize {
         let &Contact { wall, keeps, bounds_field, place, inward, radius } = contact;
+        let mover = self.mover_of(wall);
         let mut nearest = None;
         let mut least = f64::INFINITY;
         for (number, spot) in self.around(domain, place) {
             let similar = spot.scale.max(radius) <= SIMILAR * spot.scale.min(radius);
             let distance = domain.shortest(place - spot.first).norm();
+            // What moves has no spot in common with anything else.
+            let is_of_wall = spot.home.is_some() == mover.is_some() && (mover.is_none() || spot.wall == wall);
             let is_shared = (spot.keeps, spot.bounds_field) == (keeps, bounds_field)
+                && is_of_wall
                 && similar
                 && distance <= SHARED * spot.scale.min(radius)
                 && spot.normal.dot(&inward) > SAME_SIDE;
@@ -188,6 +273,11 @@ impl Spots {
         }
         nearest.unwrap_or_else(|| {
             let place = domain.wrap(place);
+            let home = mover.map(|mover| {
+                let Placement { turn, .. } = self.movers[mover].placement;
+                let home = self.movers[mover].placement.home_of(&place);
+                AtHome { place: home, normal: turn.tr_mul(&inward), first: home }
+            });
             let spot = ChargedSpot {
                 wall,
                 place,
@@ -198,6 +288,7 @@ impl Spots {
                 moved: 0.0,
                 keeps,
                 bounds_field,
+                home,
             };
             self.push(domain, spot)
         })
@@ -205,6 +296,7 @@ impl Spots {
 
     /// Adds the charge [C] that a contact leaves at a spot; its place is the mean over all that moved there.
     pub(super) fn leave(&mut self, domain: &Domain, number: usize, contact: &Contact, charge: f64) {
+        let mover = self.mover_of(self.spots[number].wall);
         let spot = &mut self.spots[number];
         spot.charge += charge;
         spot.moved += charge.abs();
@@ -213,6 +305,11 @@ impl Spots {
             spot.place = domain.wrap(spot.place + domain.shortest(contact.place - spot.place) * share);
             spot.normal = (spot.normal * (1.0 - share) + contact.inward * share).normalize();
             spot.scale += (contact.radius - spot.scale) * share;
+            if let (Some(home), Some(mover)) = (&mut spot.home, mover) {
+                let placement = &self.movers[mover].placement;
+                home.place = placement.home_of(&spot.place);
+                home.normal = placement.turn.tr_mul(&spot.normal);
+            }
         }
     }
 

@@ -1,18 +1,19 @@
 //! Checks of the motion of walls in a set-up.
 
 use crate::error::DemError;
-use amberfield_core::{MotionKind, Vector3, Wall, WallCharging, WallMotion};
+use amberfield_core::{Axis, Domain, MotionKind, Vector3, Wall, WallCharging, WallMotion};
 
 /// Largest difference of a direction's length from 1.
 const UNIT: f64 = 1e-9;
 
-/// Refuses motions that cannot be followed; `trades` says whether contacts move charge.
-pub(super) fn check(wall: &Wall, trades: bool) -> Result<(), DemError> {
+/// Refuses motions that cannot be followed in a box; `trades` says whether contacts move charge.
+pub(super) fn check(wall: &Wall, domain: &Domain, trades: bool) -> Result<(), DemError> {
     let bad = |text: &str| Err(DemError::Setup(format!("wall '{}': {text}", wall.name)));
-    if trades && !wall.motion.is_empty() && wall.charging == WallCharging::Insulating {
+    let carries = trades && wall.charging == WallCharging::Insulating;
+    if carries && wall.motion.iter().any(|motion| !keeps_periods(motion, domain)) {
         return bad(
-            "an insulating wall keeps its charge where grains left it, and does not take it along where it \
-             moves; let it rest, or make its charging \"none\" or \"grounded\"",
+            "it takes its charge along and turns across a periodic axis, where its periodic copies turn \
+             elsewhere; make the axis open, or the wall's charging \"none\" or \"grounded\"",
         );
     }
     let servos = wall.motion.iter().filter(|motion| matches!(motion.kind, MotionKind::Servo { .. }));
@@ -22,6 +23,21 @@ pub(super) fn check(wall: &Wall, trades: bool) -> Result<(), DemError> {
     match wall.motion.iter().find_map(fault) {
         Some(text) => bad(text),
         None => Ok(()),
+    }
+}
+
+/// Whether what moves along has its periodic copies a period away all the time.
+fn keeps_periods(motion: &WallMotion, domain: &Domain) -> bool {
+    let periodic = || Axis::ALL.into_iter().filter(|axis| domain.is_periodic(*axis));
+    match &motion.kind {
+        MotionKind::Rotate { axis, .. } => {
+            let off = |period: Axis| axis.cross(&Vector3::ith(period.index(), 1.0)).norm();
+            periodic().all(|period| off(period) < UNIT)
+        }
+        MotionKind::Table { rows, .. } => {
+            periodic().next().is_none() || rows.iter().all(|row| row.rotation.norm() == 0.0)
+        }
+        _ => true,
     }
 }
 

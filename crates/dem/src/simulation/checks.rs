@@ -36,11 +36,12 @@ pub(crate) fn check(setup: &Setup) -> Result<(), DemError> {
     for pair in &setup.pairs {
         check_pair(pair, setup)?;
     }
+    let transfers = setup.field.as_ref().is_some_and(|field| field.transfer.is_some());
     for wall in &setup.walls {
         if wall.material.0 as usize >= setup.materials.len() {
             return Err(bad(format!("wall '{}' has unknown material {}", wall.name, wall.material.0)));
         }
-        check_motion::check(wall, setup.field.as_ref().is_some_and(|field| field.transfer.is_some()))?;
+        check_motion::check(wall, &setup.domain, transfers)?;
     }
     let time = &setup.time;
     if let Step::Seconds(step) = time.step

@@ -157,9 +157,17 @@ impl Simulation {
         }
     }
 
-    /// Moves walls that move to the end of the step.
+    /// Moves walls that move to the end of the step, and their charge with them.
     fn move_walls(&mut self) {
         self.contacts.move_walls(self.progress.time_s(), self.progress.step_s);
+        self.carry_charge_of_walls();
+    }
+
+    /// Takes the charge of walls that move to where they are.
+    fn carry_charge_of_walls(&mut self) {
+        if let (Some(charging), Some(walls)) = (&mut self.charging, &self.contacts.walls) {
+            charging.follow_walls(&self.domain, walls);
+        }
     }
 
     /// Moves the grains; whether one of them may leave now.

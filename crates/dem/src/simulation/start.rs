@@ -90,6 +90,7 @@ impl Simulation {
             field.set_time(run.progress.time_s(), run.progress.step_s);
         }
         run.contacts.move_walls(run.progress.time_s(), AT_START);
+        run.carry_charge_of_walls();
         run.allowed = overlaps::allowed(run.depths(), run.time.allow_overlap);
         run.resize_scratch();
         run.update_electric_limits();
@@ -188,6 +189,7 @@ impl Simulation {
             watch: StageClock::default(),
         };
         run.limit_walls();
+        run.carry_charge_of_walls();
         run.resize_scratch();
         Ok(run)
     }

@@ -205,17 +205,6 @@ fn check_charge_transfer(document: &SceneTable<'_>, scene: &Scene) -> Result<(),
     if !on {
         return Ok(());
     }
-    let keeps = |wall: &Wall| wall.charging == WallCharging::Insulating && !wall.motion.is_empty();
-    if let Some(index) = scene.walls.iter().position(keeps) {
-        return Err(SceneError::Value {
-            place: document.place_of("walls").to_string(),
-            key: format!("walls[{index}].charging"),
-            value: "\"insulating\"".to_owned(),
-            problem: "the wall has a motion, and kept charge is not taken along; let it rest, or give \
-                      \"grounded\" or \"none\""
-                .to_owned(),
-        });
-    }
     let correction = scene.charge_transfer.as_ref().is_some_and(|transfer| transfer.stiffness_correction);
     for (index, material) in scene.materials.iter().enumerate() {
         let missing = |key: &str, why: &str| SceneError::Missing {
