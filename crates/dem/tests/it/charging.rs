@@ -2,8 +2,8 @@
 
 use crate::common::{domain, floor, grain, lattice, material, mesh_floor, run, setup};
 use amberfield_core::{
-    Boundary, ChargeTransfer, Domain, FieldSettings, ForceLimit, Grain, Material, Method, MotionKind, Vector3,
-    Wall, WallCharging, WallMotion, WallShape,
+    Boundary, ChargeTransfer, Domain, FieldSettings, ForceLimit, Grain, Material, Method, MotionKind,
+    Vector3, Wall, WallCharging, WallMotion, WallShape,
 };
 use amberfield_dem::{FieldStageSetup, Setup, Simulation, State};
 use amberfield_oracle::{DampedHertzImpact, HertzImpact};

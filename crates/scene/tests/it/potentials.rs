@@ -117,7 +117,11 @@ const BAD: &[(&str, &str, &[&str])] = &[
     (TOP, "{ potential_V = { amplitude = 1, frequency_Hz = 50, table = \"v.csv\" } }", &["remove one"]),
     (TOP, "{ potential_V = { table = \"w.csv\" } }", &["w.csv", "potential_V.table"]),
     (TOP, "{ potential_V = \"v.csv\" }", &["potential_V", "a number", "table"]),
-    (TOP, "{ potential_V = { amplitude = 1, frequency_Hz = 1e5 } }", &["time.step_s", "1e5 Hz", "5e-7 s"]),
+    (
+        TOP,
+        "{ potential_V = { amplitude = 1, frequency_Hz = 1e5 } }",
+        &["time.step_s", "1.000e5 Hz", "5e-7 s"],
+    ),
     (TOP, "{ potential_V = { amplitude = 1, frequency_Hz = 50 }, normal_field_V_m = 1.0 }", &["exactly one"]),
     (EXTERNAL, "{ amplitude = 1e5, frequency_Hz = 50 }", &["amplitude", "[x, y, z]"]),
     (EXTERNAL, "{ amplitude = [0, 0, 1e5], frequency_Hz = 1e5 }", &["time.step_s", "5e-7 s"]),
