@@ -66,7 +66,7 @@ pub enum DemError {
     /// The step is beyond a stability guard.
     #[error(
         "time step {step_s:e} s is beyond the {guard} limit of {limit_s:e} s at t = {time_s:e} s; \
-         make step_s smaller, use step_s = \"auto\", or set allow_unstable = true"
+         make step_s smaller (\"auto\" fits it to the start of a run), or set allow_unstable = true"
     )]
     Unstable {
         /// Name of the guard.

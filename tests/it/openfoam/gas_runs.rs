@@ -249,7 +249,9 @@ fn fed() -> String {
     let feed = "[particles]\non_exit = 'delete'\n[[feeds]]\nname = 'rain'\nmaterial = 'glass'\n\
         region = { box = { min_m = [0.001, 0.001, 0.02], max_m = [0.009, 0.009, 0.029] } }\n\
         rate_per_s = 1e4\nend_s = 4e-3\nradius_m = 5e-4\nvelocity_m_s = [0, 0, -1]\n[gas]";
-    format!("{before}{feed}{after}").replace("gravity_m_s2 = [0, 0, -9.81]", "gravity_m_s2 = [0, 0, 0]")
+    // In model B all that the gas gives is drag.
+    format!("{before}{feed}\nmodel = 'B'{after}")
+        .replace("gravity_m_s2 = [0, 0, -9.81]", "gravity_m_s2 = [0, 0, 0]")
 }
 
 #[test]

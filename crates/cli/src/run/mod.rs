@@ -4,6 +4,8 @@
 mod bare_patches;
 mod begin;
 mod exits;
+#[cfg(feature = "coupling")]
+mod face_potentials;
 mod folder;
 mod health;
 pub(crate) mod histogram;

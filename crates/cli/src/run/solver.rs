@@ -1,6 +1,7 @@
 //! Connection to the scene's solver, which is started first because its mesh may give the box.
 
 use super::bare_patches::warning_of_bare_patches;
+use super::face_potentials;
 use super::setup::SolverConnections;
 use super::solver_folder::SolverFolder;
 use crate::failure::Failure;
@@ -95,10 +96,15 @@ pub(crate) fn connect_solver(scene: &mut Scene, folder: &SolverFolder) -> Result
     let connected = connect(&settings).map_err(of_coupling)?;
     let mesh = connected.mesh();
     tracing::info!("field solver: {} cells, {} boundary faces", mesh.cell_count(), mesh.boundary().len());
-    let warnings = warning_of_bare_patches(scene, mesh).into_iter().collect();
+    let mut warnings: Vec<String> = warning_of_bare_patches(scene, mesh).into_iter().collect();
     match &scene.domain {
         None => scene.domain = Some(mesh.domain().clone()),
-        Some(domain) => agree(domain, mesh.domain())?,
+        Some(domain) => {
+            agree(domain, mesh.domain())?;
+            if has_field {
+                warnings.extend(face_potentials::compare(domain, mesh, solver.on_solver_loss)?);
+            }
+        }
     }
 
     let flow = flows.then(|| ConnectFlow::once(connected.flow()));

@@ -25,8 +25,11 @@ pub(super) fn read_outlets(document: &SceneTable<'_>) -> Result<Vec<Outlet>, Sce
     for table in document.tables("outlets")?.into_iter().flatten() {
         let read = table.and_then(|table| {
             let outlet = read_outlet(&table)?;
-            if list.iter().any(|other| other.name == outlet.name) {
-                return Err(table.bad("name", "another outlet has this name; rename one"));
+            if list.iter().any(|other| column(&other.name) == column(&outlet.name)) {
+                return Err(table.bad(
+                    "name",
+                    "another outlet has this name, or one that gives the same columns; rename one",
+                ));
             }
             if list.len() == MOST {
                 return Err(table.bad("name", format!("more than {MOST} outlets; merge some")));
@@ -38,6 +41,11 @@ pub(super) fn read_outlets(document: &SceneTable<'_>) -> Result<Vec<Outlet>, Sce
     problems.finish()?;
     list.sort_by(|a, b| a.name.cmp(&b.name));
     Ok(list)
+}
+
+/// Name as it stands in the heading of a column, without what would part columns.
+fn column(name: &str) -> String {
+    name.replace([',', '"', '\n', '\r'], "_")
 }
 
 fn read_outlet(table: &SceneTable<'_>) -> Result<Outlet, SceneError> {

@@ -2,7 +2,7 @@
 
 use super::description::Scene;
 use amberfield_core::constants::VACUUM_PERMITTIVITY;
-use amberfield_core::{Axis, Domain, OnExit, Outlet, OutletRegion, Side, Wall, WallShape};
+use amberfield_core::{Axis, Domain, OnExit, Outlet, OutletRegion, Particles, Side, Wall, WallShape};
 use std::f64::consts::PI;
 use std::ops::RangeInclusive;
 
@@ -36,7 +36,8 @@ pub(super) fn unusual_values(scene: &Scene) -> Vec<String> {
     found.extend(no_floor(scene));
     // Scenes without motion may have points of unit charge.
     if scene.time.is_some() {
-        found.extend(unusual_grains(scene));
+        found.extend(unusual_grains(&scene.particles));
+        found.extend(unusual_grains(&scene.feeds.grains));
     }
     found
 }
@@ -94,8 +95,7 @@ fn unusual_size(wall: &Wall, domain: &Domain) -> Option<String> {
 }
 
 /// Warnings about densities, speeds and charges of grains, one for each kind.
-fn unusual_grains(scene: &Scene) -> Vec<String> {
-    let particles = &scene.particles;
+fn unusual_grains(particles: &Particles) -> Vec<String> {
     let breakdown = |i: usize| {
         let radius = particles.radius[i];
         4.0 * PI * VACUUM_PERMITTIVITY * radius * radius * BREAKDOWN
