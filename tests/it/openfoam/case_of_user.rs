@@ -315,3 +315,31 @@ fn solver_that_somebody_else_starts_is_waited_for_and_what_to_type_is_said() {
         );
     }
 }
+
+#[test]
+fn potentials_of_the_box_that_the_case_does_not_have_are_told() {
+    let boxed = |face: &str| {
+        let domain = format!(
+            "[domain]\nmin_m = [0, 0, 0]\nmax_m = [0.01, 0.004, 0.004]\nboundary = {{ x_min = 'grounded', \
+             x_max = {face}, y = 'insulating', z = 'insulating' }}\n"
+        );
+        let bench = bench(&(domain + SCENE));
+        set_voltage(&bench, 5.0);
+        bench
+    };
+    let same = field(&boxed("{ potential_V = 5 }"), &[]);
+    good(&same);
+    assert!(!same.stderr.contains("WARN domain.boundary"), "{}", same.stderr);
+    let other = field(&boxed("{ potential_V = 7 }"), &[]);
+    good(&other);
+    for word in ["domain.boundary.x_max = { potential_V = 7 }", "the case has 5 V there", "0/phiE"] {
+        assert!(other.stderr.contains(word), "{word}: {}", other.stderr);
+    }
+    let changing = field(&boxed("{ potential_V = { amplitude = 5, frequency_Hz = 50 } }"), &[]);
+    assert_eq!(changing.code, Some(2), "{}", changing.stderr);
+    assert!(
+        changing.stderr.contains("domain.boundary.x_max has a potential that changes"),
+        "{}",
+        changing.stderr
+    );
+}

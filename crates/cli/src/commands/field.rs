@@ -4,8 +4,8 @@ use crate::arguments::FieldOptions;
 use crate::failure::Failure;
 use crate::print;
 use crate::run::{
-    Charges, SolverFolder, charges_of, connect_solver, domain_of, field_of, parameters, read_scene,
-    scene_name,
+    Charges, SolverConnections, SolverFolder, charges_of, connect_solver, domain_of, field_of, parameters,
+    read_scene, scene_name,
 };
 use amberfield_core::{Method, Vector3};
 use amberfield_field::{ElectricField, FieldValues, Wanted};
@@ -25,7 +25,10 @@ pub(crate) fn field(options: &FieldOptions) -> Result<(), Failure> {
     for warning in &scene.warnings {
         tracing::warn!("{warning}");
     }
-    let solver = connect_solver(&mut scene, &folder)?.field;
+    let SolverConnections { field: solver, warnings, .. } = connect_solver(&mut scene, &folder)?;
+    for warning in &warnings {
+        tracing::warn!("{warning}");
+    }
     let settings = scene.electric_field.as_ref().expect("the purpose needs it");
     let domain = domain_of(&scene)?;
     let Charges { index: indices, position: positions, charge: charges } = charges_of(&scene);
