@@ -145,14 +145,16 @@ fn what_cannot_come_is_said_in_words() {
 #[test]
 fn charges_that_come_at_a_high_potential_are_no_unsound_run() {
     let bench = Workbench::new(
-        "domain = { min_m = [0, 0, 0], max_m = [0.1, 0.02, 0.1], boundary = { x_min = { potential_V = 5000 }, \
+        "domain = { min_m = [0, 0, 0], max_m = [0.1, 0.02, 0.1], \
+         boundary = { x_min = { potential_V = 5000 }, \
          x_max = { potential_V = -5000 }, y = 'open', z = 'open' } }\n\
          [[materials]]\nname = 'glass'\ndensity_kg_m3 = 2500\nyoung_Pa = 1e6\npoisson = 0.25\n\
          restitution = 0.7\nfriction = 0.3\n[particles]\non_exit = 'delete'\n\
          [[feeds]]\nname = 'f'\nmaterial = 'glass'\nrate_per_s = 2000\nradius_m = 2.5e-4\ncharge_C = 2e-12\n\
          region = { box = { min_m = [0.01, 0.005, 0.09], max_m = [0.02, 0.015, 0.1] } }\n\
          [[outlets]]\nname = 'left'\nregion = { box = { min_m = [0, 0, 0], max_m = [0.05, 0.02, 0.001] } }\n\
-         [[outlets]]\nname = 'right'\nregion = { box = { min_m = [0.05, 0, 0], max_m = [0.1, 0.02, 0.001] } }\n\
+         [[outlets]]\nname = 'right'\n\
+         region = { box = { min_m = [0.05, 0, 0], max_m = [0.1, 0.02, 0.001] } }\n\
          [time]\nstep_s = 5e-6\nend_s = 0.01\ngravity_m_s2 = [0, 0, -9.81]\n\
          [electric_field]\ntolerance = 1e-3\n[output]\nhistory_every_s = 6e-4\n",
     );

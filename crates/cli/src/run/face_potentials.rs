@@ -50,8 +50,8 @@ fn difference(domain: &Domain, mesh: &FarMesh, axis: Axis, side: Side) -> Option
         Condition::Slope(_) => Some("no potential".to_owned()),
     })?;
     Some(format!(
-        "domain.boundary.{} = {{ potential_V = {ours} }}, but the case has {theirs} there, which counts: over \
-         OpenFOAM potentials stand in 0/phiE",
+        "domain.boundary.{} = {{ potential_V = {ours} }}, but the case has {theirs} there, which counts: \
+         over OpenFOAM potentials stand in 0/phiE",
         name(axis, side)
     ))
 }

@@ -292,8 +292,8 @@ fn tell_gas(simulation: &Simulation) {
     if let Some(exchange) = simulation.gas_exchange() {
         let (seconds, given) = (exchange.seconds(), exchange.booked());
         tracing::info!(
-            "gas: gave the grains {:.3e} N s of momentum by drag and lift; exchanges took {:.1} s for the flow, \
-             {:.1} s for the mapping, {:.1} s for sending and receiving",
+            "gas: gave the grains {:.3e} N s of momentum by drag and lift; exchanges took {:.1} s for the \
+             flow, {:.1} s for the mapping, {:.1} s for sending and receiving",
             given.norm(),
             seconds.solver,
             seconds.mapping,

@@ -5,6 +5,7 @@ mod common;
 
 mod beds;
 mod boxes;
+mod charge_of_moving_walls;
 mod charged_gas;
 mod charging;
 mod cohesion;
