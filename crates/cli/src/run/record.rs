@@ -10,7 +10,7 @@ use super::walls::faces;
 use crate::failure::Failure;
 use amberfield_core::WallCharging;
 use amberfield_dem::{Book, ChargedSpot, Energies, FeedAccount, Simulation, Tally};
-use amberfield_scene::files::{ELECTRIC_FORCE, HISTORY, When};
+use amberfield_scene::files::{ELECTRIC_FORCE, HISTORY, When, in_heading};
 use amberfield_scene::{
     ChargedSquare, HistoryFile, HistoryValue, PvdSeries, Scene, write_charge_vtu, write_particles_csv,
     write_vtu, write_walls_vtu,
@@ -70,7 +70,7 @@ impl HistoryColumns {
             solver: simulation.plan().has("field") && scene.solver.is_some(),
             feeds: !simulation.feeds().is_empty(),
             materials: if simulation.books().is_some() { materials_of(scene) } else { Vec::new() },
-            outlets: scene.outlets.iter().map(|outlet| plain(&outlet.name)).collect(),
+            outlets: scene.outlets.iter().map(|outlet| in_heading(&outlet.name)).collect(),
             stages: simulation.stage_seconds().into_iter().map(|(name, _)| name).collect(),
         }
     }
@@ -292,14 +292,9 @@ impl Record {
     }
 }
 
-/// Name without what would part columns.
-fn plain(name: &str) -> String {
-    name.replace([',', '"', '\n', '\r'], "_")
-}
-
 /// Names of a scene's materials, without what would part columns.
 fn materials_of(scene: &Scene) -> Vec<String> {
-    scene.materials.iter().map(|material| plain(&material.name)).collect()
+    scene.materials.iter().map(|material| in_heading(&material.name)).collect()
 }
 
 /// Adds the books of what is there and what left to a row of the history.

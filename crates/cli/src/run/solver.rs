@@ -101,6 +101,7 @@ pub(crate) fn connect_solver(scene: &mut Scene, folder: &SolverFolder) -> Result
         None => scene.domain = Some(mesh.domain().clone()),
         Some(domain) => {
             agree(domain, mesh.domain())?;
+            warnings.extend(beyond(domain, mesh.domain()));
             if has_field {
                 warnings.extend(face_potentials::compare(domain, mesh, solver.on_solver_loss)?);
             }
@@ -187,6 +188,27 @@ fn refuse_with_gas(solver: &OpenFoamSettings) -> Result<(), Failure> {
         )));
     }
     Ok(())
+}
+
+/// Warning about a box that reaches beyond the mesh.
+fn beyond(domain: &Domain, mesh: &Domain) -> Option<String> {
+    /// Share of the length by which it may.
+    const SLACK: f64 = 1e-3;
+    Axis::ALL.into_iter().find_map(|axis| {
+        let k = axis.index();
+        let slack = SLACK * mesh.extent()[k];
+        let is_beyond = domain.min()[k] < mesh.min()[k] - slack || domain.max()[k] > mesh.max()[k] + slack;
+        is_beyond.then(|| {
+            format!(
+                "[domain] reaches from {} to {} m along {axis}, the mesh of [solver] openfoam_case only from {} \
+                 to {} m: a grain that leaves the mesh ends the run; make them agree, or leave [domain] out",
+                domain.min()[k],
+                domain.max()[k],
+                mesh.min()[k],
+                mesh.max()[k]
+            )
+        })
+    })
 }
 
 /// Refuses a box that differs from that of the mesh.

@@ -135,7 +135,7 @@ impl Source {
                 self.replace(field);
                 tracing::warn!(
                     "error of the field on a sample: {error:.2e}, above the tolerance {tolerance:e}; \
-                     new parameters: {:?}",
+                     new parameters: {}",
                     self.field.choice()
                 );
             }

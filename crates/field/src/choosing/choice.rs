@@ -2,6 +2,7 @@
 
 use crate::methods::p3m_parameters::P3mParameters;
 use serde::{Deserialize, Serialize};
+use std::fmt;
 
 /// Parameters chosen for a scene. They are written to the run folder and reused on resume, so that results
 /// never depend on a stopwatch.
@@ -25,6 +26,20 @@ pub enum Choice {
     AllPairs,
     /// p3m on the internal grid.
     P3m(P3mParameters),
+}
+
+impl fmt::Display for Choice {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        match self {
+            Self::Cutoff { cutoff_m } => write!(f, "cut-off {cutoff_m:.4e} m"),
+            Self::Direct => write!(f, "the direct sum"),
+            Self::Kolehmainen { cutoff_m } => write!(f, "kolehmainen, cut-off {cutoff_m:.4e} m"),
+            Self::AllPairs => write!(f, "every pair"),
+            Self::P3m(P3mParameters { cutoff_m, spacing_m, order, .. }) => {
+                write!(f, "cut-off {cutoff_m:.4e} m, nodes {spacing_m:.4e} m apart, window of order {order}")
+            }
+        }
+    }
 }
 
 /// Error found by comparing with a more exact evaluation on a sample of grains.

@@ -66,6 +66,12 @@ impl When {
     }
 }
 
+/// Name of a material or an outlet as a part of a column's name, without what would part columns.
+#[must_use]
+pub fn in_heading(name: &str) -> String {
+    name.replace([',', '"', '\n', '\r'], "_")
+}
+
 impl Column {
     /// Column that is always there.
     pub(super) const fn new(

@@ -10,7 +10,7 @@ mod page;
 mod run;
 mod study;
 
-pub use column::{Column, When};
+pub use column::{Column, When, in_heading};
 pub use field::{FIELD, FIELD_REPORT, TUNE};
 pub use file::{FileTable, Form};
 pub use history::HISTORY;

@@ -2,6 +2,7 @@
 
 use crate::SceneError;
 use crate::error::Problems;
+use crate::files::in_heading;
 use crate::generate::read_volume;
 use crate::table::SceneTable;
 use amberfield_core::{Axis, Outlet, OutletRegion, Side};
@@ -25,7 +26,7 @@ pub(super) fn read_outlets(document: &SceneTable<'_>) -> Result<Vec<Outlet>, Sce
     for table in document.tables("outlets")?.into_iter().flatten() {
         let read = table.and_then(|table| {
             let outlet = read_outlet(&table)?;
-            if list.iter().any(|other| column(&other.name) == column(&outlet.name)) {
+            if list.iter().any(|other| in_heading(&other.name) == in_heading(&outlet.name)) {
                 return Err(table.bad(
                     "name",
                     "another outlet has this name, or one that gives the same columns; rename one",
@@ -41,11 +42,6 @@ pub(super) fn read_outlets(document: &SceneTable<'_>) -> Result<Vec<Outlet>, Sce
     problems.finish()?;
     list.sort_by(|a, b| a.name.cmp(&b.name));
     Ok(list)
-}
-
-/// Name as it stands in the heading of a column, without what would part columns.
-fn column(name: &str) -> String {
-    name.replace([',', '"', '\n', '\r'], "_")
 }
 
 fn read_outlet(table: &SceneTable<'_>) -> Result<Outlet, SceneError> {
