@@ -200,8 +200,8 @@ fn beyond(domain: &Domain, mesh: &Domain) -> Option<String> {
         let is_beyond = domain.min()[k] < mesh.min()[k] - slack || domain.max()[k] > mesh.max()[k] + slack;
         is_beyond.then(|| {
             format!(
-                "[domain] reaches from {} to {} m along {axis}, the mesh of [solver] openfoam_case only from \
-                 {} to {} m: a grain that leaves the mesh ends the run; make them agree, or leave [domain] out",
+                "[domain] reaches from {} to {} m along {axis}, the mesh of [solver] only from {} to {} m: a \
+                 grain that leaves the mesh ends the run; make them agree, or leave [domain] out",
                 domain.min()[k],
                 domain.max()[k],
                 mesh.min()[k],
