@@ -26,7 +26,11 @@ impl<'a> Room<'a> {
     /// Adds a grain with its images, where they are near the region.
     pub(super) fn add(&mut self, centre: [f64; 4]) {
         let [x, y, z, radius] = centre;
-        let place = self.domain.wrap(Vector3::new(x, y, z));
+        let place = Vector3::new(x, y, z);
+        if self.is_far(&place) {
+            return;
+        }
+        let place = self.domain.wrap(place);
         let extent = self.domain.extent();
         let periods = Axis::ALL.map(|axis| if self.domain.is_periodic(axis) { -1..=1 } else { 0..=0 });
         for a in periods[0].clone() {
@@ -41,6 +45,15 @@ impl<'a> Room<'a> {
                 }
             }
         }
+    }
+
+    /// Whether no image of a place [m] is near the region: the nearest along each axis is not.
+    fn is_far(&self, place: &Vector3<f64>) -> bool {
+        /// Reach over the region's half, for round-off.
+        const REACH: f64 = 1.0 + 1e-9;
+        let half = (self.high - self.low) * (0.5 * REACH);
+        let away = self.domain.shortest(place - (self.low + self.high) * 0.5);
+        (0..3).any(|axis| away[axis].abs() > half[axis])
     }
 
     fn cell(&self, place: &Vector3<f64>) -> [i64; 3] {
