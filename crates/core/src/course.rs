@@ -73,7 +73,7 @@ where
     #[must_use]
     pub fn longest_look_s(&self, time_s: f64) -> f64 {
         match self {
-            Self::Sine { frequency_hz, .. } => 1.0 / (LEAST_PER_PERIOD * frequency_hz),
+            Self::Sine { .. } => self.longest_step_s(),
             Self::Table { rows, .. } => {
                 let next = rows.partition_point(|row| row.time_s <= time_s);
                 let Some(to) = rows.get(next) else { return f64::INFINITY };

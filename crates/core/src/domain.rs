@@ -69,6 +69,12 @@ impl Axis {
     pub fn index(self) -> usize {
         self as usize
     }
+
+    /// Name of the box's face at an end of this axis, as `x_min`.
+    #[must_use]
+    pub fn face_name(self, side: Side) -> &'static str {
+        FACE_NAMES[self.index()][side as usize]
+    }
 }
 
 impl fmt::Display for Axis {
@@ -117,8 +123,8 @@ impl fmt::Display for DomainError {
                 write!(f, "only one face of axis {axis} is periodic; make both faces periodic or neither")
             }
             Self::Value(axis, side) => {
-                let side = if *side == Side::Min { "min" } else { "max" };
-                write!(f, "the boundary value on face {axis}_{side} is not finite; give a finite number")
+                let face = axis.face_name(*side);
+                write!(f, "the boundary value on face {face} is not finite; give a finite number")
             }
         }
     }
@@ -126,6 +132,10 @@ impl fmt::Display for DomainError {
 
 impl std::error::Error for DomainError {}
 
+/// Names of the faces, by axis and side.
+const FACE_NAMES: [[&str; 2]; 3] = [["x_min", "x_max"], ["y_min", "y_max"], ["z_min", "z_max"]];
+/// Share of the box's size by which a region may reach out of it, because of rounding.
+const REGION_SLACK: f64 = 1e-9;
 /// Distance below which two places are one, over the largest coordinate or length of the domain: coordinates
 /// in single precision, as binary STL files have, are round to 6e-8.
 const SAME_PLACE: f64 = 1e-6;
@@ -311,6 +321,23 @@ impl Domain {
     #[must_use]
     pub fn contains(&self, point: &Vector3<f64>) -> bool {
         (0..3).all(|axis| point[axis] >= self.min[axis] && point[axis] <= self.max[axis])
+    }
+
+    /// Text of how far a region with these corners [m] reaches out of the box; `None` where it is in it.
+    #[must_use]
+    pub fn overrun(&self, [low, high]: &[Vector3<f64>; 2]) -> Option<String> {
+        let slack = REGION_SLACK * self.extent();
+        let reaches_out = |axis: &Axis| {
+            let k = axis.index();
+            low[k] < self.min[k] - slack[k] || high[k] > self.max[k] + slack[k]
+        };
+        Axis::ALL.into_iter().find(reaches_out).map(|axis| {
+            let k = axis.index();
+            format!(
+                "reaches from {} to {} m along {axis}, beyond the domain from {} to {} m",
+                low[k], high[k], self.min[k], self.max[k]
+            )
+        })
     }
 
     /// The point moved by whole periods into the half-open box along the periodic axes.

@@ -1,6 +1,7 @@
 //! Settings of the electric field.
 
 use crate::course::FieldCourse;
+use crate::domain::FaceCourse;
 use crate::permittivity::Permittivity;
 use nalgebra::Vector3;
 use serde::{Deserialize, Serialize};
@@ -115,6 +116,17 @@ pub struct FieldSettings {
     pub overlap: bool,
     /// Bound on the electric force, when asked for.
     pub force_limit: Option<ForceLimit>,
+}
+
+impl FieldSettings {
+    /// Longest step of a run that shows the external field and potentials of faces [s]: a
+    /// twentieth of the shortest period; infinite where none has one.
+    #[must_use]
+    pub fn longest_step_s(&self, faces: &[FaceCourse]) -> f64 {
+        let external = self.external_course.iter().map(|course| course.longest_step_s());
+        let faces = faces.iter().map(|face| face.course.longest_step_s());
+        external.chain(faces).fold(f64::INFINITY, f64::min)
+    }
 }
 
 impl Default for FieldSettings {

@@ -56,14 +56,17 @@ pub(crate) struct Books {
 }
 
 impl Books {
+    /// Whether grains come or go, so that books are kept.
+    pub(crate) fn are_kept(setup: &Setup) -> bool {
+        !setup.feeds.is_empty() || !setup.outlets.is_empty() || setup.time.on_exit == OnExit::Delete
+    }
+
     /// Empty books of a merged set-up, in which the grains of feeds follow those of the start; `None` where
     /// grains neither come nor go.
     pub(crate) fn new(setup: &Setup) -> Option<Self> {
-        let moves =
-            !setup.feeds.is_empty() || !setup.outlets.is_empty() || setup.time.on_exit == OnExit::Delete;
         let materials = setup.materials.len();
         let none = || vec![Tally::default(); materials];
-        moves.then(|| {
+        Self::are_kept(setup).then(|| {
             let particles = &setup.particles;
             let mut start = none();
             for i in 0..particles.len() - setup.feeds.due_s.len() {

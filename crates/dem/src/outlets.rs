@@ -2,13 +2,7 @@
 
 use crate::error::DemError;
 use crate::setup::Setup;
-use amberfield_core::{Axis, Domain, Outlet, OutletRegion, Side, Vector3, Volume};
-
-/// Share of the box's size by which a region may reach out of it, because of rounding.
-const SLACK: f64 = 1e-9;
-
-/// Names of the faces, by axis and side.
-pub(crate) const FACES: [[&str; 2]; 3] = [["x_min", "x_max"], ["y_min", "y_max"], ["z_min", "z_max"]];
+use amberfield_core::{Domain, Outlet, OutletRegion, Side, Vector3, Volume};
 
 /// The outlets of a scene.
 #[derive(Debug)]
@@ -63,7 +57,7 @@ pub(crate) fn check(setup: &Setup) -> Result<(), DemError> {
         match &outlet.region {
             OutletRegion::Volume(volume) => check_volume(outlet, volume, domain)?,
             OutletRegion::Face(axis, side) => {
-                let name = FACES[axis.index()][*side as usize];
+                let name = axis.face_name(*side);
                 if domain.is_periodic(*axis) {
                     let problem = format!(
                         "no grain leaves through its face {name}, since {axis} is periodic; name another \
@@ -84,21 +78,7 @@ pub(crate) fn check(setup: &Setup) -> Result<(), DemError> {
 
 /// Refuses a volume that is not in the box.
 fn check_volume(outlet: &Outlet, volume: &Volume, domain: &Domain) -> Result<(), DemError> {
-    let [low, high] = volume.bounds();
-    for axis in Axis::ALL {
-        let k = axis.index();
-        let slack = SLACK * domain.extent()[k];
-        if low[k] < domain.min()[k] - slack || high[k] > domain.max()[k] + slack {
-            let problem = format!(
-                "its region reaches from {} to {} m along {axis}, beyond the domain from {} to {} m; shrink \
-                 the region or enlarge the domain",
-                low[k],
-                high[k],
-                domain.min()[k],
-                domain.max()[k]
-            );
-            return Err(bad(outlet, &problem));
-        }
-    }
-    Ok(())
+    domain.overrun(&volume.bounds()).map_or(Ok(()), |overrun| {
+        Err(bad(outlet, &format!("its region {overrun}; shrink the region or enlarge the domain")))
+    })
 }

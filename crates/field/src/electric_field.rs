@@ -19,7 +19,7 @@ use crate::values::{FieldValues, Wanted};
 use amberfield_core::{Domain, FieldSettings, Plan};
 use nalgebra::Vector3;
 
-pub use changing::{GivenField, longest_step_s};
+pub use changing::GivenField;
 
 /// Cost of the last evaluation.
 #[derive(Clone, Debug, Default, PartialEq)]

@@ -19,7 +19,7 @@ mod values;
 
 pub use choosing::candidates::Candidate;
 pub use choosing::choice::{Choice, Measured};
-pub use electric_field::{ElectricField, GivenField, Statistics, longest_step_s};
+pub use electric_field::{ElectricField, GivenField, Statistics};
 pub use error::FieldError;
 pub use levels::faces::BoundaryField;
 pub use levels::far;

@@ -85,7 +85,7 @@ fn print_scene(name: &str, scene: &Scene) {
 /// Text of where an outlet is.
 fn place_of(region: &OutletRegion) -> String {
     match region {
-        OutletRegion::Face(axis, side) => format!("face {axis}_{}", ["min", "max"][*side as usize]),
+        OutletRegion::Face(axis, side) => format!("face {}", axis.face_name(*side)),
         OutletRegion::Volume(volume) => {
             let [low, high] = volume.bounds();
             format!("within {:?} to {:?} m, {:.4e} m³", low.as_slice(), high.as_slice(), volume.size())

@@ -3,7 +3,7 @@
 
 use super::folder::RunFolder;
 use crate::failure::Failure;
-use amberfield_core::OnExit;
+use amberfield_core::{OnExit, Outlet};
 use amberfield_dem::{Exit, Simulation, WayOut};
 use amberfield_scene::files::{EXITS, FileTable, OUTLETS_GRAINS};
 use amberfield_scene::{HistoryFile, HistoryValue, Scene};
@@ -27,18 +27,11 @@ pub(crate) struct Exits {
     by_face: Option<HistoryFile>,
     /// Rows of grains that left through outlets; `None` where no outlet lists each.
     by_outlet: Option<HistoryFile>,
-    outlets: Vec<OutletName>,
+    outlets: Vec<Outlet>,
     /// Names of the materials.
     materials: Vec<String>,
     /// Grains that left since the log was told, by way.
     untold: BTreeMap<String, Through>,
-}
-
-/// Name of an outlet, and whether it lists each grain.
-#[derive(Debug)]
-struct OutletName {
-    name: String,
-    each: bool,
 }
 
 impl Exits {
@@ -63,11 +56,10 @@ impl Exits {
     fn of(scene: &Scene, open: impl Fn(&FileTable) -> Result<HistoryFile, Failure>) -> Result<Self, Failure> {
         let deletes = scene.time.as_ref().is_some_and(|time| time.on_exit == OnExit::Delete);
         let lists = scene.outlets.iter().any(|outlet| outlet.each);
-        let outlets = scene.outlets.iter();
         Ok(Self {
             by_face: deletes.then(|| open(&EXITS)).transpose()?,
             by_outlet: lists.then(|| open(&OUTLETS_GRAINS)).transpose()?,
-            outlets: outlets.map(|of| OutletName { name: of.name.clone(), each: of.each }).collect(),
+            outlets: scene.outlets.clone(),
             materials: scene.materials.iter().map(|material| material.name.clone()).collect(),
             untold: BTreeMap::new(),
         })
@@ -104,14 +96,14 @@ impl Exits {
 
     fn append_at_outlet(&mut self, exit: &Exit, number: usize) -> Result<(), Failure> {
         let Some(rows) = &mut self.by_outlet else { return Ok(()) };
-        let OutletName { name, each } = &self.outlets[number];
-        if !each {
+        let outlet = &self.outlets[number];
+        if !outlet.each {
             return Ok(());
         }
         let material = &self.materials[usize::from(exit.material.0)];
         let mut row = vec![HistoryValue::Count(exit.step), HistoryValue::Number(exit.time_s)];
         row.extend([
-            HistoryValue::Text(name.clone()),
+            HistoryValue::Text(outlet.name.clone()),
             HistoryValue::Count(exit.id),
             HistoryValue::Text(material.clone()),
         ]);

@@ -24,15 +24,11 @@ pub(super) fn compare(domain: &Domain, mesh: &FarMesh, loss: SolverLoss) -> Resu
             "domain.boundary.{} has a potential that changes with time, which the field over OpenFOAM does \
              not follow: there the potentials of 0/phiE count, which are constant; leave [solver] out, or \
              take a constant there and here",
-            name(face.axis, face.side)
+            face.axis.face_name(face.side)
         )));
     }
     let sides = Axis::ALL.into_iter().flat_map(|axis| [(axis, Side::Min), (axis, Side::Max)]);
     Ok(sides.filter_map(|(axis, side)| difference(domain, mesh, axis, side)).next())
-}
-
-fn name(axis: Axis, side: Side) -> String {
-    format!("{axis}_{}", ["min", "max"][side as usize])
 }
 
 /// Warning where a face has a potential that the mesh does not have on it; `None` where the mesh ends
@@ -52,6 +48,6 @@ fn difference(domain: &Domain, mesh: &FarMesh, axis: Axis, side: Side) -> Option
     Some(format!(
         "domain.boundary.{} = {{ potential_V = {ours} }}, but the case has {theirs} there, which counts: \
          over OpenFOAM potentials stand in 0/phiE",
-        name(axis, side)
+        axis.face_name(side)
     ))
 }

@@ -5,15 +5,13 @@ use super::places::{Places, Random};
 use crate::error::DemError;
 use crate::outlets::Outlets;
 use crate::setup::Setup;
-use amberfield_core::{Axis, Feed, FeedRegion};
+use amberfield_core::{Feed, FeedRegion};
 use std::f64::consts::PI;
 
 /// Largest share of a region's volume that grains fill which come one after another.
 const FILLS: f64 = 0.6;
 /// Places that are tried to find out whether a grain fits through a face, and whether outlets take it.
 const TRIES: u64 = 10_000;
-/// Share of the box's size by which a region may reach out of it, because of rounding.
-const SLACK: f64 = 1e-9;
 
 fn bad(text: String) -> DemError {
     DemError::Setup(text)
@@ -54,23 +52,13 @@ pub(crate) fn check(setup: &Setup) -> Result<(), DemError> {
 /// Refuses a region that reaches out of the box.
 fn check_region(feed: &Feed, setup: &Setup) -> Result<(), DemError> {
     let name = &feed.name;
-    let Some([low, high]) = feed.region.bounds() else {
+    let Some(bounds) = feed.region.bounds() else {
         return Err(bad(format!("feed \"{name}\": its face has no triangles; give it a surface")));
     };
-    let domain = &setup.domain;
-    for axis in Axis::ALL {
-        let k = axis.index();
-        let slack = SLACK * domain.extent()[k];
-        if low[k] < domain.min()[k] - slack || high[k] > domain.max()[k] + slack {
-            return Err(bad(format!(
-                "feed \"{name}\": its region reaches from {} to {} m along {axis}, beyond the domain from \
-                 {} to {} m; shrink the region or enlarge the domain",
-                low[k],
-                high[k],
-                domain.min()[k],
-                domain.max()[k]
-            )));
-        }
+    if let Some(overrun) = setup.domain.overrun(&bounds) {
+        return Err(bad(format!(
+            "feed \"{name}\": its region {overrun}; shrink the region or enlarge the domain"
+        )));
     }
     if matches!(feed.region, FeedRegion::Face(_)) && feed.velocity.norm() == 0.0 {
         return Err(bad(format!(

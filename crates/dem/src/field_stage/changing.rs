@@ -11,7 +11,6 @@ use super::members::Extras;
 use crate::error::DemError;
 use crate::motion::grains::Grains;
 use amberfield_core::{CouplingInterval, Domain, Particles, Vector3};
-use amberfield_field::longest_step_s;
 
 /// Longest time between two trades, over that in which what changes goes along a straight line.
 const TRADES: f64 = 0.2;
@@ -56,7 +55,7 @@ impl FieldStage {
 
     /// Longest step that shows the potentials and the external field [s].
     pub(crate) fn longest_step_s(&self, domain: &Domain) -> f64 {
-        longest_step_s(domain, &self.settings)
+        self.settings.longest_step_s(domain.courses())
     }
 
     /// Most steps of a length [s] between two evaluations that follow the potentials.

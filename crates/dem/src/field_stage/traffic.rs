@@ -42,6 +42,7 @@ impl FieldStage {
         leavers: &[Leaver],
     ) {
         let k = self.settings.permittivity.coulomb();
+        // Their indices increase.
         let mut gone = Vec::with_capacity(leavers.len());
         for Leaver { index, image } in leavers {
             gone.push(*index);
@@ -49,7 +50,7 @@ impl FieldStage {
             let Some(q) = charge.filter(|q| *q != 0.0) else { continue };
             let place = grains.position(*index);
             let mut energy = self.energy_of_given(q, &domain.wrap(place));
-            for other in (0..grains.len()).filter(|other| !gone.contains(other)) {
+            for other in (0..grains.len()).filter(|other| gone.binary_search(other).is_err()) {
                 let Some(of_other) = charge_of(&self.member, grains, particles, other) else { continue };
                 let at = grains.position(other);
                 let mut feel = |share: f64, from: Vector3<f64>| {

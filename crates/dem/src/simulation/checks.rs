@@ -284,7 +284,7 @@ pub(crate) fn check_state(setup: &Setup, state: &State) -> Result<(), DemError> 
     if feeding.is_some() == setup.feeds.is_empty() {
         return misfit("its feeds are not those of the scene");
     }
-    if books.is_some() != Books::new(setup).is_some() {
+    if books.is_some() != Books::are_kept(setup) {
         return misfit("its books are not those of the scene");
     }
     let count = grains.original.len();

@@ -9,9 +9,8 @@ use super::{HALF_SKIN, Simulation};
 use crate::error::DemError;
 use crate::field_stage::Leaver;
 use crate::motion::verlet::{Beyond, Bounds};
-use crate::outlets::FACES;
 use crate::setup::Setup;
-use amberfield_core::{MaterialId, OnExit, Side, Vector3};
+use amberfield_core::{Axis, MaterialId, OnExit, Side, Vector3};
 use serde::{Deserialize, Serialize};
 
 /// A wall this close to a face, over the skin of the lists, stands on it.
@@ -162,7 +161,7 @@ impl Simulation {
         // A centre that is not a number has no side; it ends the run in any case.
         let side = side.unwrap_or(Side::Min);
         let outlet = outlets.and_then(|outlets| outlets.at_face(axis, side));
-        Some(outlet.map_or(WayOut::Face(FACES[axis][side as usize]), WayOut::Outlet))
+        Some(outlet.map_or(WayOut::Face(Axis::ALL[axis].face_name(side)), WayOut::Outlet))
     }
 
     /// Ends the run or removes the grains that leave, as the scene says; whether any was removed.

@@ -73,15 +73,6 @@ pub struct GivenField {
     pub faces: FieldAt,
 }
 
-/// Longest step of a run that shows the potentials and the external field of a scene [s]: a twentieth of the
-/// shortest period; infinite where none has one.
-#[must_use]
-pub fn longest_step_s(domain: &Domain, settings: &FieldSettings) -> f64 {
-    let external = settings.external_course.iter().map(|course| course.longest_step_s());
-    let faces = domain.courses().iter().map(|face| face.course.longest_step_s());
-    external.chain(faces).fold(f64::INFINITY, f64::min)
-}
-
 /// Refuses potentials that change where the method has them in equations that it solves once for all.
 pub(super) fn check(domain: &Domain, settings: &FieldSettings) -> Result<(), FieldError> {
     if settings.method == Method::Kolehmainen && !domain.courses().is_empty() {

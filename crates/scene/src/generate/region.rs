@@ -13,7 +13,7 @@ use std::f64::consts::PI;
 
 /// Share of their radius by which grains stay away from walls and faces, so that rounding makes no contact.
 const CLEARANCE: f64 = 1e-6;
-/// Share of the domain's size by which a region may reach out of the domain, because of rounding.
+/// Share of the domain's size by which a region that fills a period may end before it, because of rounding.
 const SLACK: f64 = 1e-9;
 
 /// Number of places at which it is asked on which side of a closed surface a region lies.
@@ -120,19 +120,13 @@ fn read_cylinder(table: &SceneTable<'_>) -> Result<Volume, SceneError> {
 impl Region {
     fn new(shape: Volume, domain: &Domain, walls: &[Wall]) -> Result<Self, String> {
         let [min, max] = shape.bounds();
+        if let Some(overrun) = domain.overrun(&[min, max]) {
+            return Err(format!("{overrun}; shrink it"));
+        }
         let mut periodic = [false; 3];
         for axis in Axis::ALL {
             let k = axis.index();
             let slack = SLACK * domain.extent()[k];
-            if min[k] < domain.min()[k] - slack || max[k] > domain.max()[k] + slack {
-                return Err(format!(
-                    "reaches from {} to {} m along {axis}, beyond the domain from {} to {} m; shrink it",
-                    min[k],
-                    max[k],
-                    domain.min()[k],
-                    domain.max()[k]
-                ));
-            }
             let whole = min[k] <= domain.min()[k] + slack && max[k] >= domain.max()[k] - slack;
             // A region wraps only where it is a whole period and its ends fit together.
             periodic[k] = domain.is_periodic(axis) && whole && is_prism_along(&shape, k);

@@ -7,15 +7,6 @@ use crate::generate::read_volume;
 use crate::table::SceneTable;
 use amberfield_core::{Axis, Outlet, OutletRegion, Side};
 
-/// Faces by their names.
-const FACES: [(&str, (Axis, Side)); 6] = [
-    ("x_min", (Axis::X, Side::Min)),
-    ("x_max", (Axis::X, Side::Max)),
-    ("y_min", (Axis::Y, Side::Min)),
-    ("y_max", (Axis::Y, Side::Max)),
-    ("z_min", (Axis::Z, Side::Min)),
-    ("z_max", (Axis::Z, Side::Max)),
-];
 /// Largest number of outlets.
 const MOST: usize = 1000;
 
@@ -47,7 +38,9 @@ pub(super) fn read_outlets(document: &SceneTable<'_>) -> Result<Vec<Outlet>, Sce
 fn read_outlet(table: &SceneTable<'_>) -> Result<Outlet, SceneError> {
     let name = table.text("name")?;
     let name = table.need(name, "name", "give the outlet a name, as name = \"left bin\"")?.to_owned();
-    let region = match (table.table("region")?, table.word("face", &FACES)?) {
+    let ends = Axis::ALL.into_iter().flat_map(|axis| [(axis, Side::Min), (axis, Side::Max)]);
+    let faces: Vec<_> = ends.map(|(axis, side)| (axis.face_name(side), (axis, side))).collect();
+    let region = match (table.table("region")?, table.word("face", &faces)?) {
         (Some(region), None) => OutletRegion::Volume(read_volume(table, &region, "box, cylinder")?),
         (None, Some((axis, side))) => OutletRegion::Face(axis, side),
         (Some(_), Some(_)) => {

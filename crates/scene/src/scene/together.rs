@@ -7,8 +7,8 @@ use crate::error::{Problems, shorten};
 use crate::table::SceneTable;
 use crate::tree::nearest;
 use amberfield_core::{
-    Axis, Boundary, Cohesion, Domain, FieldCourse, FieldSettings, LEAST_PER_PERIOD, Method, MotionKind, Step,
-    Vector3, Wall, WallCharging, WallShape,
+    Axis, Boundary, Cohesion, Domain, FieldSettings, LEAST_PER_PERIOD, Method, MotionKind, Step, Vector3,
+    Wall, WallCharging, WallShape,
 };
 
 /// Number of grains beyond which the direct sum causes a warning.
@@ -151,9 +151,9 @@ pub(super) fn check_reach(
 /// Checks that the method knows potentials that change, and that the step shows them.
 fn check_courses(document: &SceneTable<'_>, scene: &Scene) -> Result<(), SceneError> {
     let Some(field) = scene.electric_field.as_ref().map(|field| &field.field) else { return Ok(()) };
-    let faces = scene.domain.iter().flat_map(Domain::courses);
+    let faces = scene.domain.as_ref().map_or(&[][..], Domain::courses);
     let mut problems = Problems::default();
-    if field.method == Method::Kolehmainen && faces.clone().next().is_some() {
+    if field.method == Method::Kolehmainen && !faces.is_empty() {
         problems.keep::<()>(Err(document.bad_below(
             "electric_field",
             "method",
@@ -162,9 +162,7 @@ fn check_courses(document: &SceneTable<'_>, scene: &Scene) -> Result<(), SceneEr
              number",
         )));
     }
-    let of_faces = faces.map(|face| face.course.longest_step_s());
-    let longest = of_faces.chain(field.external_course.iter().map(FieldCourse::longest_step_s));
-    let longest = longest.fold(f64::INFINITY, f64::min);
+    let longest = field.longest_step_s(faces);
     if let Some(Step::Seconds(step)) = scene.time.as_ref().map(|time| time.step)
         && step > longest
     {
