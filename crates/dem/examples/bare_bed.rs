@@ -87,7 +87,7 @@ impl Bed {
         self.grains.wrap(&self.domain);
         self.grains.spatial_order(&mut self.keys, &mut self.order);
         self.grains.reorder(&self.order);
-        self.contacts.list(&self.domain, &self.grains, &self.order, bed::SKIN_M, &[]);
+        self.contacts.list(&self.domain, &self.grains, self.grains.len(), &self.order, bed::SKIN_M, &[]);
         self.travel = 0.0;
     }
 

@@ -142,6 +142,54 @@ impl LinkedCells {
     }
 }
 
+impl LinkedCells {
+    /// Distance of surfaces within which lists hold a pair [m].
+    pub(crate) fn skin(&self) -> f64 {
+        self.skin
+    }
+
+    /// Radius of the largest grain [m].
+    pub(crate) fn largest(&self) -> f64 {
+        self.level_radius.last().copied().unwrap_or(0.0)
+    }
+
+    /// Appends every grain, without its images, whose surface is nearer than a gap [m] to that of a grain of
+    /// any size.
+    pub(crate) fn near(&self, centre: &[f64; 4], gap: f64, found: &mut Vec<u32>) {
+        for (cells, largest) in self.levels.iter().zip(&self.level_radius) {
+            cells.visit_within(centre, centre[3] + largest + gap, |others, entries| {
+                let near = others.iter().zip(entries).filter(|(other, entry)| {
+                    let d2: f64 = (0..3).map(|k| (other[k] - centre[k]).powi(2)).sum();
+                    *entry >> INDEX_BITS == NO_SHIFT && d2 < (other[3] + centre[3] + gap).powi(2)
+                });
+                found.extend(near.map(|(_, entry)| entry & INDEX_MASK));
+            });
+        }
+    }
+}
+
+/// The centre and its periodic images that can reach into the domain, by as much along each axis, with their
+/// shift codes.
+pub(crate) fn images<'a>(
+    domain: &'a Domain,
+    shifts: &'a [[f64; 3]; 32],
+    centre: Vector3<f64>,
+    reach: Vector3<f64>,
+) -> impl Iterator<Item = (u32, Vector3<f64>)> + 'a {
+    let (min, max) = (domain.min(), domain.max());
+    (0..27_u32).filter_map(move |code| {
+        let digits = [code / 9, code / 3 % 3, code % 3];
+        let wanted = code == NO_SHIFT
+            || (0..3).all(|axis| match (digits[axis], domain.is_periodic(Axis::ALL[axis])) {
+                (1, _) => true,
+                (0, true) => max[axis] - centre[axis] <= reach[axis],
+                (2, true) => centre[axis] - min[axis] <= reach[axis],
+                _ => false,
+            });
+        wanted.then(|| (code, centre + Vector3::from(shifts[code as usize])))
+    })
+}
+
 /// Stores a grain and its images that lie within `reach` of the domain.
 fn push_with_images(
     items: &mut Vec<([f64; 4], u32)>,
@@ -243,6 +291,24 @@ impl CellLevel {
     fn row(&self, y: i64, z: i64) -> usize {
         let (y, z) = (y.clamp(0, self.cells[1] - 1), z.clamp(0, self.cells[2] - 1));
         ((z * self.cells[1] + y) * self.cells[0]) as usize
+    }
+
+    /// Visits the items of all cells within a distance of a point along each axis, a row of cells at a time.
+    fn visit_within(&self, centre: &[f64; 4], reach: f64, mut row_of_items: impl FnMut(&[[f64; 4]], &[u32])) {
+        let corner = |sign: f64| self.cell(&centre.map(|x| x + sign * reach));
+        let (low, high) = (corner(-1.0), corner(1.0));
+        let range = |axis: usize| low[axis].max(0)..=high[axis].min(self.cells[axis] - 1);
+        if range(0).is_empty() {
+            return;
+        }
+        for z in range(2) {
+            for y in range(1) {
+                let row = self.row(y, z);
+                let first = self.start[row + *range(0).start() as usize] as usize;
+                let last = self.start[row + *range(0).end() as usize + 1] as usize;
+                row_of_items(&self.centre[first..last], &self.entry[first..last]);
+            }
+        }
     }
 
     /// Visits the items of the 27 cells around a point, a row of cells at a time.

@@ -159,6 +159,8 @@ pub(crate) struct WallHistory {
 pub(crate) struct ContactsState {
     /// Centres for which the lists were built [m].
     pub(crate) reference: Vec<Vector3<f64>>,
+    /// Number of grains that were there then; the others after them are loose.
+    pub(crate) listed: usize,
     /// Histories of the touching pairs.
     pub(crate) pairs: Vec<PairHistory>,
     /// Histories of the touching contacts with walls.

@@ -6,6 +6,7 @@
 pub(crate) mod batch;
 pub(crate) mod cells;
 pub(crate) mod law;
+pub(crate) mod loose;
 pub(crate) mod material_pairs;
 pub(crate) mod memory;
 pub(crate) mod neighbours;
@@ -88,17 +89,19 @@ impl Contacts {
         self.walls.as_ref().map(|walls| walls.histories(grains)).unwrap_or_default()
     }
 
-    /// Lists anew who is near whom, within a `skin` [m]. `order[new] = old` tells where each grain was when
-    /// the present lists were built, so that histories move along; those of walls were taken before.
+    /// Lists anew who is near whom, within a `skin` [m]; grains after the first `listed` are loose.
+    /// `order[new] = old` tells where each grain was when the present lists were built, so that histories
+    /// move along; those of walls were taken before.
     pub(crate) fn list(
         &mut self,
         domain: &Domain,
         grains: &Grains,
+        listed: usize,
         order: &[u32],
         skin: f64,
         wall_histories: &[WallHistory],
     ) {
-        self.neighbours.build(domain, grains, order);
+        self.neighbours.build(domain, grains, listed, order);
         if let Some(walls) = &mut self.walls {
             walls.build(domain, grains, skin, wall_histories);
         }
@@ -108,6 +111,7 @@ impl Contacts {
     pub(crate) fn state(&self, grains: &Grains) -> ContactsState {
         ContactsState {
             reference: self.neighbours.reference.clone(),
+            listed: self.neighbours.listed,
             pairs: self.neighbours.histories(grains),
             walls: self.wall_histories(grains),
             touched: self.walls.as_ref().map(|walls| walls.touched(grains)).unwrap_or_default(),
@@ -137,7 +141,11 @@ impl Contacts {
             walls.restore_moving(state.moving.as_ref())?;
         }
         let order: Vec<u32> = (0..grains.len() as u32).collect();
-        self.list(domain, grains, &order, skin, &state.walls);
+        let listed = state.listed;
+        if listed > grains.len() {
+            return Err(format!("its lists know {listed} of {} grains", grains.len()));
+        }
+        self.list(domain, grains, listed, &order, skin, &state.walls);
         self.neighbours.restore(grains, &state.pairs)
     }
 }

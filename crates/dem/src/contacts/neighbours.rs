@@ -88,14 +88,16 @@ pub(crate) struct Inbound {
 /// All lists.
 #[derive(Debug)]
 pub(crate) struct Neighbours {
-    cells: LinkedCells,
+    pub(super) cells: LinkedCells,
     pub(crate) shifts: [[f64; 3]; 32],
     pub(crate) features: Features,
     pub(crate) lists: Vec<ChunkList>,
     previous: Vec<ChunkList>,
     pub(crate) inbox: Vec<Vec<Inbound>>,
-    /// Centres at the last build [m].
+    /// Centres at the last build, and those of loose grains when they were alone last [m].
     pub(crate) reference: Vec<Vector3<f64>>,
+    /// Number of grains that were there at the last build; the others after them are loose.
+    pub(crate) listed: usize,
 }
 
 impl Neighbours {
@@ -108,6 +110,7 @@ impl Neighbours {
             previous: Vec::new(),
             inbox: Vec::new(),
             reference: Vec::new(),
+            listed: 0,
         }
     }
 
@@ -115,12 +118,14 @@ impl Neighbours {
         self.cells.level_count()
     }
 
-    /// Builds all lists from the grains' present centres. `order[new] = old` tells where each grain was when
-    /// the present lists were built, so that histories move along.
-    pub(crate) fn build(&mut self, domain: &Domain, grains: &Grains, order: &[u32]) {
+    /// Builds all lists from the grains' present centres; those after the first `listed` are loose.
+    /// `order[new] = old` tells where each grain was when the present lists were built, so that histories
+    /// move along.
+    pub(crate) fn build(&mut self, domain: &Domain, grains: &Grains, listed: usize, order: &[u32]) {
         self.reference.clear();
         self.reference.extend((0..grains.len()).map(|i| grains.position(i)));
-        self.cells.fill(domain, &self.shifts, &grains.centre, |i| grains.level[i]);
+        self.listed = listed;
+        self.cells.fill(domain, &self.shifts, &grains.centre[..listed], |i| grains.level[i]);
         std::mem::swap(&mut self.lists, &mut self.previous);
         let chunks = chunk_count(grains.len());
         self.lists.resize_with(chunks, ChunkList::default);
@@ -133,7 +138,7 @@ impl Neighbours {
             &mut [()]
         )| {
             let list = &mut list[0];
-            list.fill(k, cells, grains, features);
+            list.fill(k, cells, grains, listed, features);
             // Cohesive contacts, which may be stretched, have tangential history too.
             if (features.rotation() || features.charging) && !previous.is_empty() {
                 list.inherit(k, grains, shifts, previous, order, features);
@@ -285,16 +290,19 @@ impl ChunkList {
         self.growth[entry].follow(area, self.touching[entry], follow);
     }
 
-    fn fill(&mut self, k: usize, cells: &LinkedCells, grains: &Grains, features: Features) {
+    fn fill(&mut self, k: usize, cells: &LinkedCells, grains: &Grains, listed: usize, features: Features) {
         self.start.clear();
         self.partner.clear();
         let (first, last) = (k * CHUNK, grains.len().min((k + 1) * CHUNK));
         for i in first..last {
-            let listed = self.partner.len();
-            self.start.push(listed as u32);
+            let begin = self.partner.len();
+            self.start.push(begin as u32);
+            if i >= listed {
+                continue;
+            }
             cells.partners(i as u32, grains.level[i], &grains.centre[i], &mut self.partner);
             if grains.some_fixed && grains.is_fixed(i) {
-                drop_fixed(&mut self.partner, listed, grains);
+                drop_fixed(&mut self.partner, begin, grains);
             }
         }
         let entries = self.partner.len();

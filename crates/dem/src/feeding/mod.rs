@@ -12,12 +12,12 @@ mod room;
 pub(crate) use checks::check;
 
 use crate::books::Tally;
-use crate::contacts::walls::ContactWalls;
+use crate::contacts::Contacts;
 use crate::error::DemError;
 use crate::motion::grains::{Grains, Newcomer};
 use crate::setup::Setup;
 use amberfield_core::{Axis, Domain, Feed, FeedRegion, Feeds, OnBlocked, Particles, Vector3, Volume};
-use places::{Places, Random};
+use places::{GAP, Places, Random};
 use room::Room;
 use serde::{Deserialize, Serialize};
 
@@ -93,10 +93,11 @@ pub(crate) struct Surroundings<'a> {
     pub(crate) domain: &'a Domain,
     pub(crate) particles: &'a Particles,
     pub(crate) grains: &'a Grains,
-    pub(crate) walls: Option<&'a ContactWalls>,
+    pub(crate) contacts: &'a Contacts,
     pub(crate) gravity: Vector3<f64>,
-    /// Skin of the neighbour lists [m].
+    /// Skin of the neighbour lists, and bound on any grain's way since they were built [m].
     pub(crate) skin_m: f64,
+    pub(crate) travel_m: f64,
     /// Number of the step in progress, and its length [s].
     pub(crate) step_index: u64,
     pub(crate) step_s: f64,
@@ -184,13 +185,15 @@ impl Feeding {
         self.queues.iter().zip(fed).flat_map(|(of, fed)| &of.grains[fed..]).map(|grain| *grain as usize)
     }
 
+    /// Whether a step is one that looks at what is due.
+    pub(crate) fn looks_in(&self, step_index: u64) -> bool {
+        step_index.wrapping_sub(1).is_multiple_of(EVERY)
+    }
+
     /// Finds places for the grains that are due in a step, and books what is owed. The books of what comes
     /// are made when it does.
     pub(crate) fn newcomers(&mut self, around: &Surroundings<'_>) -> Result<Vec<Newcomer>, DemError> {
         let &Surroundings { step_index, step_s, .. } = around;
-        if !step_index.wrapping_sub(1).is_multiple_of(EVERY) {
-            return Ok(Vec::new());
-        }
         // What is due when the step begins: what a run brings does then not depend on when it ends.
         let until = step_index.saturating_sub(1) as f64 * step_s;
         let mut found = Vec::new();
@@ -222,14 +225,24 @@ impl Feeding {
         around: &Surroundings<'_>,
         found: &mut Vec<Newcomer>,
     ) -> usize {
-        let &Surroundings { domain, particles, grains, walls, gravity, skin_m, step_index, step_s } = around;
+        let &Surroundings {
+            domain,
+            particles,
+            grains,
+            contacts,
+            gravity,
+            skin_m,
+            travel_m,
+            step_index,
+            step_s,
+        } = around;
         let Queue { feed, places, grains: queue, .. } = &self.queues[number];
         let Some(bounds) = feed.region.bounds() else { return 0 };
-        let mut room = Room::new(domain, bounds, self.largest);
-        (0..grains.len()).for_each(|i| room.add(grains.centre[i]));
+        let clear = contacts.clear(travel_m);
+        let mut room = Room::new(domain, bounds, self.largest, clear);
+        contacts.loose().for_each(|i| room.add(grains.centre[i]));
         for other in &*found {
-            let x = other.position;
-            room.add([x.x, x.y, x.z, particles.radius[other.original as usize]]);
+            room.add(centre(&other.position, particles.radius[other.original as usize]));
         }
         for (entered, &original) in queue[fed..fed + due].iter().enumerate() {
             let radius = particles.radius[original as usize];
@@ -238,17 +251,24 @@ impl Feeding {
             let is_free = |place: &Vector3<f64>| {
                 places.hold(place, radius)
                     && is_inside(domain, place, radius)
-                    && room.is_free(place, radius)
-                    && !walls.is_some_and(|walls| walls.are_touched_by(domain, *place, radius, skin_m))
+                    && room.is_free(place, radius, radius * GAP)
+                    && !contacts.touch(domain, grains, &centre(place, radius), skin_m)
             };
-            let tried = (0..TRIES).filter_map(|_| places.draw(radius, &mut random)).find(|x| is_free(x));
-            let lattice = || places.lattice(radius).take(MOST_OF_LATTICE).find(|x| is_free(x));
-            let Some(position) = tried.or_else(lattice) else { return entered };
-            let position = domain.wrap(position);
-            room.add([position.x, position.y, position.z, radius]);
+            let is_alone = |place: &Vector3<f64>| {
+                room.is_free(place, radius, clear) && contacts.is_alone(domain, &centre(place, radius), clear)
+            };
+            let mut drawn = (0..TRIES).filter_map(|_| places.draw(radius, &mut random)).filter(is_free);
+            let first = drawn.next();
+            // Where it is alone lists need not be built anew.
+            let best = first.filter(|x| !is_alone(x)).and_then(|_| drawn.find(|x| is_alone(x))).or(first);
+            let lattice = || places.lattice(radius).take(MOST_OF_LATTICE).find(is_free);
+            let Some(place) = best.or_else(lattice) else { return entered };
+            let position = domain.wrap(place);
+            let is_alone = is_alone(&position);
+            room.add(centre(&position, radius));
             let level = self.level[original as usize - self.starters];
             let middle = end - gravity * (0.5 * step_s);
-            found.push(Newcomer { original, level, position, middle, end });
+            found.push(Newcomer { original, level, position, middle, end, is_alone });
         }
         due
     }
@@ -288,6 +308,11 @@ impl Feeding {
         brought.gravity -= mass * gravity.dot(&newcomer.position);
         brought.charge += charge;
     }
+}
+
+/// Centre and radius [m] of a grain at a place [m].
+fn centre(place: &Vector3<f64>, radius: f64) -> [f64; 4] {
+    [place.x, place.y, place.z, radius]
 }
 
 /// Whether a grain of a radius [m] at a place [m] is inside the box as a whole.

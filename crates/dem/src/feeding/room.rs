@@ -1,26 +1,26 @@
-//! Room between the grains in and around a region.
+//! Room between the loose grains in and around a region.
 
-use super::places::GAP;
 use amberfield_core::{Axis, Domain, Vector3};
 use std::collections::HashMap;
 
-/// Grains in and around a region, by cells.
+/// Loose grains in and around a region, by cells.
 pub(super) struct Room<'a> {
     domain: &'a Domain,
     low: Vector3<f64>,
     high: Vector3<f64>,
-    /// Edge of a cell, the largest diameter [m].
+    /// Edge of a cell, the largest distance of centres that is asked for [m].
     edge: f64,
     cells: HashMap<[i64; 3], Vec<[f64; 4]>>,
 }
 
 impl<'a> Room<'a> {
-    /// Empty room around a region between two corners [m], in a scene with grains up to a radius [m].
-    pub(super) fn new(domain: &'a Domain, [low, high]: [Vector3<f64>; 2], largest: f64) -> Self {
+    /// Empty room around a region between two corners [m], in a scene with grains up to a radius [m] and
+    /// gaps up to `gap` [m].
+    pub(super) fn new(domain: &'a Domain, [low, high]: [Vector3<f64>; 2], largest: f64, gap: f64) -> Self {
         // Grains that came through a face stand off it by a radius.
-        let beyond = Vector3::repeat(4.0 * largest);
+        let beyond = Vector3::repeat(4.0 * largest + gap);
         let (low, high) = (low - beyond, high + beyond);
-        Self { domain, low, high, edge: 2.0 * largest, cells: HashMap::new() }
+        Self { domain, low, high, edge: 2.0 * largest + gap, cells: HashMap::new() }
     }
 
     /// Adds a grain with its images, where they are near the region.
@@ -60,14 +60,14 @@ impl<'a> Room<'a> {
         [0, 1, 2].map(|axis| ((place[axis] - self.low[axis]) / self.edge).floor() as i64)
     }
 
-    /// Whether a grain of a radius [m] touches no other at a place [m].
-    pub(super) fn is_free(&self, place: &Vector3<f64>, radius: f64) -> bool {
+    /// Whether a grain of a radius [m] leaves a gap [m] to all others at a place [m].
+    pub(super) fn is_free(&self, place: &Vector3<f64>, radius: f64, gap: f64) -> bool {
         let [x, y, z] = self.cell(place);
         (0..27).all(|code| {
             let cell = [x + code / 9 - 1, y + code / 3 % 3 - 1, z + code % 3 - 1];
             self.cells.get(&cell).is_none_or(|others| {
                 others.iter().all(|&[x, y, z, other]| {
-                    let apart = (radius + other) * (1.0 + GAP);
+                    let apart = radius + other + gap;
                     (Vector3::new(x, y, z) - place).norm_squared() >= apart * apart
                 })
             })

@@ -67,6 +67,8 @@ pub(crate) struct Newcomer {
     pub(crate) middle: Vector3<f64>,
     /// Velocity at the end of the step, without forces but gravity [m/s].
     pub(crate) end: Vector3<f64>,
+    /// Whether it is further than the lists' skin from all grains and walls.
+    pub(crate) is_alone: bool,
 }
 
 /// State of the grains, for checkpoints, in the order of the last sort.
@@ -198,7 +200,7 @@ impl Grains {
     /// velocity is that of the middle of a step, with its forecast for the end [m/s]. `turns`: whether
     /// anything can turn a grain.
     pub(crate) fn admit(&mut self, particles: &Particles, newcomer: &Newcomer, turns: bool) {
-        let Newcomer { original, level, position, middle, end } = *newcomer;
+        let Newcomer { original, level, position, middle, end, .. } = *newcomer;
         self.original.push(Original(original));
         let radius = particles.radius[original as usize];
         self.centre.push([position.x, position.y, position.z, radius]);

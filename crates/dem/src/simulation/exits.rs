@@ -164,8 +164,9 @@ impl Simulation {
         Some(outlet.map_or(WayOut::Face(Axis::ALL[axis].face_name(side)), WayOut::Outlet))
     }
 
-    /// Ends the run or removes the grains that leave, as the scene says; whether any was removed.
-    pub(super) fn handle_exits(&mut self) -> Result<bool, DemError> {
+    /// Ends the run or books the grains that leave, as the scene says. Returns their sorted indices,
+    /// ascending: the rebuild that must follow drops them.
+    pub(super) fn handle_exits(&mut self) -> Result<Vec<usize>, DemError> {
         let mut exits: Vec<(usize, Exit)> = Vec::new();
         let mut lost: Option<u64> = None;
         let time_s = self.progress.time_s();
@@ -205,7 +206,7 @@ impl Simulation {
             return Err(DemError::Left { id, position_m, face: face.to_owned(), time_s });
         }
         if exits.is_empty() {
-            return Ok(false);
+            return Ok(Vec::new());
         }
         let gone: Vec<usize> = exits.iter().map(|(i, _)| *i).collect();
         // Charge that contacts have yet to trade goes before the grains do.
@@ -223,8 +224,7 @@ impl Simulation {
             }
             self.exits.push(exit);
         }
-        self.remove(&gone);
-        Ok(true)
+        Ok(gone)
     }
 
     /// Takes the field of grains that leave (sorted indices) off the others' forces.
@@ -250,14 +250,5 @@ impl Simulation {
         place[axis] = 2.0 * plane - place[axis];
         let boundary = self.domain.faces()[axis][side as usize];
         Some((place, if boundary.is_conductor() { -1.0 } else { 1.0 }))
-    }
-
-    /// Removes grains (ascending sorted indices). The lists still have the old numbers: the rebuild that must
-    /// follow needs the order from them.
-    fn remove(&mut self, gone: &[usize]) {
-        let mut keep: Vec<u32> = (0..self.grains.len() as u32).collect();
-        keep.retain(|&i| gone.binary_search(&(i as usize)).is_err());
-        self.list(&keep);
-        self.resize_scratch();
     }
 }

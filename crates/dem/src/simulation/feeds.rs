@@ -1,15 +1,19 @@
 //! Grains that come while the run goes on.
 
 use super::Simulation;
+use crate::contacts::loose::MOST_LOOSE;
 use crate::error::DemError;
 use crate::feeding::{Brought, FeedAccount, Feeding, Surroundings};
 use crate::gas_stage::GasStage;
 
 impl Simulation {
-    /// Lets the grains in that are due and find a place; whether any came. The lists still lack them: the
-    /// rebuild that must follow adds them.
-    pub(super) fn admit_grains(&mut self) -> Result<bool, DemError> {
-        let Some(feeding) = &mut self.feeding else { return Ok(false) };
+    /// Lets the grains in that are due and find a place. Those that are alone there need no list until
+    /// others are built; else lists are built anew.
+    pub(super) fn admit_grains(&mut self) -> Result<(), DemError> {
+        let Some(feeding) = &mut self.feeding else { return Ok(()) };
+        if !feeding.looks_in(self.progress.step_index) {
+            return Ok(());
+        }
         if let Some(walls) = &mut self.contacts.walls {
             walls.settle();
         }
@@ -17,20 +21,28 @@ impl Simulation {
             domain: &self.domain,
             particles: &self.particles,
             grains: &self.grains,
-            walls: self.contacts.walls.as_ref(),
+            contacts: &self.contacts,
             gravity: self.time.gravity_m_s2,
             skin_m: self.progress.skin_m,
+            travel_m: self.progress.travel,
             step_index: self.progress.step_index,
             step_s: self.progress.step_s,
         })?;
         if newcomers.is_empty() {
-            return Ok(false);
+            return Ok(());
         }
-        // What contacts have yet to trade is known by the old lists.
-        self.trade_between_grains();
+        let are_loose = newcomers.iter().all(|newcomer| newcomer.is_alone)
+            && self.contacts.loose().len() + newcomers.len() <= MOST_LOOSE;
+        if !are_loose {
+            // What contacts have yet to trade is known by the old lists.
+            self.trade_between_grains();
+        }
         let turns = self.contacts.features.rotation();
         for newcomer in &newcomers {
             self.grains.admit(&self.particles, newcomer, turns);
+            if are_loose {
+                self.contacts.append(&self.grains);
+            }
             if let Some(feeding) = &mut self.feeding {
                 feeding.book(&self.particles, newcomer, self.time.gravity_m_s2);
             }
@@ -43,7 +55,11 @@ impl Simulation {
             gas.admit(newcomers.len());
         }
         self.resize_scratch();
-        Ok(true)
+        if are_loose {
+            return Ok(());
+        }
+        self.rebuild(&[]);
+        self.watch_guards()
     }
 
     /// Lets the last `count` grains feel and make the field. Velocities in the middle of the step are without

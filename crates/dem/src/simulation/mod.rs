@@ -21,6 +21,7 @@ pub use overlaps::Deepest;
 
 use crate::books::Books;
 use crate::charging::Charging;
+use crate::contacts::loose::MOST_LOOSE;
 use crate::contacts::{Contacts, Depths};
 use crate::error::DemError;
 use crate::feeding::Feeding;
@@ -49,9 +50,10 @@ pub(crate) const HALF_SKIN: f64 = 0.499_999;
 /// 2. *Drift*: first half of velocity Verlet ("Motion"); walls that move go where they are at the new time.
 /// 3. *Exits*: grains beyond an open face, or at a face that mirrors charges, end the run or are removed;
 ///    those in an outlet are removed.
-/// 4. *Feeds*: grains that are due come where there is room for them, every few steps.
-/// 5. *Lists*: wrap periodic axes, sort grains in space, list neighbours anew, where a grain may have used
+/// 4. *Lists*: wrap periodic axes, sort grains in space, list neighbours anew, where a grain may have used
 ///    up half the skin; look at the guards ("Time step").
+/// 5. *Feeds*: grains that are due come where there is room for them, every few steps; where they are alone
+///    they need no list yet.
 /// 6. *Grains*: contact forces of grains on each other, F_n and F_t ("Motion").
 /// 7. *Walls*: contact forces of walls, by the same law; overlaps are watched.
 /// 8. *Gas*: drag, buoyancy and lift, after an exchange with a gas that flows where one is due ("Gas").
@@ -119,9 +121,9 @@ impl Simulation {
         self.begin_step();
         self.move_walls();
         let outside = self.drift();
-        let removed = (outside || self.outlets.is_some()) && self.handle_exits()?;
-        let admitted = self.admit_grains()?;
-        self.renew_lists(removed || admitted)?;
+        let gone = if outside || self.outlets.is_some() { self.handle_exits()? } else { Vec::new() };
+        self.renew_lists(&gone)?;
+        self.admit_grains()?;
         self.push_grains(step_s);
         self.push_off_walls(step_s);
         self.watch_overlaps()?;
@@ -180,16 +182,16 @@ impl Simulation {
         motion.outside || self.touches_face()
     }
 
-    /// Lists anew who is near whom where that may have changed: grains have left or come, or one may have
-    /// moved by half the skin.
-    fn renew_lists(&mut self, others: bool) -> Result<(), DemError> {
+    /// Lists anew who is near whom where that may have changed: grains (ascending sorted indices) are gone,
+    /// or one may have moved by half the skin.
+    fn renew_lists(&mut self, gone: &[usize]) -> Result<(), DemError> {
         self.watch.lap(Stage::Integrate);
         self.progress.travel += self.progress.step_s * self.progress.speed;
-        let used_up = self.has_used_up_skin() || self.walls_have_moved();
-        if others || used_up {
-            self.rebuild();
+        let are_old = self.has_used_up_skin() || self.walls_have_moved() || !gone.is_empty();
+        if are_old {
+            self.rebuild(gone);
         }
-        if others || used_up || self.limits.is_too_fast(self.progress.step_s, self.progress.pace) {
+        if are_old || self.limits.is_too_fast(self.progress.step_s, self.progress.pace) {
             self.watch_guards()?;
         }
         self.watch.lap(Stage::Neighbours);
@@ -203,6 +205,7 @@ impl Simulation {
         if self.progress.travel <= limit {
             return false;
         }
+        self.contacts.renew_loose(&self.domain, &mut self.grains, self.progress.travel);
         let reference = &self.contacts.neighbours.reference;
         let displacement2 = reference
             .iter()
@@ -221,21 +224,35 @@ impl Simulation {
         travel > 0.0 && travel > self.ways_out.share_of_walls() * self.progress.skin_m
     }
 
-    /// Wraps, sorts and lists the grains anew; histories move along.
-    fn rebuild(&mut self) {
+    /// Wraps, sorts and lists the grains anew, without those that are gone (ascending sorted indices);
+    /// histories move along. Loose grains that are alone stay loose, at the end.
+    fn rebuild(&mut self, gone: &[usize]) {
         self.trade_between_grains();
+        let mut loose = self.contacts.still_alone(&self.domain, &self.grains, self.progress.travel);
+        loose.retain(|i| gone.binary_search(i).is_err());
+        loose.drain(..loose.len().saturating_sub(MOST_LOOSE / 2));
         if self.bounds.is_periodic() {
             self.grains.wrap(&self.domain);
         }
         let mut order = std::mem::take(&mut self.scratch.order);
         self.grains.spatial_order(&mut self.scratch.keys, &mut order);
-        self.list(&order);
+        if !(gone.is_empty() && loose.is_empty()) {
+            let is_in = |list: &[usize], index: u32| list.binary_search(&(index as usize)).is_ok();
+            order.retain(|&i| !is_in(gone, i) && !is_in(&loose, i));
+        }
+        let listed = order.len();
+        order.extend(loose.iter().map(|&i| i as u32));
+        self.list(&order, listed);
         self.scratch.order = order;
         self.progress.travel = 0.0;
+        if !gone.is_empty() {
+            self.resize_scratch();
+        }
     }
 
-    /// Reorders the grains to `order[new] = old` and lists them anew; those that are not named are dropped.
-    fn list(&mut self, order: &[u32]) {
+    /// Reorders the grains to `order[new] = old` and lists the first `listed` anew; grains that are not named
+    /// are dropped.
+    fn list(&mut self, order: &[u32], listed: usize) {
         // Taken before the grains are reordered: they find theirs again by the set-up's order.
         let wall_histories = self.contacts.wall_histories(&self.grains);
         self.grains.reorder(order);
@@ -246,7 +263,7 @@ impl Simulation {
             gas.reorder(order);
         }
         let skin_m = self.progress.skin_m;
-        self.contacts.list(&self.domain, &self.grains, order, skin_m, &wall_histories);
+        self.contacts.list(&self.domain, &self.grains, listed, order, skin_m, &wall_histories);
     }
 
     /// Computes the contact forces of grains on each other, for springs that advance by `step` [s]. They

@@ -45,7 +45,7 @@ impl Simulation {
         checks::check_periods(&setup, skin)?;
         let mut run = Self::assemble(setup, skin, None)?;
         run.leave_out_what_has_yet_to_come();
-        run.rebuild();
+        run.rebuild(&[]);
         checks::check_centres(&run.grains, &run.contacts, &run.particles)?;
         run.carry(carried);
         run.contacts.push_grains(&run.grains, AT_START, None, &mut run.scratch.loads);

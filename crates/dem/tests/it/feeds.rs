@@ -10,10 +10,10 @@ use amberfield_dem::{Book, FieldStageSetup, Setup, Simulation, State, Tally};
 use proptest::prelude::*;
 
 /// Half the width of the region of feeds [m].
-const HALF: f64 = 8.0 * RADIUS;
-const STEP: f64 = 2e-5;
+pub(crate) const HALF: f64 = 8.0 * RADIUS;
+pub(crate) const STEP: f64 = 2e-5;
 
-fn high() -> FeedRegion {
+pub(crate) fn high() -> FeedRegion {
     let (z, thick) = (40.0 * RADIUS, 4.0 * RADIUS);
     FeedRegion::Volume(Volume::Box {
         min: Vector3::new(-HALF, -HALF, z),
@@ -21,7 +21,7 @@ fn high() -> FeedRegion {
     })
 }
 
-fn feed(name: &str, region: FeedRegion) -> Feed {
+pub(crate) fn feed(name: &str, region: FeedRegion) -> Feed {
     Feed {
         name: name.into(),
         region,
@@ -32,7 +32,7 @@ fn feed(name: &str, region: FeedRegion) -> Feed {
 }
 
 /// Grains of two sizes, due one every `every` [s], of feeds that take turns.
-fn feeds(list: Vec<Feed>, count: usize, every: f64, change: impl Fn(usize, &mut Grain)) -> Feeds {
+pub(crate) fn feeds(list: Vec<Feed>, count: usize, every: f64, change: impl Fn(usize, &mut Grain)) -> Feeds {
     let number = list.len();
     let one = |k: usize| {
         let mut grain = grain(1000 + k as u64, [0.0; 3], [0.0, 0.0, -1.0]);
@@ -50,7 +50,7 @@ fn feeds(list: Vec<Feed>, count: usize, every: f64, change: impl Fn(usize, &mut 
 }
 
 /// Two grains on a floor, in a box that is periodic sideways, into which feeds let more.
-fn scene(feeds: Feeds, stuff: Material) -> Setup {
+pub(crate) fn scene(feeds: Feeds, stuff: Material) -> Setup {
     let mut scene = setup(vec![grain(1, [0.0, 0.0, RADIUS], [0.0; 3])], stuff, STEP);
     let mut faces = [[Boundary::Periodic; 2]; 3];
     faces[2] = [Boundary::Open; 2];

@@ -19,6 +19,7 @@ mod fixed_grains;
 mod forecasts;
 mod gas;
 mod guards;
+mod loose_grains;
 mod mesh_motion;
 mod moving_walls;
 mod oblique;

@@ -11,7 +11,7 @@ use serde::{Serialize, de::DeserializeOwned};
 /// First bytes of every checkpoint.
 const MAGIC: [u8; 8] = *b"AMBRFLD\x1a";
 /// Version of the layout.
-const FORMAT: u32 = 6;
+const FORMAT: u32 = 7;
 /// Version of the program that writes and reads.
 const PROGRAM: &str = env!("CARGO_PKG_VERSION");
 

@@ -14,7 +14,7 @@ pub(crate) use forces::SAME_CONTACT;
 pub use loads::WallLoad;
 pub(crate) use touches::{Met, Touch, Touching, of_grain};
 
-use crate::contacts::cells::NO_SHIFT;
+use crate::contacts::cells::{NO_SHIFT, images};
 use crate::contacts::material_pairs::{Features, PairTable};
 use crate::contacts::memory::{Growth, Spring, WallHistory};
 use crate::contacts::normal::{Dmt, Hertz, Jkr};
@@ -162,6 +162,11 @@ impl ContactWalls {
         }
     }
 
+    /// Takes in that there are `count` grains now, of which those that came last are near no wall.
+    pub(crate) fn append(&mut self, count: usize) {
+        self.chunks.resize_with(chunk_count(count), ChunkWalls::default);
+    }
+
     /// Histories of touching contacts, sorted by grain.
     pub(crate) fn histories(&self, grains: &Grains) -> Vec<WallHistory> {
         let mut out = Vec::new();
@@ -290,20 +295,12 @@ impl ContactWalls {
         !near.is_empty()
     }
 
-    /// Whether a grain of a radius [m] touches a wall at a place [m], or is behind a plane. Walls that move
-    /// are kept at a distance of the lists' `skin` [m], within which they are where the lists know them.
-    pub(crate) fn are_touched_by(
-        &self,
-        domain: &Domain,
-        place: Vector3<f64>,
-        radius: f64,
-        skin: f64,
-    ) -> bool {
+    /// Whether a wall stands within a distance [m] of a place [m], or a plane before it. Walls that move are
+    /// where [`Self::settle`] knew them last.
+    pub(crate) fn are_within(&self, domain: &Domain, place: Vector3<f64>, reach: f64) -> bool {
         let mut near = Vec::new();
-        let (outside, moved) =
-            self.movers.as_ref().map_or((Vector3::zeros(), 0.0), |movers| (movers.outside, skin));
-        let reach = radius + moved;
-        for (shift, image) in near::images(domain, &self.shifts, place, outside.add_scalar(reach)) {
+        let outside = self.movers.as_ref().map_or_else(Vector3::zeros, |movers| movers.outside);
+        for (shift, image) in images(domain, &self.shifts, place, outside.add_scalar(reach)) {
             self.surfaces.within(image, reach, &mut near);
             if shift == NO_SHIFT {
                 self.surfaces.planes_within(image, reach, &mut near);

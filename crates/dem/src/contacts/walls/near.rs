@@ -1,12 +1,12 @@
 //! Search for the grains near walls, and the histories that they keep.
 
 use super::{ChunkWalls, Entry, NearTriangle, WallContact};
-use crate::contacts::cells::NO_SHIFT;
+use crate::contacts::cells::{NO_SHIFT, images};
 use crate::contacts::memory::{Growth, WallHistory};
 use crate::contacts::walls::surfaces::{MOST_CONTACTS, Surfaces};
 use crate::motion::chunks::CHUNK;
 use crate::motion::grains::Grains;
-use amberfield_core::{Axis, Domain, Vector3};
+use amberfield_core::{Domain, Vector3};
 
 /// Everything that a search for grains near walls reads.
 pub(super) struct Search<'a> {
@@ -86,26 +86,4 @@ impl ChunkWalls {
         self.met.clear();
         self.met.reserve(self.contacts.len());
     }
-}
-
-/// The centre and its periodic images that can reach into the domain, by as much along each axis, with their
-/// shift codes.
-pub(super) fn images<'a>(
-    domain: &'a Domain,
-    shifts: &'a [[f64; 3]; 32],
-    centre: Vector3<f64>,
-    reach: Vector3<f64>,
-) -> impl Iterator<Item = (u32, Vector3<f64>)> + 'a {
-    let (min, max) = (domain.min(), domain.max());
-    (0..27_u32).filter_map(move |code| {
-        let digits = [code / 9, code / 3 % 3, code % 3];
-        let wanted = code == NO_SHIFT
-            || (0..3).all(|axis| match (digits[axis], domain.is_periodic(Axis::ALL[axis])) {
-                (1, _) => true,
-                (0, true) => max[axis] - centre[axis] <= reach[axis],
-                (2, true) => centre[axis] - min[axis] <= reach[axis],
-                _ => false,
-            });
-        wanted.then(|| (code, centre + Vector3::from(shifts[code as usize])))
-    })
 }

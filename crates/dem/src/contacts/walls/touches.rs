@@ -2,8 +2,8 @@
 
 use super::ContactWalls;
 use super::forces::SAME_CONTACT;
-use super::near::images;
 use crate::contacts::cells::NO_SHIFT;
+use crate::contacts::cells::images;
 use crate::contacts::memory::{Follow, Growth, WallHistory};
 use crate::contacts::walls::surfaces::{Found, MOST_CONTACTS};
 use crate::motion::chunks::CHUNK;
