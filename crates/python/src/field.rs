@@ -9,6 +9,7 @@ use numpy::{IntoPyArray as _, PyReadonlyArray1, PyReadonlyArray2};
 use pyo3::prelude::*;
 use pyo3::types::PyDict;
 use rayon::prelude::*;
+use std::time::{Duration, Instant};
 
 /// Field of one scene: settings, and, from the first charges on, the parameters that were chosen for them.
 #[pyclass(name = "NativeField", subclass)]
@@ -16,6 +17,8 @@ pub(crate) struct NativeField {
     domain: Domain,
     settings: FieldSettings,
     field: Option<ElectricField>,
+    /// Number of charges of the last evaluation, and the time that it took.
+    last: Option<(usize, Duration)>,
 }
 
 #[pymethods]
@@ -26,7 +29,7 @@ impl NativeField {
         let (domain, settings) =
             parse_field_settings(settings).map_err(|error| errors::of_scene(py, &error))?;
         // For one snapshot there is no other work that could be done beside a solver's.
-        Ok(Self { domain, settings: FieldSettings { overlap: false, ..settings }, field: None })
+        Ok(Self { domain, settings: FieldSettings { overlap: false, ..settings }, field: None, last: None })
     }
 
     /// Computes the field at charges: a dict of arrays.
@@ -49,12 +52,15 @@ impl NativeField {
         let (domain, settings, slot) = (&self.domain, &self.settings, &mut self.field);
         let work = || -> Result<FieldValues, FieldError> {
             let wrapped: Vec<_>;
-            let positions = if positions.par_iter().all(|place| domain.wrap(*place) == *place) {
-                positions
-            } else {
-                wrapped = positions.par_iter().map(|place| domain.wrap(*place)).collect();
-                &wrapped
-            };
+            // p3m wraps what it is given.
+            let is_wrapped_there = slot.is_some() && settings.method == Method::P3m;
+            let positions =
+                if is_wrapped_there || positions.par_iter().all(|place| domain.wrap(*place) == *place) {
+                    positions
+                } else {
+                    wrapped = positions.par_iter().map(|place| domain.wrap(*place)).collect();
+                    &wrapped
+                };
             let field = match slot {
                 Some(field) => field,
                 empty => empty.insert(ElectricField::new(domain, settings, positions, charges)?),
@@ -63,7 +69,15 @@ impl NativeField {
             field.evaluate(positions, charges, wanted, &mut values)?;
             Ok(values)
         };
-        let done = threads::work(py, &pool, work, |_, _| Ok(()));
+        let count = charges.len();
+        let is_short = self.last.is_some_and(|(most, time)| count <= most && threads::is_short(time));
+        let begun = Instant::now();
+        let done = if is_short {
+            Ok(threads::work_shortly(py, &pool, work))
+        } else {
+            threads::work(py, &pool, work, |_, _| Ok(()))
+        };
+        self.last = Some((count, begun.elapsed()));
         host_log::tell(py)?;
         let values = done?.map_err(|error| errors::of_failure(py, &Failure::of_field(&error)))?;
         dict_of(py, values, wanted)

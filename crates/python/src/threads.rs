@@ -37,6 +37,16 @@ pub(crate) fn pool(py: Python<'_>, threads: Option<usize>) -> PyResult<Arc<Threa
     Ok(pool)
 }
 
+/// Whether work that takes this long is over before signals are looked at.
+pub(crate) fn is_short(time: Duration) -> bool {
+    time < LOOK
+}
+
+/// Does short work on a pool while Python's other threads run; signals wait until it is done.
+pub(crate) fn work_shortly<T: Send>(py: Python<'_>, pool: &ThreadPool, work: impl FnOnce() -> T + Send) -> T {
+    py.detach(|| pool.install(work))
+}
+
 /// Does work on a pool while Python's other threads run. Between looks at signals `look` is called, with the
 /// error of a signal (Ctrl-C) if there was one. A signal that comes while `look` runs Python is raised there:
 /// it counts, while other failures of `look` do not. The work is always waited for.

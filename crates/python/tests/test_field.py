@@ -35,6 +35,22 @@ def test_rock_salt_has_madelungs_potential():
     np.testing.assert_allclose(values.potential, expected, rtol=2e-5)
 
 
+@pytest.mark.parametrize(
+    "asked", [{"method": "p3m"}, {"method": "direct"}, {"method": "cutoff", "field_cutoff_radius": 2e-3}]
+)
+def test_whole_periods_away_is_the_same_place_at_every_call(asked):
+    random = np.random.default_rng(5)
+    box, faces = [0.01, 0.02, 0.03], {"x": "periodic", "y": "grounded", "z": "periodic"}
+    places, charges = random.uniform(0.0, 1.0, (60, 3)) * box, np.where(np.arange(60) % 2 == 0, 1e-12, -1e-12)
+    away = places + random.integers(-2, 3, (60, 3)) * np.array(box) * [1, 0, 1]
+    made = amberfield.Field(box, faces, 1e-4, **asked)
+    expected = made(places, charges).e
+    for _ in range(3):
+        np.testing.assert_allclose(made(away, charges).e, expected, rtol=0, atol=1e-9 * rms(expected))
+    fresh = amberfield.Field(box, faces, 1e-4, **asked)
+    np.testing.assert_allclose(fresh(away, charges).e, expected, rtol=0, atol=1e-9 * rms(expected))
+
+
 def test_a_charge_beside_a_grounded_face_is_drawn_by_its_image():
     faces = {"x": "open", "y": "open", "z_min": "grounded", "z_max": "open"}
     values = amberfield.field([[0.5, 0.5, 0.001]], [1e-9], [1, 1, 1], faces)
