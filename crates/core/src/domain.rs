@@ -64,6 +64,9 @@ impl Axis {
     /// All axes in order.
     pub const ALL: [Self; 3] = [Self::X, Self::Y, Self::Z];
 
+    /// Names of the box's faces, axis by axis, the lower end first.
+    pub const FACE_NAMES: [&'static str; 6] = ["x_min", "x_max", "y_min", "y_max", "z_min", "z_max"];
+
     /// 0, 1 or 2.
     #[must_use]
     pub fn index(self) -> usize {
@@ -73,7 +76,7 @@ impl Axis {
     /// Name of the box's face at an end of this axis, as `x_min`.
     #[must_use]
     pub fn face_name(self, side: Side) -> &'static str {
-        FACE_NAMES[self.index()][side as usize]
+        Self::FACE_NAMES[2 * self.index() + side as usize]
     }
 }
 
@@ -132,8 +135,6 @@ impl fmt::Display for DomainError {
 
 impl std::error::Error for DomainError {}
 
-/// Names of the faces, by axis and side.
-const FACE_NAMES: [[&str; 2]; 3] = [["x_min", "x_max"], ["y_min", "y_max"], ["z_min", "z_max"]];
 /// Share of the box's size by which a region may reach out of it, because of rounding.
 const REGION_SLACK: f64 = 1e-9;
 /// Distance below which two places are one, over the largest coordinate or length of the domain: coordinates

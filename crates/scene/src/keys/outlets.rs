@@ -2,6 +2,7 @@
 
 use super::particles::VOLUME;
 use super::{Form, Key};
+use amberfield_core::Axis;
 
 pub(super) static KEYS: &[Key] = &[
     Key::new("name", Form::Text, "Name in messages and results, which no other outlet has.")
@@ -14,7 +15,7 @@ pub(super) static KEYS: &[Key] = &[
         .also(&["place", "volume", "where", "box", "bin"]),
     Key::new(
         "face",
-        Form::Word(&["x_min", "x_max", "y_min", "y_max", "z_min", "z_max"]),
+        Form::Word(&Axis::FACE_NAMES),
         "Face of the domain; it takes the grains that reach it, whatever `particles.on_exit` says.",
     )
     .without("region")

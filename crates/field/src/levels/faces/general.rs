@@ -77,11 +77,10 @@ impl General {
             && let Some(face) = faces.iter().find(|face| !face.is_conductor)
         {
             return Err(FieldError::Settings(format!(
-                "the normal field of {} V/m on face {}_{} has no bounded solution beside conductors whose \
-                 axes are open; give normal_field_V_m = 0 there or close the axis of the conductor",
+                "the normal field of {} V/m on face {} has no bounded solution beside conductors whose axes \
+                 are open; give normal_field_V_m = 0 there or close the axis of the conductor",
                 -face.value,
-                Axis::ALL[face.axis],
-                ["min", "max"][face.side]
+                Axis::FACE_NAMES[2 * face.axis + face.side]
             )));
         }
         // The integrand is analytic for |arg t| < π/2: the trapezoid errs by some e⁸ e^{−π²/step}.
