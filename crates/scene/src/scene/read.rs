@@ -12,14 +12,14 @@ use super::pairs::read_pairs;
 use super::particles::read_section;
 use super::physics::Physics;
 use super::time::read_time;
-use super::together::{check_reach, check_sections, check_together};
+use super::together::{check_lists, check_reach, check_sections, check_together};
 use super::walls::read_walls;
 use crate::SceneError;
 use crate::error::Problems;
 use crate::keys::SCENE;
 use crate::materials::{Materials, read_materials};
 use crate::source::{SceneSource, read_text};
-use crate::table::SceneTable;
+use crate::table::{SceneTable, drop_empty_lists};
 use crate::tree::{Entries, Node, Origin, Value, apply_overrides, parse_document};
 use amberfield_core::{Domain, FieldSettings};
 use std::path::Path;
@@ -101,6 +101,7 @@ pub(super) fn parse(
     let mut entries = parse_document(origin, text.strip_prefix('\u{feff}').unwrap_or(text))?;
     apply_overrides(&mut entries, overrides)?;
     let document = SceneTable::document(&entries, origin.line(0), SCENE)?;
+    drop_empty_lists(&mut entries, SCENE);
     let mut source = SceneSource::new(folder, mesh);
     let mut scene = read_sections(&document, &mut source, purpose)?;
     scene.physics = Physics::new(&entries, &source);
@@ -122,6 +123,7 @@ fn read_sections(
 ) -> Result<Scene, SceneError> {
     let mut problems = Problems::default();
     let motion = purpose == Purpose::Run || (purpose == Purpose::Explain && document.has("time"));
+    check_lists(document)?;
     let sections = problems.keep(check_sections(document, motion, purpose));
     let domain = problems.keep(read_domain(document, source));
     let list = problems.keep(read_materials(document));

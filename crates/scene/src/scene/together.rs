@@ -38,6 +38,15 @@ pub(super) fn check_together(
     Ok(())
 }
 
+/// Checks that sections of which there may be several are lists.
+pub(super) fn check_lists(document: &SceneTable<'_>) -> Result<(), SceneError> {
+    let mut problems = Problems::default();
+    for section in document.known().into_iter().filter(|section| document.entry(section).form.is_list()) {
+        problems.keep(document.tables(section).map(drop));
+    }
+    problems.finish()
+}
+
 /// Checks that the sections that the purpose needs are present.
 pub(super) fn check_sections(
     document: &SceneTable<'_>,

@@ -1,6 +1,7 @@
 //! Typed access to the values of a table.
 
 mod check;
+mod lists;
 
 use crate::SceneError;
 use crate::error::{Problems, shorten};
@@ -9,6 +10,7 @@ use crate::tree::{Entries, Node, Place, Range, Value};
 use nalgebra::Vector3;
 
 pub use check::check_keys;
+pub(crate) use lists::drop_empty_lists;
 
 /// Table of the tree, with typed access to its values.
 ///
@@ -88,7 +90,11 @@ impl<'a> SceneTable<'a> {
     fn checked(&self, name: &str) -> Result<Option<&'a Node>, SceneError> {
         let entry = self.entry(name);
         let Some(node) = self.get(name) else { return Ok(None) };
-        match entry.form.refuse(entry, node) {
+        let problem = match entry.form.is_list() {
+            true => self.refuse_as_list(name, node),
+            false => entry.form.refuse(entry, node),
+        };
+        match problem {
             None => Ok(Some(node)),
             Some(problem) => Err(self.bad(name, problem)),
         }

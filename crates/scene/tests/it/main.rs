@@ -12,6 +12,7 @@ mod filled;
 mod generators;
 mod good_scenes;
 mod keys;
+mod lists;
 mod outputs;
 mod potentials;
 mod round_trips;
