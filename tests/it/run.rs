@@ -96,6 +96,71 @@ fn a_run_goes_on_from_an_older_checkpoint_and_to_a_later_end() {
 }
 
 #[test]
+fn an_end_that_is_a_multiple_of_the_intervals_is_written_once() {
+    // 0.1·3 is not 0.3, and neither is a whole number of the steps.
+    let scene = plain()
+        .replace("step_s = 2e-6", "step_s = 1.7e-6")
+        .replace("end_s = 2e-3", "end_s = 0.3e-3")
+        .replace("every_s = 2.5e-4", "every_s = 0.1e-3\nhistory_every_s = 0.1e-3")
+        .replace("checkpoint_every_s = 5e-4", "checkpoint_every_s = 0.1e-3");
+    let bench = Workbench::new(&scene);
+    let steps_of = |folder: &str| {
+        let step = |name: &String| name.split(['_', '.']).nth(1).unwrap().parse::<u64>().unwrap();
+        let csv = |name: &&String| name.ends_with(".csv");
+        let frames = bench.names(&format!("{folder}/particles"));
+        let frames: Vec<u64> = frames.iter().filter(csv).map(step).collect();
+        let saved: Vec<u64> = bench.names(&format!("{folder}/checkpoints")).iter().map(step).collect();
+        let rows = CsvTable::parse(&bench.read(&format!("{folder}/history.csv"))).numbers("step");
+        let forces = CsvTable::parse(&bench.read(&format!("{folder}/wall_forces.csv"))).numbers("step");
+        let listed = bench.read(&format!("{folder}/particles.pvd")).matches("<DataSet").count();
+        (frames, saved, rows, forces, listed)
+    };
+    assert_eq!(bench.run(&["run", "scene.toml", "--out", "whole"]).code, Some(0));
+    let (frames, saved, rows, forces, listed) = steps_of("whole");
+    // The first steps at 0.1, 0.2 and 0.3 ms.
+    assert_eq!(frames, [0, 59, 118, 177]);
+    assert_eq!((saved, listed), (vec![59, 118, 177], 4));
+    assert_eq!(rows, [0.0, 59.0, 118.0, 177.0]);
+    assert_eq!(forces, rows.iter().flat_map(|row| [*row; 2]).collect::<Vec<_>>());
+    // A run that has ended is asked to go on, one that stopped where all is due goes on, and a later end has
+    // what an earlier one had.
+    let whole = steps_of("whole");
+    let resume = |from: &str, set: &str| {
+        let arguments = ["run", "scene.toml", "--out", "parts", "--resume", from, "--set", set];
+        let answer = bench.run(&arguments);
+        assert_eq!(answer.code, Some(0), "{}", answer.stderr);
+    };
+    assert_eq!(bench.run(&["run", "scene.toml", "--out", "parts", "--steps", "118"]).code, Some(0));
+    resume("parts/checkpoints/step_000000000118.amber", "time.end_s=0.2e-3");
+    resume("parts/checkpoints/step_000000000118.amber", "time.end_s=0.3e-3");
+    resume("parts/checkpoints/step_000000000177.amber", "time.end_s=0.3e-3");
+    assert_eq!(steps_of("parts"), whole);
+    resume("parts/checkpoints/step_000000000177.amber", "time.end_s=0.4e-3");
+    let (frames, _, rows, _, listed) = steps_of("parts");
+    assert_eq!((frames, listed), (vec![0, 59, 118, 177, 236], 5));
+    assert_eq!(rows.len(), 5);
+}
+
+#[test]
+fn a_run_says_how_it_computes_the_field_in_words() {
+    for (method, words) in [
+        ("\"direct\"", "electric field: the direct sum"),
+        ("\"cutoff\"", "electric field: cut-off 5.0000e-4 m"),
+    ] {
+        let more = if method.contains("cutoff") { "\nfield_cutoff_radius = 5e-4" } else { "" };
+        let scene =
+            CHARGED.replace("tolerance = 1e-2\ntuning = \"model\"", &format!("method = {method}{more}"));
+        let bench = Workbench::new(&scene);
+        let answer = bench.run(&["run", "scene.toml", "--out", "out", "--steps", "2"]);
+        assert_eq!(answer.code, Some(0), "{}", answer.stderr);
+        assert!(answer.stderr.contains(words), "{}", answer.stderr);
+        let braces =
+            answer.stderr.lines().filter(|line| line.contains("electric field") && line.contains('{'));
+        assert_eq!(braces.count(), 0, "{}", answer.stderr);
+    }
+}
+
+#[test]
 fn thread_counts_do_not_change_results() {
     let bench = Workbench::new(CHARGED);
     for threads in ["1", "3"] {

@@ -34,8 +34,11 @@ impl Histogram {
         Ok(Self { rows: HistoryFile::resume(&folder.file(FILE), &CHARGE_HISTOGRAM.heading(), step, is_due)? })
     }
 
-    /// Appends the histograms of a frame at a step and a time [s].
+    /// Appends the histograms of a frame at a step and a time [s], once for each step.
     pub(crate) fn append(&mut self, step: u64, time_s: f64, particles: &Particles) -> Result<(), Failure> {
+        if self.rows.last_step() == Some(step) {
+            return Ok(());
+        }
         let per_mass: Vec<f64> =
             particles.charge.iter().enumerate().map(|(i, charge)| charge / particles.mass(i)).collect();
         let (charges, ratios) = (HistogramBins::of(&particles.charge), HistogramBins::of(&per_mass));

@@ -31,8 +31,6 @@ pub(crate) struct Record {
     exits: Exits,
     /// Histograms of the charges; `None` where charges do not change.
     histogram: Option<Histogram>,
-    /// Step of the last row.
-    last_row: Option<u64>,
     /// Step of the last files of the grains.
     last_frame: Option<u64>,
 }
@@ -136,8 +134,8 @@ impl Record {
         let histogram = columns.transfer.then(|| Histogram::create(folder)).transpose()?;
         let wall_forces = WallForces::create(folder, simulation)?;
         let exits = Exits::create(folder, scene)?;
-        let (last_row, last_frame) = (None, None);
-        Ok(Self { history, columns, series, walls, wall_forces, exits, histogram, last_row, last_frame })
+        let last_frame = None;
+        Ok(Self { history, columns, series, walls, wall_forces, exits, histogram, last_frame })
     }
 
     /// Opens the records of a run that is continued.
@@ -170,8 +168,8 @@ impl Record {
             let _ = std::fs::remove_file(file.path());
         }
         let exits = Exits::resume(folder, scene, simulation)?;
-        let (last_row, last_frame) = (None, None);
-        Ok(Self { history, columns, series, walls, wall_forces, exits, histogram, last_row, last_frame })
+        let last_frame = None;
+        Ok(Self { history, columns, series, walls, wall_forces, exits, histogram, last_frame })
     }
 
     /// Writes down the grains that left in a step.
@@ -187,7 +185,7 @@ impl Record {
         clock: &Clock,
     ) -> Result<(), Failure> {
         let step = simulation.step_index();
-        if self.last_row.replace(step) == Some(step) {
+        if self.history.last_step() == Some(step) {
             return Ok(());
         }
         let mut row = vec![

@@ -51,6 +51,8 @@ pub(crate) struct Session<'a> {
     pub(crate) schedule: Schedule,
     pub(crate) record: Record,
     health: Health,
+    /// Step of the last checkpoint.
+    saved: Option<u64>,
     /// Contents of the field solver's case.
     case: Option<CaseContents>,
     /// Energies at a resume [J].
@@ -74,9 +76,21 @@ impl<'a> Session<'a> {
         let health = Health::new(&simulation, &energies, Allowed::new(scene));
         let record = Record::create(folder, scene, &simulation)?;
         let earlier = Clock { wall_s: 0.0, stages: Vec::new() };
-        let at_resume = None;
+        let (at_resume, saved) = (None, None);
         let begun = Instant::now();
-        Ok(Self { folder, scene, simulation, schedule, record, health, case, at_resume, earlier, begun })
+        Ok(Self {
+            folder,
+            scene,
+            simulation,
+            schedule,
+            record,
+            health,
+            saved,
+            case,
+            at_resume,
+            earlier,
+            begun,
+        })
     }
 
     /// Continues a run from a checkpoint.
@@ -93,8 +107,20 @@ impl<'a> Session<'a> {
         let at_resume = Some(energies.map_err(|error| Failure::while_running(&error))?);
         let record = Record::resume(folder, scene, &simulation, &schedule)?;
         let EarlierPart { clock: earlier, health, .. } = earlier;
-        let begun = Instant::now();
-        Ok(Self { folder, scene, simulation, schedule, record, health, case, at_resume, earlier, begun })
+        let (saved, begun) = (None, Instant::now());
+        Ok(Self {
+            folder,
+            scene,
+            simulation,
+            schedule,
+            record,
+            health,
+            saved,
+            case,
+            at_resume,
+            earlier,
+            begun,
+        })
     }
 
     /// Makes steps until the end, at most `most` of them, or until the user interrupts.
@@ -208,8 +234,12 @@ impl<'a> Session<'a> {
         self.folder.file(&format!("checkpoints/step_{step:012}.amber"))
     }
 
-    /// Writes a checkpoint of the present step.
+    /// Writes a checkpoint of the present step, once for each step.
     fn checkpoint(&mut self) -> Result<(), Failure> {
+        let step = self.simulation.step_index();
+        if self.saved.replace(step) == Some(step) {
+            return Ok(());
+        }
         let state = self.simulation.checkpoint().map_err(|error| Failure::while_running(&error))?;
         self.save(state)
     }

@@ -210,7 +210,7 @@ fn announce(scene: &Scene, simulation: &Simulation) {
                 measured.relative_rms
             ),
             // The method is exact or states no error, or the parameters come from a checkpoint.
-            _ => tracing::info!("electric field: {:?}", field.choice()),
+            _ => tracing::info!("electric field: {}", field.choice()),
         }
         if scene.electric_field.as_ref().is_some_and(|settings| settings.field.tuning == Tuning::Timed) {
             tracing::info!(

@@ -25,6 +25,8 @@ pub struct HistoryFile {
     path: PathBuf,
     file: File,
     columns: usize,
+    /// Step of the last row.
+    last: Option<u64>,
 }
 
 impl HistoryFile {
@@ -34,7 +36,7 @@ impl HistoryFile {
     /// Errors of the operating system.
     pub fn create(path: &Path, columns: &[String]) -> Result<Self, SceneError> {
         write_text(path, &format!("{}\n", columns.join(",")))?;
-        Self::open(path, columns.len())
+        Self::open(path, columns.len(), None)
     }
 
     /// Opens the history of a run that is continued.
@@ -58,24 +60,31 @@ impl HistoryFile {
                 format!("its columns are not {header}; start a new run with --out"),
             ));
         }
-        let mut kept = format!("{header}\n");
+        let (mut kept, mut last) = (format!("{header}\n"), None);
         // A last line without its end was torn when the earlier run was stopped.
         for line in lines.filter(|line| line.ends_with('\n')) {
             let row: Option<u64> = line.split(',').next().and_then(|first| first.parse().ok());
             if row.is_some_and(|row| row <= step && is_due(row)) {
                 kept.push_str(line);
+                last = row;
             }
         }
         write_text(path, &kept)?;
-        Self::open(path, columns.len())
+        Self::open(path, columns.len(), last)
     }
 
-    fn open(path: &Path, columns: usize) -> Result<Self, SceneError> {
+    /// Step of the last row; `None` without rows.
+    #[must_use]
+    pub fn last_step(&self) -> Option<u64> {
+        self.last
+    }
+
+    fn open(path: &Path, columns: usize, last: Option<u64>) -> Result<Self, SceneError> {
         let file = OpenOptions::new()
             .append(true)
             .open(path)
             .map_err(|error| SceneError::unwritable(path, error))?;
-        Ok(Self { path: path.to_path_buf(), file, columns })
+        Ok(Self { path: path.to_path_buf(), file, columns, last })
     }
 
     /// Appends a row.
@@ -87,6 +96,9 @@ impl HistoryFile {
     /// When the row has another number of cells than the header.
     pub fn append(&mut self, row: &[HistoryValue]) -> Result<(), SceneError> {
         assert_eq!(row.len(), self.columns, "a row has one cell per column");
+        if let Some(HistoryValue::Count(step)) = row.first() {
+            self.last = Some(*step);
+        }
         let mut line = String::with_capacity(25 * row.len());
         for (index, cell) in row.iter().enumerate() {
             let comma = if index == 0 { "" } else { "," };
@@ -134,6 +146,7 @@ mod tests {
         text.push_str("1,0.");
         std::fs::write(&path, text).unwrap();
         let mut history = HistoryFile::resume(&path, &columns, 2, |_| true).unwrap();
+        assert_eq!(history.last_step(), Some(2));
         history.append(&[HistoryValue::Count(3), HistoryValue::Number(1.0)]).unwrap();
         let text = std::fs::read_to_string(&path).unwrap();
         let steps: Vec<&str> = text.lines().skip(1).filter_map(|line| line.split(',').next()).collect();
