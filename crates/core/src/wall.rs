@@ -4,6 +4,7 @@ use crate::material::MaterialId;
 use crate::wall_motion::{Placement, WallMotion};
 use nalgebra::Vector3;
 use serde::{Deserialize, Serialize};
+use std::collections::HashMap;
 
 /// A surface of triangles.
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
@@ -21,6 +22,19 @@ impl TriangleMesh {
         let first = *self.vertices.first()?;
         let around = |[low, high]: [Vector3<f64>; 2], x: &Vector3<f64>| [low.inf(x), high.sup(x)];
         Some(self.vertices.iter().fold([first; 2], around))
+    }
+
+    /// Edges of one triangle alone, at which the surface ends [m].
+    #[must_use]
+    pub fn rim(&self) -> Vec<[Vector3<f64>; 2]> {
+        let edges = || {
+            let of = |&[a, b, c]: &[u32; 3]| [[a, b], [b, c], [c, a]].map(|[p, q]| [p.min(q), p.max(q)]);
+            self.triangles.iter().flat_map(of)
+        };
+        let mut count: HashMap<[u32; 2], u32> = HashMap::new();
+        edges().for_each(|edge| *count.entry(edge).or_default() += 1);
+        let alone = edges().filter(|edge| count[edge] == 1);
+        alone.map(|edge| edge.map(|vertex| self.vertices[vertex as usize])).collect()
     }
 }
 

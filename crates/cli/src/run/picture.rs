@@ -15,6 +15,8 @@ pub(crate) fn draw(path: &Path, scene: &Scene, simulation: &Simulation) {
         time_s: Some(simulation.time_s()),
         domain: &domain,
         walls: &super::walls::now(scene, simulation),
+        feeds: &scene.feeds.list,
+        outlets: &scene.outlets,
         particles: &simulation.particles(),
     };
     if let Err(error) = write_picture(path, &picture) {

@@ -3,7 +3,7 @@
 use super::solver::read_input;
 use super::solver_folder::SolverFolder;
 use crate::failure::Failure;
-use amberfield_core::{ChargeTransfer, Domain, FieldSettings, Vector3};
+use amberfield_core::{ChargeTransfer, Domain, Feeds, FieldSettings, Vector3};
 use amberfield_dem::{FieldStageSetup, GasSetup, Setup};
 use amberfield_field::far::Connect;
 use amberfield_field::{Choice, ElectricField};
@@ -134,9 +134,16 @@ pub(crate) fn setup_of(
         time,
         gas: scene.gas.map(|gas| GasSetup { gas, solver: solver.flow }),
         field,
-        feeds: std::mem::take(&mut scene.feeds),
+        feeds: take_feeds(scene),
         outlets: scene.outlets.clone(),
     })
+}
+
+/// Feeds of a scene with their grains; the scene keeps the feeds alone.
+fn take_feeds(scene: &mut Scene) -> Feeds {
+    let feeds = std::mem::take(&mut scene.feeds);
+    scene.feeds.list.clone_from(&feeds.list);
+    feeds
 }
 
 /// Settings of charge transfer at contacts, if the scene asks for it.

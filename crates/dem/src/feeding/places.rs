@@ -1,7 +1,6 @@
 //! Places in the region of a feed: at random and on a lattice, the same ones in every run.
 
 use amberfield_core::{Feed, FeedRegion, TriangleMesh, Vector3, Volume};
-use std::collections::HashMap;
 use std::f64::consts::PI;
 
 /// Share of the radius by which grains stay off each other, walls and the region's ends: round-off makes no
@@ -133,14 +132,8 @@ impl Face {
             sum
         };
         let areas = triangles.iter().map(area).collect();
-        let mut count: HashMap<[u32; 2], u32> = HashMap::new();
-        let edges = || {
-            let of = |&[a, b, c]: &[u32; 3]| [[a, b], [b, c], [c, a]].map(|[p, q]| [p.min(q), p.max(q)]);
-            mesh.triangles.iter().flat_map(of)
-        };
-        edges().for_each(|edge| *count.entry(edge).or_default() += 1);
-        let rim = edges().filter(|edge| count[edge] == 1).map(|edge| edge.map(corner)).collect();
-        Self { triangles, areas, rim, direction: velocity.try_normalize(0.0).unwrap_or_else(Vector3::zeros) }
+        let direction = velocity.try_normalize(0.0).unwrap_or_else(Vector3::zeros);
+        Self { triangles, areas, rim: mesh.rim(), direction }
     }
 
     /// Place behind a random point of the face, along the velocity, at which a grain has just come through.

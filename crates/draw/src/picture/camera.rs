@@ -19,11 +19,9 @@ pub(super) fn axes() -> [Vector3<f64>; 3] {
 }
 
 /// The eight corners of a box, bit k of the number choosing the upper end of axis k.
-pub(super) fn corners(domain: &Domain) -> [Vector3<f64>; 8] {
+pub(super) fn corners(min: &Vector3<f64>, max: &Vector3<f64>) -> [Vector3<f64>; 8] {
     std::array::from_fn(|number| {
-        Vector3::from_fn(
-            |axis, _| if number >> axis & 1 == 1 { domain.max()[axis] } else { domain.min()[axis] },
-        )
+        Vector3::from_fn(|axis, _| if number >> axis & 1 == 1 { max[axis] } else { min[axis] })
     })
 }
 

@@ -3,11 +3,12 @@
 use super::PictureScene;
 use super::camera::{Camera, axes, span};
 use super::grains::ChargeRange;
+use super::regions::{FEED, OUTLET, WIDTH};
 use crate::colour::{Colour, INK, SOFT_INK, diverging};
 use crate::font;
 use crate::raster::{Anchor, Raster, Text};
 use crate::ticks;
-use amberfield_core::{Axis, Boundary, Domain};
+use amberfield_core::{Axis, Boundary, Domain, Side};
 
 /// Largest size of the box in the picture [px].
 const LARGEST: [f64; 2] = [820.0, 980.0];
@@ -62,7 +63,8 @@ pub(super) fn draw(
     range: ChargeRange,
 ) {
     heading(raster, layout, scene);
-    colour_bar(raster, layout, range);
+    let below = colour_bar(raster, layout, range);
+    regions_key(raster, layout, scene, below);
     let base = layout.height as f64 - 40.0;
     axis_cross(raster, [LEFT + 18.0, base - 14.0]);
     let end = scale_bar(raster, camera, layout, [LEFT + 96.0, base]);
@@ -116,14 +118,28 @@ fn trimmed(value: f64) -> String {
     if text.contains('.') { text.trim_end_matches('0').trim_end_matches('.').to_owned() } else { text }
 }
 
-fn colour_bar(raster: &mut Raster, layout: &Layout, range: ChargeRange) {
+/// Says which outlines are feeds and which are outlets, at a height and below it.
+fn regions_key(raster: &mut Raster, layout: &Layout, scene: &PictureScene<'_>, top: f64) {
+    let left = LEFT + layout.area[0] + 62.0;
+    let entries = [("feed", scene.feeds.len(), FEED), ("outlet", scene.outlets.len(), OUTLET)];
+    let there = entries.into_iter().filter(|(_, count, _)| *count > 0);
+    for (row, (word, count, colour)) in (0..).zip(there) {
+        let y = top + 24.0 * f64::from(row);
+        raster.line(&[[left, y - 6.0], [left + 24.0, y - 6.0]], WIDTH, colour);
+        let plural = if count == 1 { "" } else { "s" };
+        write(raster, [left + 34.0, y], &format!("{word}{plural}"), 16.0, Anchor::Start, INK);
+    }
+}
+
+/// Draws the bar; returns where there is room below it.
+fn colour_bar(raster: &mut Raster, layout: &Layout, range: ChargeRange) -> f64 {
     let left = LEFT + layout.area[0] + 62.0;
     let height = (layout.area[1] * 0.62).min(420.0);
     let top = TOP + 0.5 * (layout.area[1] - height);
     if range.limit == 0.0 {
         let middle = TOP + 0.5 * layout.area[1];
         write(raster, [left - 12.0, middle], "no charge", TEXT_SIZE, Anchor::Start, SOFT_INK);
-        return;
+        return middle + 40.0;
     }
     let width = 24.0;
     let slices = (height * raster.fineness()) as usize;
@@ -157,6 +173,7 @@ fn colour_bar(raster: &mut Raster, layout: &Layout, range: ChargeRange) {
     if range.some_beyond {
         write(raster, [left - 4.0, top + height + 26.0], "2 % beyond", 15.0, Anchor::Start, SOFT_INK);
     }
+    top + height + 56.0
 }
 
 fn axis_cross(raster: &mut Raster, origin: [f64; 2]) {
@@ -186,11 +203,14 @@ fn scale_bar(raster: &mut Raster, camera: &Camera, layout: &Layout, at: [f64; 2]
     at[0] + pixels + 10.0 + font::width(&text, TEXT_SIZE)
 }
 
-/// The field's boundary conditions in words: equal ones together.
+/// The field's boundary conditions in words: equal ones together. Potentials that change say so.
 fn boundaries(domain: &Domain) -> String {
     let mut groups: Vec<(String, String)> = Vec::new();
     for axis in Axis::ALL {
-        let [lower, upper] = domain.faces()[axis.index()].map(word);
+        let [lower, upper] = [Side::Min, Side::Max].map(|side| {
+            let changes = domain.courses().iter().any(|face| face.axis == axis && face.side == side);
+            word(domain.face(axis, side)) + if changes { " now, changing" } else { "" }
+        });
         let word = if lower == upper { lower } else { format!("{lower} to {upper}") };
         match groups.iter_mut().find(|(_, known)| *known == word) {
             Some((axes, _)) => axes.push_str(&format!(", {axis}")),
@@ -216,7 +236,7 @@ fn word(boundary: Boundary) -> String {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use amberfield_core::Vector3;
+    use amberfield_core::{Course, FaceCourse, Vector3};
 
     #[test]
     fn boundaries_are_grouped() {
@@ -227,6 +247,18 @@ mod tests {
         ];
         let domain = Domain::new(Vector3::zeros(), Vector3::repeat(1.0), faces).unwrap();
         assert_eq!(boundaries(&domain), "x, y periodic  ·  z grounded to 2 kV");
+    }
+
+    #[test]
+    fn potentials_that_change_are_said_to() {
+        let mut faces = [[Boundary::Open; 2]; 3];
+        faces[0] = [Boundary::Grounded, Boundary::Potential(0.0)];
+        let course = Course::Sine { amplitude: 2000.0, frequency_hz: 50.0, phase: 0.0, offset: 0.0 };
+        let course = FaceCourse { axis: Axis::X, side: Side::Max, course };
+        let domain = Domain::new(Vector3::zeros(), Vector3::repeat(1.0), faces).unwrap();
+        let mut domain = domain.with_courses(vec![course]);
+        domain.set_time(5e-3);
+        assert_eq!(boundaries(&domain), "x grounded to 2 kV now, changing  ·  y, z open");
     }
 
     #[test]

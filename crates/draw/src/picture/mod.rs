@@ -4,11 +4,12 @@ mod camera;
 mod depth_image;
 mod grains;
 mod legend;
+mod regions;
 mod surroundings;
 
 use crate::DrawError;
 use crate::raster::Raster;
-use amberfield_core::{Domain, Particles, Wall};
+use amberfield_core::{Domain, Feed, Outlet, Particles, Wall};
 use camera::Camera;
 use depth_image::DepthImage;
 use grains::ChargeRange;
@@ -25,6 +26,10 @@ pub struct PictureScene<'a> {
     pub domain: &'a Domain,
     /// Walls that grains touch; those that coincide with a face of the box are not drawn twice.
     pub walls: &'a [Wall],
+    /// Feeds, whose regions are outlined.
+    pub feeds: &'a [Feed],
+    /// Outlets, whose regions are outlined.
+    pub outlets: &'a [Outlet],
     /// The grains; any number, also none.
     pub particles: &'a Particles,
 }
@@ -47,6 +52,7 @@ fn render(scene: &PictureScene<'_>) -> Raster {
     let mut image = DepthImage::new(view.width, view.height);
     grains::draw(&mut image, &camera, scene.particles, range);
     surroundings::behind(&mut image, &camera, scene);
+    regions::draw(&mut image, &camera, scene);
     surroundings::in_front(&mut image, &camera, scene);
     let mut raster = image.into_raster();
     legend::draw(&mut raster, &camera, &view, scene, range);
@@ -56,7 +62,10 @@ fn render(scene: &PictureScene<'_>) -> Raster {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use amberfield_core::{Boundary, Grain, GroupId, MaterialId, Vector3};
+    use amberfield_core::{
+        Axis, Boundary, FeedRegion, Grain, GroupId, MaterialId, OnBlocked, OutletRegion, Side, TriangleMesh,
+        Vector3, Volume,
+    };
 
     fn domain() -> Domain {
         let faces = [[Boundary::Periodic; 2], [Boundary::Periodic; 2], [Boundary::Grounded; 2]];
@@ -77,10 +86,23 @@ mod tests {
         }
     }
 
-    fn picture(particles: &Particles) -> Vec<u8> {
+    fn bytes_of(particles: &Particles, feeds: &[Feed], outlets: &[Outlet]) -> Vec<u8> {
         let domain = domain();
-        render(&PictureScene { title: "Test", time_s: Some(0.1), domain: &domain, walls: &[], particles })
-            .bytes()
+        let time_s = Some(0.1);
+        render(&PictureScene {
+            title: "Test",
+            time_s,
+            domain: &domain,
+            walls: &[],
+            feeds,
+            outlets,
+            particles,
+        })
+        .bytes()
+    }
+
+    fn picture(particles: &Particles) -> Vec<u8> {
+        bytes_of(particles, &[], &[])
     }
 
     fn strongly(bytes: &[u8], channel: usize, other: usize) -> usize {
@@ -109,12 +131,56 @@ mod tests {
     }
 
     #[test]
+    fn feeds_and_outlets_are_outlined_in_their_colours() {
+        let feed = |region| Feed {
+            name: "hopper".into(),
+            region,
+            velocity: Vector3::zeros(),
+            on_blocked: OnBlocked::Wait,
+            seed: 0,
+        };
+        let outlet = |region| Outlet { name: "bin".into(), region, each: false };
+        let block = Volume::Box { min: Vector3::repeat(2e-3), max: Vector3::repeat(8e-3) };
+        let corner = |x: f64, y: f64| Vector3::new(x, y, 0.025);
+        let face = TriangleMesh {
+            vertices: vec![
+                corner(2e-3, 2e-3),
+                corner(0.018, 2e-3),
+                corner(0.018, 0.018),
+                corner(2e-3, 0.018),
+            ],
+            triangles: vec![[0, 1, 2], [0, 2, 3]],
+        };
+        let is_near = |pixel: &[u8], colour: [u8; 3]| (0..3).all(|k| pixel[k].abs_diff(colour[k]) < 25);
+        let count =
+            |bytes: &[u8], colour: [u8; 3]| bytes.chunks(3).filter(|pixel| is_near(pixel, colour)).count();
+        let none = Particles::default();
+        let bare = picture(&none);
+        assert_eq!([regions::FEED, regions::OUTLET].map(|colour| count(&bare, colour)), [0; 2]);
+        for region in [FeedRegion::Volume(block.clone()), FeedRegion::Face(face)] {
+            let fed = bytes_of(&none, &[feed(region)], &[]);
+            assert!(count(&fed, regions::FEED) > 300 && count(&fed, regions::OUTLET) == 0);
+        }
+        for region in [OutletRegion::Volume(block), OutletRegion::Face(Axis::Z, Side::Min)] {
+            let emptied = bytes_of(&none, &[], &[outlet(region)]);
+            assert!(count(&emptied, regions::OUTLET) > 300 && count(&emptied, regions::FEED) == 0);
+        }
+    }
+
+    #[test]
     fn file_is_a_png() {
         let folder = tempfile::tempdir().unwrap();
         let path = folder.path().join("bed.png");
         let (domain, particles) = (domain(), Particles::default());
-        let scene =
-            PictureScene { title: "Empty", time_s: None, domain: &domain, walls: &[], particles: &particles };
+        let scene = PictureScene {
+            title: "Empty",
+            time_s: None,
+            domain: &domain,
+            walls: &[],
+            feeds: &[],
+            outlets: &[],
+            particles: &particles,
+        };
         write_picture(&path, &scene).unwrap();
         assert!(std::fs::read(&path).unwrap().starts_with(b"\x89PNG"));
         assert!(write_picture(&folder.path().join("no/such/folder.png"), &scene).is_err());

@@ -62,7 +62,7 @@ fn shade(camera: &Camera, normal: &Vector3<f64>) -> Colour {
 
 fn faces(scene: &PictureScene<'_>) -> Vec<Face> {
     let domain = scene.domain;
-    let all = corners(domain);
+    let all = corners(&domain.min(), &domain.max());
     let mut faces = Vec::with_capacity(6);
     for axis in Axis::ALL {
         for side in [Side::Min, Side::Max] {
@@ -95,7 +95,9 @@ fn tolerance(domain: &Domain) -> f64 {
 
 /// Whether a plane is one of the box's faces or does not enter the box.
 fn on_face(domain: &Domain, point: &Vector3<f64>, normal: &Vector3<f64>) -> bool {
-    corners(domain).iter().all(|corner| (corner - point).dot(normal) > -tolerance(domain))
+    corners(&domain.min(), &domain.max())
+        .iter()
+        .all(|corner| (corner - point).dot(normal) > -tolerance(domain))
 }
 
 fn fill(image: &mut DepthImage, camera: &Camera, polygon: &[Vector3<f64>], colour: Colour, weight: f64) {
