@@ -3,6 +3,11 @@
 use amberfield_tests::{CsvTable, Workbench};
 use serde_json::Value;
 
+/// Face as an STL file: a square of 8 mm at a height of 24 mm.
+const FACE: &str = "solid face\nfacet normal 0 0 1\n outer loop\n  vertex -4 -4 24\n  vertex 4 -4 24\n  \
+    vertex 4 4 24\n endloop\nendfacet\nfacet normal 0 0 1\n outer loop\n  vertex -4 -4 24\n  \
+    vertex 4 4 24\n  vertex -4 4 24\n endloop\nendfacet\nendsolid face\n";
+
 /// Charged grains of two materials that fall onto a floor which takes charge; some leave through the sides.
 pub(crate) const SCENE: &str = r#"
 [domain]
@@ -165,4 +170,69 @@ fn charges_that_come_at_a_high_potential_are_no_unsound_run() {
     bench.write("neutral.toml", no_charge.replace("[particles]\n", ""));
     let answer = bench.run(&["run", "neutral.toml"]);
     assert!(answer.code == Some(2) && answer.stderr.contains("feeds: charge_C"), "{}", answer.stderr);
+}
+
+/// Checks that [`SCENE`] with a change is refused, with the place of a key of its second feed.
+fn refused(from: &str, to: &str, key: &str, words: &str) {
+    let scene = SCENE.replacen(from, to, 1);
+    assert_ne!(scene, SCENE, "{from}");
+    // Feeds are sorted by name; their places are those of the file.
+    for scene in [scene.replace("\"hopper\"", "\"zoo\""), scene] {
+        let bench = Workbench::new(&scene);
+        bench.write("face.stl", FACE);
+        let feed = scene.find("\"shot\"").unwrap();
+        let at = feed + scene[feed..].find(&format!("\n{key} = ")).unwrap();
+        let line = scene[..=at].matches('\n').count() + 1;
+        for command in ["run", "explain"] {
+            let answer = bench.run(&[command, "scene.toml"]);
+            assert_eq!(answer.code, Some(2), "{to}: {}", answer.stderr);
+            for word in [&format!("scene.toml:{line}: feeds[1].{key} = "), "feed \"shot\"", words] {
+                assert!(answer.stderr.contains(word), "no {word:?} in {}", answer.stderr);
+            }
+        }
+    }
+}
+
+#[test]
+fn what_is_wrong_with_a_region_is_said_with_its_place() {
+    let region = "{ cylinder = { base_m = [0, 0, 0.014], top_m = [0, 0, 0.019], radius_m = 0.006 } }";
+    let face = "{ stl = \"face.stl\", scale = 1e-3 }";
+    let velocity = "velocity_m_s = [0.3, 0, -0.5]";
+    refused("0.019], radius_m = 0.006", "0.019], radius_m = 0.06", "region", "beyond the domain");
+    refused("radius_m = 3e-4", "radius_m = 3e-3", "region", "does not fit into its region");
+    refused(region, "{ stl = \"face.stl\" }", "region", "beyond the domain");
+    let along = |to: &str, words: &str| {
+        let (from, to) = (format!("region = {region}"), format!("region = {face}\n{to}"));
+        let scene = SCENE.replace(velocity, "");
+        assert!(scene.contains(&from));
+        let bench = Workbench::new(&scene.replace(&from, &to));
+        bench.write("face.stl", FACE);
+        let answer = bench.run(&["explain", "scene.toml"]);
+        assert!(answer.code == Some(2) && answer.stderr.contains(words), "{}", answer.stderr);
+        assert!(answer.stderr.contains("feeds[1].velocity_m_s"), "{}", answer.stderr);
+        assert!(answer.stderr.contains("scene.toml:"), "{}", answer.stderr);
+    };
+    along("velocity_m_s = [1, 0, 0]", "along its face, 0.0° off it");
+    along("velocity_m_s = [1, 1, -0.05]", "along its face, 2.0° off it");
+    along("velocity_m_s = [0, 0, 0]", "velocity_m_s is zero");
+    along("", "velocity_m_s is zero");
+}
+
+#[test]
+fn explain_tells_the_restitution_of_what_feeds_alone_bring() {
+    let bench = Workbench::new(SCENE);
+    let whole = bench.run(&["explain", "scene.toml"]);
+    assert_eq!(whole.code, Some(0), "{}", whole.stderr);
+    let (head, tail) = SCENE.split_once("[electric_field]").unwrap();
+    let (_, output) = tail.split_once("[output]").unwrap();
+    bench.write("scene.toml", format!("{head}[output]{output}").replace("charge_C", "#charge_C"));
+    let plain = bench.run(&["explain", "scene.toml"]);
+    for said in [whole.stdout, plain.stdout] {
+        let line =
+            said.lines().find(|line| line.starts_with("restitution: ")).unwrap_or_else(|| panic!("{said}"));
+        assert!(line.contains("glass 0.7 acts as") && line.contains("steel 0.8 acts as"), "{line}");
+        // Two of the fastest, with 1 m/s and three standard deviations along each axis.
+        let speed: f64 = line.split(" m/s").next().unwrap().rsplit(' ').next().unwrap().parse().unwrap();
+        assert!((2.0..2.0 * (1.0 + 0.6 * 3_f64.sqrt())).contains(&speed), "{line}");
+    }
 }

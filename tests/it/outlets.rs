@@ -59,17 +59,17 @@ fn bad_outlets_are_refused_with_advice() {
         (&format!("{good}{}", good.replace("z_min", "z_max")), &["another outlet has this name"]),
         (
             &format!("{good}{}", good.replace("\"a\"", "\"b\"")),
-            &["outlet \"b\"", "outlet \"a\" has the face"],
+            &["scene.toml:60: outlets[1].face = \"z_min\"", "outlet \"b\"", "outlet \"a\" has the face"],
         ),
         (
             "[[outlets]]\nname = \"a\"\n\
              region = { box = { min_m = [0,0,0.01], max_m = [0.02,0.01,0.02] } }\n",
-            &["outlet \"a\"", "beyond the domain"],
+            &["scene.toml:57: outlets[0].region = {", "outlet \"a\"", "beyond the domain"],
         ),
         (
             "[[outlets]]\nname = \"a\"\n\
              region = { box = { min_m = [0,0,0.01], max_m = [0.01,0.01,0.021] } }\n",
-            &["feed \"hopper\"", "outlet \"a\"", "move one"],
+            &["scene.toml:31: feeds[0].region = {", "feed \"hopper\"", "outlet \"a\"", "move one"],
         ),
         ("[[bins]]\nname = \"a\"\n", &["outlets"]),
     ] {

@@ -1,10 +1,10 @@
 //! Failures of commands, with their exit codes.
 
 use crate::print;
-use amberfield_dem::DemError;
+use amberfield_dem::{DemError, SceneKey};
 use amberfield_field::FieldError;
 use amberfield_gas::GasError;
-use amberfield_scene::SceneError;
+use amberfield_scene::{Scene, SceneError};
 
 /// Exit code of bad input.
 const EXIT_INPUT: u8 = 2;
@@ -45,6 +45,22 @@ impl Failure {
     #[cfg(feature = "plots")]
     pub(crate) fn of_study(error: &amberfield_study::StudyError) -> Self {
         Self::bad_input(error.to_string())
+    }
+
+    /// Failure of a scene's simulation that cannot start; it names the place of the key that is to blame.
+    pub(crate) fn of_scene(scene: &Scene, error: &DemError) -> Self {
+        let key = match error {
+            DemError::Key { key, .. } => Some(*key),
+            DemError::Unstable { .. } => Some(SceneKey::of("time", &["step_s"])),
+            DemError::GasInterval { .. } => Some(SceneKey::of("gas", &["interval_s"])),
+            _ => None,
+        };
+        let place = key.and_then(|key| scene.cite(key.section, key.number, key.names));
+        let failure = Self::at_start(error);
+        match place {
+            Some(place) => Self { message: format!("{place}: {}", failure.message), ..failure },
+            None => failure,
+        }
     }
 
     /// Failure of a simulation that cannot start.

@@ -4,6 +4,30 @@ use amberfield_core::Vector3;
 use amberfield_field::FieldError;
 use amberfield_gas::GasError;
 
+/// Key of a scene, whose place a message can name.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct SceneKey {
+    /// Section.
+    pub section: &'static str,
+    /// Number of the item in a section that is a list, in the order of the set-up.
+    pub number: usize,
+    /// Name of the key; of several the one that is given.
+    pub names: &'static [&'static str],
+}
+
+impl SceneKey {
+    /// Key of a section that is no list.
+    #[must_use]
+    pub fn of(section: &'static str, names: &'static [&'static str]) -> Self {
+        Self { section, number: 0, names }
+    }
+
+    /// Error about the key.
+    pub(crate) fn refuse(self, problem: String) -> DemError {
+        DemError::Key { key: self, problem }
+    }
+}
+
 /// Reason why a scene cannot start or a run cannot go on.
 #[derive(Debug, Clone, PartialEq, thiserror::Error)]
 #[non_exhaustive]
@@ -11,6 +35,14 @@ pub enum DemError {
     /// A value of the set-up is impossible.
     #[error("{0}")]
     Setup(String),
+    /// A value of a key is impossible.
+    #[error("{problem}")]
+    Key {
+        /// Key.
+        key: SceneKey,
+        /// Fault, and what to do.
+        problem: String,
+    },
     /// Grains overlap each other or walls too much at the start.
     #[error(
         "{count} overlap(s) at the start are above a hundredth of a radius; the largest is \

@@ -20,7 +20,7 @@ mod wall_cover;
 pub use books::Tally;
 pub use charging::{ChargedSpot, Ledger};
 pub use contacts::walls::WallLoad;
-pub use error::DemError;
+pub use error::{DemError, SceneKey};
 pub use feeding::{Brought, FeedAccount};
 pub use field_stage::{Intervals, Limited};
 pub use setup::{FieldStageSetup, GasSetup, Setup};

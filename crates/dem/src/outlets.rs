@@ -1,6 +1,6 @@
 //! Outlets: places at which grains leave.
 
-use crate::error::DemError;
+use crate::error::{DemError, SceneKey};
 use crate::setup::Setup;
 use amberfield_core::{Domain, Outlet, OutletRegion, Side, Vector3, Volume};
 
@@ -46,16 +46,21 @@ impl Outlets {
     }
 }
 
-fn bad(outlet: &Outlet, problem: &str) -> DemError {
-    DemError::Setup(format!("outlet \"{}\": {problem}", outlet.name))
-}
-
 /// Checks the outlets of a set-up.
 pub(crate) fn check(setup: &Setup) -> Result<(), DemError> {
     let domain = &setup.domain;
     for (number, outlet) in setup.outlets.iter().enumerate() {
+        let bad = |key: &'static [&'static str], problem: String| {
+            let key = SceneKey { section: "outlets", number, names: key };
+            Err(key.refuse(format!("outlet \"{}\": {problem}", outlet.name)))
+        };
         match &outlet.region {
-            OutletRegion::Volume(volume) => check_volume(outlet, volume, domain)?,
+            OutletRegion::Volume(volume) => {
+                if let Some(overrun) = domain.overrun(&volume.bounds()) {
+                    let problem = format!("its region {overrun}; shrink the region or enlarge the domain");
+                    return bad(&["region"], problem);
+                }
+            }
             OutletRegion::Face(axis, side) => {
                 let name = axis.face_name(*side);
                 if domain.is_periodic(*axis) {
@@ -63,22 +68,15 @@ pub(crate) fn check(setup: &Setup) -> Result<(), DemError> {
                         "no grain leaves through its face {name}, since {axis} is periodic; name another \
                          face or give a region"
                     );
-                    return Err(bad(outlet, &problem));
+                    return bad(&["face"], problem);
                 }
                 let is_same = |other: &&Outlet| other.region == outlet.region;
                 if let Some(other) = setup.outlets[..number].iter().find(is_same) {
                     let problem = format!("outlet \"{}\" has the face {name} too; leave one out", other.name);
-                    return Err(bad(outlet, &problem));
+                    return bad(&["face"], problem);
                 }
             }
         }
     }
     Ok(())
-}
-
-/// Refuses a volume that is not in the box.
-fn check_volume(outlet: &Outlet, volume: &Volume, domain: &Domain) -> Result<(), DemError> {
-    domain.overrun(&volume.bounds()).map_or(Ok(()), |overrun| {
-        Err(bad(outlet, &format!("its region {overrun}; shrink the region or enlarge the domain")))
-    })
 }

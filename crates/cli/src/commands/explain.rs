@@ -139,10 +139,9 @@ fn print_settings(field: &ElectricFieldSettings) {
 /// Very many grains are not placed for it.
 fn explain_run(scene: &mut Scene, solver: SolverConnections) -> Result<(), Failure> {
     let setup = setup_of(scene, None, solver)?;
-    let at_start = |error| Failure::at_start(&error);
     if setup.particles.len() > MANY
         && scene.filled.is_none()
-        && let Some(outlook) = Outlook::of(&setup).map_err(at_start)?
+        && let Some(outlook) = Outlook::of(&setup).map_err(|error| Failure::of_scene(scene, &error))?
     {
         print_outlook(scene, &outlook, None);
         line(format_args!("more than {MANY} grains: overlaps are looked for when the run starts"));
@@ -174,7 +173,7 @@ fn print_outlook(scene: &Scene, outlook: &Outlook, field: Option<&ElectricField>
     if let Some(text) = plan_text::duration(outlook.grains, steps) {
         line(format_args!("warning: {text}"));
     }
-    if outlook.grains > 0 {
+    if outlook.grains > 0 || !scene.feeds.is_empty() {
         line(format_args!("{}", plan_text::restitution(scene, outlook)));
     }
     line(format_args!("limits on the time step now:"));

@@ -14,5 +14,5 @@ pub(crate) fn begin(scene: &Scene, setup: Setup) -> Result<Simulation, Failure> 
             Simulation::filled(setup, Earlier { state, rules: rules.clone(), is_same: *is_same })
         }
     };
-    simulation.map_err(|error| Failure::at_start(&error))
+    simulation.map_err(|error| Failure::of_scene(scene, &error))
 }

@@ -102,7 +102,8 @@ pub fn simulate(request: &RunRequest, observer: &mut dyn Observer, log: &Log) ->
     let (simulation, earlier) = match saved {
         Some(Saved { state, history, wall_s, stage_s, health, .. }) => {
             let earlier = EarlierPart { history, clock: Clock { wall_s, stages: stage_s }, health };
-            let resumed = Simulation::resume(setup, state).map_err(|error| Failure::at_start(&error))?;
+            let resumed = Simulation::resume(setup, state);
+            let resumed = resumed.map_err(|error| Failure::of_scene(&scene, &error))?;
             (resumed, Some(earlier))
         }
         None => (begin(&scene, setup)?, None),

@@ -8,7 +8,7 @@
 use super::FieldStage;
 use super::forecast::FieldEnergy;
 use super::members::Extras;
-use crate::error::DemError;
+use crate::error::{DemError, SceneKey};
 use crate::motion::grains::Grains;
 use amberfield_core::{CouplingInterval, Domain, Particles, Vector3};
 
@@ -75,7 +75,7 @@ impl FieldStage {
     pub(crate) fn check_step(&self, domain: &Domain, step_s: f64) -> Result<(), DemError> {
         let longest = self.longest_step_s(domain);
         if step_s > longest {
-            return Err(DemError::Setup(format!(
+            return Err(SceneKey::of("time", &["step_s"]).refuse(format!(
                 "a step of {step_s:e} s is too long for the frequency of a potential or of the external \
                  field, whose period has to have 20 steps at least; make time.step_s at most {longest:e} s"
             )));
@@ -84,7 +84,7 @@ impl FieldStage {
             && self.source.field.longest_forecast_s(0.0).is_finite()
             && f64::from(steps) * step_s > longest
         {
-            return Err(DemError::Setup(format!(
+            return Err(SceneKey::of("electric_field", &["coupling_interval"]).refuse(format!(
                 "electric_field.coupling_interval = {steps} is too long for the frequency of a potential, \
                  whose period has to have 20 evaluations at least; give at most {} steps, or \"auto\"",
                 ((longest / step_s) as u64).max(1)

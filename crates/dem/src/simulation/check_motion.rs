@@ -1,14 +1,14 @@
 //! Checks of the motion of walls in a set-up.
 
-use crate::error::DemError;
 use amberfield_core::{Axis, Domain, MotionKind, Vector3, Wall, WallCharging, WallMotion};
 
 /// Largest difference of a direction's length from 1.
 const UNIT: f64 = 1e-9;
 
-/// Refuses motions that cannot be followed in a box; `trades` says whether contacts move charge.
-pub(super) fn check(wall: &Wall, domain: &Domain, trades: bool) -> Result<(), DemError> {
-    let bad = |text: &str| Err(DemError::Setup(format!("wall '{}': {text}", wall.name)));
+/// Refuses motions that cannot be followed in a box; `trades` says whether contacts move charge. `Err` says
+/// what is wrong.
+pub(super) fn check(wall: &Wall, domain: &Domain, trades: bool) -> Result<(), String> {
+    let bad = |text: &str| Err(format!("wall '{}': {text}", wall.name));
     let carries = trades && wall.charging == WallCharging::Insulating;
     if carries && wall.motion.iter().any(|motion| !keeps_periods(motion, domain)) {
         return bad(

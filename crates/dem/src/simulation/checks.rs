@@ -7,7 +7,7 @@ use crate::contacts::Contacts;
 use crate::contacts::cells::INDEX_MASK;
 use crate::contacts::material_pairs::PairTable;
 use crate::contacts::neighbours::Listed;
-use crate::error::DemError;
+use crate::error::{DemError, SceneKey};
 use crate::feeding;
 use crate::motion::grains::Grains;
 use crate::outlets;
@@ -37,11 +37,12 @@ pub(crate) fn check(setup: &Setup) -> Result<(), DemError> {
         check_pair(pair, setup)?;
     }
     let transfers = setup.field.as_ref().is_some_and(|field| field.transfer.is_some());
-    for wall in &setup.walls {
+    for (number, wall) in setup.walls.iter().enumerate() {
         if wall.material.0 as usize >= setup.materials.len() {
             return Err(bad(format!("wall '{}' has unknown material {}", wall.name, wall.material.0)));
         }
-        check_motion::check(wall, &setup.domain, transfers)?;
+        check_motion::check(wall, &setup.domain, transfers)
+            .map_err(|problem| SceneKey { section: "walls", number, names: &["motion"] }.refuse(problem))?;
     }
     let time = &setup.time;
     if let Step::Seconds(step) = time.step
@@ -253,7 +254,7 @@ pub(crate) fn check_periods(setup: &Setup, skin: f64) -> Result<(), DemError> {
         let length = setup.domain.extent()[axis.index()];
         let needed = 2.0 * (2.0 * largest + skin);
         if setup.domain.is_periodic(axis) && length <= needed {
-            return Err(bad(format!(
+            return Err(SceneKey::of("domain", &["max_m"]).refuse(format!(
                 "the periodic axis {axis} is {length:e} m long; it must exceed {needed:e} m \
                  (two largest diameters and two skins), else a grain meets itself; \
                  enlarge the domain or reduce skin_m"

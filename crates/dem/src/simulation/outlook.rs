@@ -29,7 +29,7 @@ pub struct Outlook {
     pub skin_m: f64,
     /// Limits on the time step.
     pub guards: Vec<Guard>,
-    /// Largest speed of a grain [m/s].
+    /// Largest speed of a grain, here or yet to come [m/s].
     pub fastest_m_s: f64,
     limits: Limits,
 }
@@ -116,8 +116,14 @@ impl Simulation {
             step_s: self.step_s(),
             skin_m: self.skin_m(),
             guards: self.guards(),
-            fastest_m_s: self.fastest().map_or(0.0, |(_, speed)| speed),
+            fastest_m_s: self.fastest().map_or(0.0, |(_, speed)| speed).max(self.fastest_to_come()),
             limits: self.limits.clone(),
         }
+    }
+
+    /// Largest speed with which grains have yet to come [m/s].
+    fn fastest_to_come(&self) -> f64 {
+        let grains = self.feeding.iter().flat_map(Feeding::still_to_come);
+        grains.map(|grain| self.particles.velocity[grain].norm()).fold(0.0, f64::max)
     }
 }

@@ -13,7 +13,7 @@ use crate::contacts::material_pairs::{Features, PairTable};
 use crate::contacts::neighbours::Neighbours;
 use crate::contacts::walls::{ContactWalls, Sticking};
 use crate::contacts::{Contacts, Depths};
-use crate::error::DemError;
+use crate::error::{DemError, SceneKey};
 use crate::feeding::{self, Feeding};
 use crate::field_stage::FieldStage;
 use crate::gas_stage::GasStage;
@@ -218,9 +218,8 @@ impl Simulation {
             Step::Auto => self.auto_step(),
         };
         if !self.progress.step_s.is_finite() {
-            return Err(DemError::Setup(
-                "step_s = \"auto\" needs at least one grain that moves; give a number".to_owned(),
-            ));
+            let problem = "step_s = \"auto\" needs at least one grain that moves; give a number";
+            return Err(SceneKey::of("time", &["step_s"]).refuse(problem.to_owned()));
         }
         if self.field.is_some() {
             self.evaluate_field()?;

@@ -228,6 +228,14 @@ fn feeds_that_can_never_do_what_they_shall_are_refused() {
     refused(small(2.0 * HALF), -1.0, STEP, "beyond the domain");
     refused(small(2.0 * RADIUS), -1.0, 0.1 * STEP, "rate_kg_s");
     refused(FeedRegion::Face(face(HALF)), 0.0, STEP, "velocity_m_s is zero");
+    let along = |velocity: Vector3<f64>| {
+        let bad = Feed { velocity, ..feed("bad", FeedRegion::Face(face(0.6 * HALF))) };
+        Simulation::new(scene(feeds(vec![bad], 5, STEP, |_, _| {}), work(0.0))).map(|_| ())
+    };
+    // 5° and 7° off the face.
+    let error = along(Vector3::new(1.0, 0.0, -0.0875)).unwrap_err();
+    assert!(error.to_string().contains("along its face, 5.0° off it"), "{error}");
+    assert!(along(Vector3::new(1.0, 0.0, -0.1228)).is_ok());
     refused(FeedRegion::Face(face(0.8 * RADIUS)), -1.0, STEP, "does not fit");
 }
 

@@ -1,5 +1,6 @@
 //! Description of a scene: its validated content.
 
+use super::key_places::KeyPlaces;
 use super::physics::Physics;
 use amberfield_core::{
     Cohesion, ContactRules, Domain, Feeds, FieldSettings, Gas, Material, MaterialPair, Outlet, Particles,
@@ -66,6 +67,7 @@ pub struct Scene {
     pub warnings: Vec<String>,
     pub(super) resolved: String,
     pub(super) physics: Physics,
+    pub(super) places: KeyPlaces,
 }
 
 /// Run from whose checkpoint a scene has its grains.
@@ -97,6 +99,15 @@ impl Scene {
     #[must_use]
     pub fn physics(&self) -> &Physics {
         &self.physics
+    }
+
+    /// Place and value of a key, as a message begins with them: `scene.toml:31: feeds[0].region = { … }`.
+    ///
+    /// The key is the first of `names` that is there. `number` counts the items of a section that is a list,
+    /// in the order of this scene. `None` where the text has no such section.
+    #[must_use]
+    pub fn cite(&self, section: &str, number: usize, names: &[&str]) -> Option<String> {
+        self.places.cite(section, number, names)
     }
 }
 

@@ -10,6 +10,7 @@ mod filled;
 mod fixed;
 mod gas;
 mod input;
+mod key_places;
 mod others;
 mod outlets;
 mod pairs;

@@ -6,6 +6,7 @@ use super::electric_field::read_electric_field;
 use super::feeds::read_feeds;
 use super::gas::read_gas;
 use super::input::SceneInput;
+use super::key_places::KeyPlaces;
 use super::others::{read_charge_transfer, read_contacts, read_output, read_solver};
 use super::outlets::read_outlets;
 use super::pairs::read_pairs;
@@ -100,11 +101,12 @@ pub(super) fn parse(
 ) -> Result<Scene, SceneError> {
     let mut entries = parse_document(origin, text.strip_prefix('\u{feff}').unwrap_or(text))?;
     apply_overrides(&mut entries, overrides)?;
-    let document = SceneTable::document(&entries, origin.line(0), SCENE)?;
     drop_empty_lists(&mut entries, SCENE);
+    let document = SceneTable::document(&entries, origin.line(0), SCENE)?;
     let mut source = SceneSource::new(folder, mesh);
     let mut scene = read_sections(&document, &mut source, purpose)?;
     scene.physics = Physics::new(&entries, &source);
+    scene.places = KeyPlaces::new(&entries);
     if let Some(filled) = &mut scene.filled {
         filled.is_same = scene.physics.goes_on_from(&filled.physics, filled.print);
         // A folder stands for its newest checkpoint, which may be another one later.
@@ -121,9 +123,9 @@ fn read_sections(
     source: &mut SceneSource,
     purpose: Purpose,
 ) -> Result<Scene, SceneError> {
+    check_lists(document)?;
     let mut problems = Problems::default();
     let motion = purpose == Purpose::Run || (purpose == Purpose::Explain && document.has("time"));
-    check_lists(document)?;
     let sections = problems.keep(check_sections(document, motion, purpose));
     let domain = problems.keep(read_domain(document, source));
     let list = problems.keep(read_materials(document));
@@ -184,6 +186,7 @@ fn read_sections(
         warnings: [walls.warnings, section.warnings].concat(),
         resolved: String::new(),
         physics: Physics::default(),
+        places: KeyPlaces::default(),
     };
     check_together(document, &mut scene, has_charge)?;
     Ok(scene)
