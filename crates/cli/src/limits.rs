@@ -1,12 +1,11 @@
 //! Limits of the model that a scene runs into, as `docs/equations.md` lists them.
 
-use amberfield_core::{Boundary, WallCharging};
+use amberfield_core::{Boundary, Step, WallCharging};
 use amberfield_scene::Scene;
 
 /// Lines about the limits of the model that bear on a scene; none without charge transfer.
 pub(crate) fn lines(scene: &Scene) -> Vec<String> {
-    let charges = |field: &amberfield_scene::ElectricFieldSettings| field.enable_collision_charge_transfer;
-    if scene.time.is_none() || !scene.electric_field.as_ref().is_some_and(charges) {
+    if scene.time.is_none() || !trades(scene) {
         return Vec::new();
     }
     let mut found = vec![
@@ -35,7 +34,24 @@ pub(crate) fn lines(scene: &Scene) -> Vec<String> {
                 .to_owned(),
         );
     }
+    found.extend(of_step(scene));
     found
+}
+
+/// Line about charges that an automatic step does not know; `None` where it knows all.
+pub(crate) fn of_step(scene: &Scene) -> Option<String> {
+    let is_automatic = scene.time.as_ref().is_some_and(|time| time.step == Step::Auto);
+    (is_automatic && trades(scene)).then(|| {
+        "step_s = \"auto\" fits charges at the start and those that feeds bring; how large contacts make \
+         them is not known, and a guard ends the run where they need a shorter step: give time.step_s as a \
+         number then"
+            .to_owned()
+    })
+}
+
+/// Whether contacts move charge.
+fn trades(scene: &Scene) -> bool {
+    scene.electric_field.as_ref().is_some_and(|field| field.enable_collision_charge_transfer)
 }
 
 /// Whether no two materials differ in their work function.

@@ -98,7 +98,8 @@ pub enum DemError {
     /// The step is beyond a stability guard.
     #[error(
         "time step {step_s:e} s is beyond the {guard} limit of {limit_s:e} s at t = {time_s:e} s; \
-         make step_s smaller (\"auto\" fits it to the start of a run), or set allow_unstable = true"
+         give time.step_s as a smaller number (\"auto\" fits it to {}), or set time.allow_unstable = true",
+        known_to_auto(guard)
     )]
     Unstable {
         /// Name of the guard.
@@ -171,4 +172,18 @@ pub enum DemError {
     /// A checkpoint does not belong to the scene.
     #[error("the checkpoint does not fit the scene: {0}; resume with the scene that wrote it")]
     State(String),
+}
+
+/// Things that an automatic step fits to, as the message of a guard says it.
+fn known_to_auto(guard: &str) -> &'static str {
+    match guard {
+        "plasma" => {
+            "the start of a run and to what feeds bring, not to charges that contacts make or that motion \
+             brings together), or make electric_field.coupling_interval shorter (\"auto\" is the shortest"
+        }
+        "electric pair" | "wall image" => {
+            "the start of a run and to what feeds bring, not to charges that contacts make"
+        }
+        _ => "the start of a run",
+    }
 }

@@ -14,7 +14,7 @@ use super::solver_folder::SolverFolder;
 use super::summary::Ending;
 use crate::failure::Failure;
 use crate::logging::Log;
-use crate::plan_text;
+use crate::{limits, plan_text};
 use amberfield_core::Tuning;
 use amberfield_dem::{FeedAccount, Simulation};
 use amberfield_scene::{
@@ -203,6 +203,9 @@ fn announce(scene: &Scene, simulation: &Simulation) {
     let end_s = scene.time.as_ref().map_or(0.0, |time| time.end_s);
     if let Some(text) = plan_text::duration(simulation.len(), (end_s / simulation.step_s()).ceil()) {
         tracing::warn!("{text}");
+    }
+    if let Some(text) = limits::of_step(scene) {
+        tracing::info!("{text}");
     }
     if let Some(field) = simulation.field() {
         match (field.error_estimated(), field.error_measured()) {

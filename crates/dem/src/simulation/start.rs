@@ -238,10 +238,13 @@ impl Simulation {
         self.watch_guards()
     }
 
-    /// Length of an automatic step [s], within the limits of the grains and of what changes with time.
+    /// Length of an automatic step [s], within the limits of the grains, of what changes with time, and of
+    /// what the charges that feeds bring may ever set.
     fn auto_step(&self) -> f64 {
-        let shows = self.field.as_ref().map_or(f64::INFINITY, |field| field.longest_step_s(&self.domain));
-        self.limits.auto_step(&self.progress).min(shows)
+        let now = self.limits.auto_step(&self.progress);
+        let Some(field) = &self.field else { return now };
+        let comes = self.feeding.as_ref().map(|_| field.least_plasma_limit(&self.particles));
+        now.min(field.longest_step_s(&self.domain)).min(comes.unwrap_or(f64::INFINITY))
     }
 
     /// Tells a gas that flows how long a step is.

@@ -74,7 +74,7 @@ fn with_threads<T: Send>(threads: usize, run: impl FnOnce() -> T + Send) -> T {
 }
 
 /// Charges and charge transfer for a scene, all grains members.
-fn charged(mut scene: Setup, transfer: Option<ChargeTransfer>) -> Setup {
+pub(crate) fn charged(mut scene: Setup, transfer: Option<ChargeTransfer>) -> Setup {
     let members = vec![true; scene.particles.len() + scene.feeds.grains.len()];
     let settings = FieldSettings { method: Method::Direct, ..FieldSettings::default() };
     scene.domain =

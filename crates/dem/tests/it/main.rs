@@ -3,6 +3,7 @@
 #[path = "../common/mod.rs"]
 mod common;
 
+mod automatic_step;
 mod beds;
 mod boxes;
 mod charge_of_moving_walls;
