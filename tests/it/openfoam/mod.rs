@@ -13,6 +13,7 @@ mod gas_meshes;
 mod gas_packed;
 mod gas_runs;
 mod meshes;
+mod misfits;
 mod parts;
 mod patches;
 mod sharing;

@@ -8,7 +8,7 @@ use crate::failure::Failure;
 use crate::interrupt;
 use amberfield_core::{Axis, Domain, Method};
 use amberfield_coupling::{
-    Announced, CaseContents, CouplingError, PatientSolver, RemoteSolver, SolverSettings, Workplace,
+    Announced, CaseContents, CouplingError, PatientSolver, RemoteSolver, SolverSettings, Workplace, has_field,
 };
 use amberfield_field::far::{Connect, FarField};
 use amberfield_gas::ConnectFlow;
@@ -79,6 +79,7 @@ pub(crate) fn connect_solver(scene: &mut Scene, folder: &SolverFolder) -> Result
     };
     if let Some(field) = &scene.electric_field {
         refuse(field, solver)?;
+        refuse_without_potential(scene, solver)?;
     }
     if flows {
         refuse_with_gas(solver)?;
@@ -170,6 +171,23 @@ fn refuse(field: &ElectricFieldSettings, solver: &OpenFoamSettings) -> Result<()
         ));
     }
     Ok(())
+}
+
+/// Refuses a case without the potential that the field's solver begins with. Who starts the solver elsewhere
+/// may have the case elsewhere, too.
+fn refuse_without_potential(scene: &Scene, solver: &OpenFoamSettings) -> Result<(), Failure> {
+    const POTENTIAL: &str = "phiE";
+    let case = &solver.openfoam_case;
+    if !solver.start || has_field(case, POTENTIAL).map_err(of_coupling)? {
+        return Ok(());
+    }
+    let place =
+        scene.cite("solver", 0, &["openfoam_case"]).map_or_else(String::new, |place| format!("{place}: "));
+    Err(Failure::bad_input(format!(
+        "{place}the case has no potential 0/{POTENTIAL}, a volScalarField, at or before the time from which \
+         it starts, and the scene has an electric field; add it, with the conditions of the field at each \
+         patch"
+    )))
 }
 
 /// Refuses settings that do not work with a solver that computes the flow of a gas.

@@ -65,3 +65,15 @@ pub(super) fn times_up_to_start(case: &Path) -> Result<Vec<TimeFolder>, Coupling
     };
     Err(unusable(case, problem))
 }
+
+/// Whether a case has a field of a name at the time from which its solver starts, or before.
+///
+/// # Errors
+/// A case that has no such time.
+pub fn has_field(case: &Path, name: &str) -> Result<bool, CouplingError> {
+    let times = times_up_to_start(case)?;
+    let folders = times.iter().map(|time| time.name.as_str()).chain(["constant"]);
+    let is_in =
+        |folder: &str| ["", ".gz"].iter().any(|end| case.join(folder).join(format!("{name}{end}")).is_file());
+    Ok(folders.into_iter().any(is_in))
+}
