@@ -98,7 +98,7 @@ pub enum DemError {
     /// The step is beyond a stability guard.
     #[error(
         "time step {step_s:e} s is beyond the {guard} limit of {limit_s:e} s at t = {time_s:e} s; \
-         give time.step_s as a smaller number (\"auto\" fits it to {}), or set time.allow_unstable = true",
+         make time.step_s smaller, as a number (\"auto\" fits it to {}), or set time.allow_unstable = true",
         known_to_auto(guard)
     )]
     Unstable {
