@@ -82,6 +82,10 @@ void answerAll(const Foam::argList& args, Foam::fieldSide& demProcess)
             case AmberfieldQuestion_Restore:
                 gas.restore();
                 break;
+
+            case AmberfieldQuestion_Potentials:
+                // Answered while it waits
+                break;
         }
     }
     functions.end();

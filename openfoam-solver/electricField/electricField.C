@@ -43,7 +43,8 @@ Foam::electricField::electricField(const fvMesh& mesh, fieldSide& demProcess, co
 :
     mesh_(mesh),
     phiE_(phiE(mesh, demProcess), mesh),
-    description_(phiE_, demProcess, withGas),
+    potentials_(phiE_, demProcess),
+    description_(phiE_, demProcess, withGas, potentials_.patches()),
     parts_(mesh, true),
     floating_(floating(parts_, parts_.nRegions(), phiE_)),
     references_(references(parts_, floating_)),

@@ -4,6 +4,7 @@
 \*---------------------------------------------------------------------------*/
 
 #include "fieldSide.H"
+#include "changingPotentials.H"
 #include "PstreamReduceOps.H"
 #include "error.H"
 #include "foamVersion.H"
@@ -77,6 +78,7 @@ Foam::fieldSide::fieldSide(const string& run)
 :
     field_(nullptr),
     request_(),
+    potentials_(nullptr),
     cause_("OpenFOAM ended the program")
 {
     {
@@ -230,8 +232,13 @@ void Foam::fieldSide::check(const AmberfieldStatus status)
 }
 
 
-void Foam::fieldSide::sendMesh(const meshDescription& mesh)
+void Foam::fieldSide::sendMesh
+(
+    const meshDescription& mesh,
+    const changingPotentials* potentials
+)
 {
+    potentials_ = potentials;
     noTraps quiet;
     const AmberfieldMesh view(mesh.view());
     check(amberfield_field_send_mesh(field_, &view));
@@ -240,10 +247,35 @@ void Foam::fieldSide::sendMesh(const meshDescription& mesh)
 
 bool Foam::fieldSide::wait()
 {
-    noTraps quiet;
-    const AmberfieldStatus status = amberfield_field_wait(field_, &request_);
-    check(status);
+    AmberfieldStatus status = AmberfieldStatus_Ok;
+    do
+    {
+        noTraps quiet;
+        status = amberfield_field_wait(field_, &request_);
+        check(status);
+    }
+    while (status == AmberfieldStatus_Ok && replyPotentials());
     return status == AmberfieldStatus_Ok;
+}
+
+
+bool Foam::fieldSide::replyPotentials()
+{
+    if (request_.question != AmberfieldQuestion_Potentials)
+    {
+        return false;
+    }
+    scalarField times(label(request_.times));
+    {
+        noTraps quiet;
+        check(amberfield_field_times(field_, times.data(), uint64_t(times.size())));
+    }
+    const scalarField values(potentials_ ? potentials_->at(times) : scalarField());
+    {
+        noTraps quiet;
+        check(amberfield_field_reply_potentials(field_, values.cdata(), uint64_t(values.size())));
+    }
+    return true;
 }
 
 

@@ -20,31 +20,14 @@
 namespace
 {
 
+//- Condition whose potential is a number or a function of time
+const char* const uniform = "uniformFixedValue";
+
 //- Whether a patch prescribes the potential
 bool isConductor(const Foam::fvPatchScalarField& V)
 {
     return V.type() == Foam::fixedValueFvPatchScalarField::typeName
-        || V.type() == "uniformFixedValue";
-}
-
-//- Whether what a patch prescribes is a function of time, as its entry says
-bool varies(const Foam::fvPatchScalarField& V)
-{
-    if (V.type() != "uniformFixedValue")
-    {
-        return false;
-    }
-    Foam::OStringStream written;
-    V.write(written);
-    Foam::IStringStream text(written.str());
-    const Foam::dictionary entries(text);
-    if (entries.isDict("uniformValue"))
-    {
-        return entries.subDict("uniformValue").get<Foam::word>("type") != "constant";
-    }
-    Foam::ITstream& value = entries.lookup("uniformValue");
-    const Foam::token first(value);
-    return !first.isNumber() && !(first.isWord() && first.wordToken() == "constant");
+        || V.type() == uniform;
 }
 
 //- Whether a patch prescribes the slope
@@ -60,6 +43,13 @@ bool isInsulator(const Foam::fvPatchScalarField& V)
 //- Prescribed potentials or slopes of a patch
 Foam::scalarField prescribed(const Foam::fvPatchScalarField& V)
 {
+    if (V.type() == uniform)
+    {
+        // Its entry value is what somebody wrote last
+        Foam::tmp<Foam::fvPatchScalarField> now(V.clone());
+        now.ref().updateCoeffs();
+        return Foam::scalarField(now());
+    }
     if (isConductor(V))
     {
         return V;
@@ -114,7 +104,8 @@ std::string whyNot(const Foam::fvPatchScalarField& V)
             " room for grains; make it thicker, and the patch and its condition symmetryPlane";
     }
     return "patch " + name + " of field " + V.internalField().name() + " has the condition "
-        + V.type() + "; give it fixedValue, fixedGradient, zeroGradient, symmetry or cyclic";
+        + V.type() + "; give it fixedValue, uniformFixedValue, fixedGradient,"
+        " zeroGradient, symmetry or cyclic";
 }
 
 } // End anonymous namespace
@@ -160,12 +151,14 @@ Foam::meshDescription::meshDescription
 (
     const volScalarField& V,
     fieldSide& demProcess,
-    const bool withCorners
+    const bool withCorners,
+    const labelList& changing
 )
 :
     view_(),
     firstCorner_(1, 0),
     patchLines_(describe(V.mesh().boundaryMesh())),
+    changing_(changing.begin(), changing.end()),
     centres_(V.mesh().C().primitiveField()),
     volumes_(V.mesh().V())
 {
@@ -213,17 +206,10 @@ Foam::meshDescription::meshDescription
             }
             demProcess.refuse(whyNot(pV));
         }
-        if (varies(pV))
-        {
-            demProcess.refuse
-            (
-                "patch " + patch.name() + " of field " + V.name() + " has the condition " + pV.type()
-              + " with a value that changes in time; only a constant one is possible: give it"
-              + " fixedValue"
-            );
-        }
         patches_.append(patchi);
-        const scalarField values(prescribed(pV));
+        // Who solves tells potentials that change when they are asked for
+        const bool isFixed = !changing.found(patchi);
+        const scalarField values(isFixed ? prescribed(pV) : scalarField(pV.size(), Zero));
         const vectorField nf(patch.nf());
         forAll(patch, i)
         {
@@ -328,6 +314,8 @@ Foam::meshDescription::meshDescription
     view_.first_corner = firstCorner_.data();
     view_.corner_points = reinterpret_cast<const double*>(corners_.cdata());
     view_.patches = patchLines_.c_str();
+    view_.changing_patches = changing_.data();
+    view_.changing_count = uint64_t(changing_.size());
     if (withCorners)
     {
         describeCorners(mesh);

@@ -26,6 +26,8 @@ typedef enum AmberfieldQuestion {
   AmberfieldQuestion_State = 2,
   // A state of the flow to take in: call state, then reply_state with no number.
   AmberfieldQuestion_Restore = 3,
+  // The potentials of patches that change, at some times: call times, then reply_potentials.
+  AmberfieldQuestion_Potentials = 4,
 } AmberfieldQuestion;
 
 // Condition on a face of the box.
@@ -133,6 +135,11 @@ typedef struct AmberfieldMesh {
   const double *corner_points;
   // Patches of the mesh: lines of a name, a blank and a type; the same for all ranks.
   const char *patches;
+  // Patches whose potential changes with time, by their lines among the patches; the same for all ranks.
+  // The conditions of their faces say 0 V.
+  const uint64_t *changing_patches;
+  // Number of these patches.
+  uint64_t changing_count;
   // Corners of this rank's faces, each once; NULL unless a gas flows between grains.
   const double *points;
   // Number of these points, or 0.
@@ -198,6 +205,8 @@ typedef struct AmberfieldRequest {
   enum AmberfieldQuestion question;
   // Number of the solve.
   uint64_t solve;
+  // Number of times of the question for potentials that change; 0 for other questions.
+  uint64_t times;
   // The question for the far field; all 0 unless that is what is asked.
   struct AmberfieldFarQuestion far;
   // The question for the flow; all 0 unless that is what is asked.
@@ -407,6 +416,22 @@ enum AmberfieldStatus amberfield_field_reply_state(struct AmberfieldField *field
 // # Safety
 // `field` comes from amberfield_field_open and is not closed; `state` has room for `count` numbers.
 enum AmberfieldStatus amberfield_field_state(struct AmberfieldField *field, double *state, uint64_t count);
+
+// Copies the times [s] at which the potentials of the patches that change are asked for: as many as the
+// request says.
+//
+// # Safety
+// `field` comes from amberfield_field_open and is not closed; `times` has room for `count` numbers.
+enum AmberfieldStatus amberfield_field_times(struct AmberfieldField *field, double *times, uint64_t count);
+
+// Answers the question for the potentials [V] of the patches that change with `count` numbers: patch by
+// patch in the order in which the mesh names them, all times of each. One that is not known is no number.
+//
+// # Safety
+// `field` comes from amberfield_field_open and is not closed; `potentials` has `count` numbers.
+enum AmberfieldStatus amberfield_field_reply_potentials(struct AmberfieldField *field,
+                                                        const double *potentials,
+                                                        uint64_t count);
 
 // Opens a field. The result is never NULL; amberfield_host_error is empty when it worked.
 //

@@ -51,6 +51,11 @@ pub struct AmberfieldMesh {
     pub corner_points: *const f64,
     /// Patches of the mesh: lines of a name, a blank and a type; the same for all ranks.
     pub patches: *const c_char,
+    /// Patches whose potential changes with time, by their lines among the patches; the same for all ranks.
+    /// The conditions of their faces say 0 V.
+    pub changing_patches: *const u64,
+    /// Number of these patches.
+    pub changing_count: u64,
     /// Corners of this rank's faces, each once; NULL unless a gas flows between grains.
     pub points: *const f64,
     /// Number of these points, or 0.
@@ -92,6 +97,8 @@ pub enum AmberfieldQuestion {
     State = 2,
     /// A state of the flow to take in: call state, then reply_state with no number.
     Restore = 3,
+    /// The potentials of patches that change, at some times: call times, then reply_potentials.
+    Potentials = 4,
 }
 
 /// Question of the DEM process, with the scalars that belong to it.
@@ -102,6 +109,8 @@ pub struct AmberfieldRequest {
     pub question: AmberfieldQuestion,
     /// Number of the solve.
     pub solve: u64,
+    /// Number of times of the question for potentials that change; 0 for other questions.
+    pub times: u64,
     /// The question for the far field; all 0 unless that is what is asked.
     pub far: FarQuestion,
     /// The question for the flow; all 0 unless that is what is asked.
@@ -128,13 +137,14 @@ const NO_FLOW_QUESTION: FlowQuestion = FlowQuestion {
 };
 
 impl AmberfieldRequest {
-    fn of(question: Question, solve: u64) -> Self {
-        let only = |question| Self { question, solve, far: NO_FAR_QUESTION, flow: NO_FLOW_QUESTION };
+    fn of(question: Question, solve: u64, times: u64) -> Self {
+        let only = |question| Self { question, solve, times, far: NO_FAR_QUESTION, flow: NO_FLOW_QUESTION };
         match question {
             Question::Far(far) => Self { far, ..only(AmberfieldQuestion::Field) },
             Question::Flow(flow) => Self { flow, ..only(AmberfieldQuestion::Flow) },
             Question::State => only(AmberfieldQuestion::State),
             Question::Restore => only(AmberfieldQuestion::Restore),
+            Question::Potentials => only(AmberfieldQuestion::Potentials),
         }
     }
 }
@@ -204,6 +214,7 @@ pub unsafe extern "C" fn amberfield_field_send_mesh(
             first_corner: slice(mesh.first_corner, boundary + 1),
             corners: slice(mesh.corner_points.cast(), mesh.corners as usize),
             patches: CStr::from_ptr(mesh.patches).to_bytes(),
+            changing: slice(mesh.changing_patches, mesh.changing_count as usize),
             points: slice(mesh.points.cast(), mesh.point_count as usize),
             first_face_corner,
             face_corners: slice(mesh.face_corners, face_corners),
@@ -230,7 +241,8 @@ pub unsafe extern "C" fn amberfield_field_wait(
             Ok(match side.wait()? {
                 None => AmberfieldStatus::Over,
                 Some(question) => {
-                    *request = AmberfieldRequest::of(question, side.solve());
+                    let times = if question == Question::Potentials { side.times()?.len() } else { 0 };
+                    *request = AmberfieldRequest::of(question, side.solve(), times as u64);
                     AmberfieldStatus::Ok
                 }
             })

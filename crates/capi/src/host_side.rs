@@ -176,6 +176,7 @@ pub unsafe extern "C" fn amberfield_host_field(
             *position = scene.domain.wrap(*position);
         }
         let wanted = Wanted { potential: !potential.is_null(), ..Wanted::default() };
+        field.set_time(time);
         field.evaluate_at(time, positions, charges, wanted, values).map_err(|error| error.to_string())?;
         // SAFETY: the caller's promise.
         let out = unsafe { slice_mut::<[f64; 3]>(e.cast(), count) };

@@ -4,6 +4,7 @@
 //! `include/amberfield.h` is made of this crate by `cargo xtask header`; a test fails when it is stale.
 
 mod field_flow;
+mod field_potentials;
 mod field_side;
 mod foreign;
 mod host_side;
@@ -13,6 +14,7 @@ pub use field_flow::{
     AmberfieldFlow, amberfield_field_grains, amberfield_field_reply_flow, amberfield_field_reply_state,
     amberfield_field_state,
 };
+pub use field_potentials::{amberfield_field_reply_potentials, amberfield_field_times};
 pub use field_side::{
     AmberfieldFar, AmberfieldField, AmberfieldMesh, AmberfieldQuestion, AmberfieldRequest,
     amberfield_field_boundary, amberfield_field_close, amberfield_field_density, amberfield_field_error,

@@ -12,10 +12,11 @@ use std::path::{Path, PathBuf};
 /// The variable that makes this test write the header instead: `cargo xtask header` sets it.
 const WRITE: &str = "AMBERFIELD_WRITE_HEADER";
 /// Sources of the header, the shared structures of other crates among them.
-const SOURCES: [&str; 9] = [
+const SOURCES: [&str; 10] = [
     "src/status.rs",
     "src/field_side.rs",
     "src/field_flow.rs",
+    "src/field_potentials.rs",
     "src/host_side.rs",
     "../core/src/far_question.rs",
     "../wire/src/payloads/boundary_face.rs",

@@ -185,7 +185,9 @@ impl ElectricField {
     /// Lists the field stages that are built and those that are left out, with reasons.
     #[must_use]
     pub fn plan(&self) -> Plan {
+        let over_mesh = self.method.far_solver().is_some_and(FarSolver::changes);
         let potentials = match (self.faces.changing_uniform(), self.faces.changing_otherwise()) {
+            _ if over_mesh => plan::Potentials::OfPatches,
             (Some(_), _) => plan::Potentials::Uniform,
             (None, Some(_)) => plan::Potentials::Varied,
             (None, None) => plan::Potentials::Stay,

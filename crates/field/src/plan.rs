@@ -12,6 +12,8 @@ pub(crate) enum Potentials {
     Uniform,
     /// Potentials that change, and make a field that differs from place to place.
     Varied,
+    /// Potentials of a field solver's patches that change.
+    OfPatches,
 }
 
 /// Stages of a scene's field and what it leaves out; over a solver's mesh of so many cells, if there is one.
@@ -97,6 +99,11 @@ fn plan_given(plan: &mut Plan, settings: &FieldSettings, potentials: Potentials)
             "potentials",
             "potentials of faces change with time, and their field is not uniform: at least 20 evaluations \
              in a period, or along a line of a table",
+        ),
+        Potentials::OfPatches => plan.build(
+            "potentials",
+            "potentials of the case's patches change with time: the field solver tells them, and evaluations \
+             follow where a straight line does not",
         ),
     }
 }

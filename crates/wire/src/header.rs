@@ -5,7 +5,7 @@ use iceoryx2::prelude::ZeroCopySend;
 use std::mem::{align_of, offset_of, size_of};
 
 /// Raised with every change of a message.
-pub const PROTOCOL_VERSION: u32 = 8;
+pub const PROTOCOL_VERSION: u32 = 9;
 /// Largest number of sections of a message.
 pub(crate) const MOST_SECTIONS: usize = 20;
 
@@ -44,12 +44,20 @@ pub enum MessageKind {
     Restore = 9,
     /// Field to DEM: this was the last message, because the case or the scene is wrong; a text says how.
     Refusal = 10,
+    /// DEM to field: the question for potentials that change, at some times.
+    Times = 11,
+    /// Field to DEM: the potentials at these times.
+    Potentials = 12,
 }
 
 impl MessageKind {
     fn of(number: u32) -> Result<Self, WireError> {
-        use MessageKind::{Charges, Checkpoint, End, Fields, Flow, Grains, Mesh, Refusal, Restore, State};
-        [Mesh, Charges, Fields, Checkpoint, State, End, Grains, Flow, Restore, Refusal]
+        use MessageKind::{Charges, Checkpoint, End, Fields, Flow, Grains};
+        use MessageKind::{Mesh, Potentials, Refusal, Restore, State, Times};
+        let questions = [Charges, Checkpoint, Grains, Restore, Times];
+        let answers = [Mesh, Fields, State, Flow, Potentials];
+        [&questions[..], &answers, &[End, Refusal]]
+            .concat()
             .into_iter()
             .find(|kind| *kind as u32 == number)
             .ok_or(WireError::Kind(number))

@@ -87,4 +87,11 @@ pub enum Section {
     FirstFaceCorner = 38,
     /// Corners of the faces in order around each, either way, as places among the points (`u32`).
     FaceCorners = 39,
+    /// Patches whose potential changes with time, by their places among all (`u64`); the same for all ranks.
+    ChangingPatches = 40,
+    /// Times at which the potentials of these patches are asked for [s].
+    Times = 41,
+    /// Potentials of these patches at the times [V]: patch by patch, all times of each; no number where it is
+    /// not known.
+    PatchPotentials = 42,
 }

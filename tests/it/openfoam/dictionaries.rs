@@ -53,10 +53,10 @@ fn a_mistake_in_a_dictionary_is_bad_input_that_names_file_and_entry() {
         ),
         (
             |bench| {
-                let ramp = "type uniformFixedValue; uniformValue table ((0 0) (1 5)); value";
-                change(bench, "foam/0/phiE", "type fixedValue; value", ramp);
+                let mapped = "type uniformFixedValue; uniformValue { type mappedFile; } value";
+                change(bench, "foam/0/phiE", "type fixedValue; value", mapped);
             },
-            &["patch x0 of field phiE", "uniformFixedValue", "changes in time"],
+            &["patch x0 of field phiE", "uniformFixedValue", "mappedFile"],
         ),
         (
             |bench| change(bench, "foam/system/fvSchemes", "Gauss linear corrected", "none"),

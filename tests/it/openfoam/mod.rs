@@ -16,6 +16,7 @@ mod meshes;
 mod misfits;
 mod parts;
 mod patches;
+mod potentials;
 mod sharing;
 mod stated_error;
 mod surroundings;

@@ -10,8 +10,8 @@ const ON_FACE: f64 = 1e-6;
 /// Difference of two potentials that are one, over their size.
 const SAME: f64 = 1e-9;
 
-/// Refuses potentials that change with time, which only the internal grid knows, and warns of others that the
-/// case does not have there.
+/// Refuses potentials that change with time, which count on the internal grid alone, and warns of others that
+/// the case does not have there.
 ///
 /// # Errors
 /// Potentials of faces that change, unless the internal grid goes on with them where the solver is lost.
@@ -22,8 +22,8 @@ pub(super) fn compare(domain: &Domain, mesh: &FarMesh, loss: SolverLoss) -> Resu
     if let Some(face) = domain.courses().first() {
         return Err(Failure::bad_input(format!(
             "domain.boundary.{} has a potential that changes with time, which the field over OpenFOAM does \
-             not follow: there the potentials of 0/phiE count, which are constant; leave [solver] out, or \
-             take a constant there and here",
+             not follow: there the potentials of 0/phiE count; give its patch uniformFixedValue with a \
+             function of time there and leave this one out, or leave [solver] out",
             face.axis.face_name(face.side)
         )));
     }
@@ -41,6 +41,7 @@ fn difference(domain: &Domain, mesh: &FarMesh, axis: Axis, side: Side) -> Option
     let on_face =
         |face: &&BoundaryFace| (face.centre[k] - plane).abs() < far && face.normal[k].abs() > 1.0 - ON_FACE;
     let theirs = mesh.boundary().iter().filter(on_face).find_map(|face| match face.condition {
+        _ if mesh.changing().contains(&face.patch) => Some("one that changes with time".to_owned()),
         Condition::Potential(volts) if (volts - ours).abs() <= SAME * (volts.abs() + ours.abs()) => None,
         Condition::Potential(volts) => Some(format!("{volts} V")),
         Condition::Slope(_) => Some("no potential".to_owned()),

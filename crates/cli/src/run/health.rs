@@ -41,13 +41,14 @@ pub(crate) struct Allowed {
 }
 
 impl Allowed {
-    /// Facts that a scene permits.
-    pub(crate) fn new(scene: &Scene) -> Self {
+    /// Facts that a scene and its simulation permit.
+    pub(crate) fn new(scene: &Scene, simulation: &Simulation) -> Self {
         let gravity = scene.time.as_ref().map_or_else(Vector3::zeros, |time| time.gravity_m_s2);
         let field = scene.electric_field.as_ref().map(|field| &field.field);
         let external = field.map_or_else(Vector3::zeros, |field| field.external_field_v_m);
         let domain = scene.domain.as_ref();
-        let changing = field.is_some_and(|field| field.external_course.is_some())
+        let changing = simulation.field_changes()
+            || field.is_some_and(|field| field.external_course.is_some())
             || domain.is_some_and(|domain| !domain.courses().is_empty());
         let round = Axis::ALL.into_iter().any(|axis| {
             let pull = gravity[axis.index()].abs() + external[axis.index()].abs();

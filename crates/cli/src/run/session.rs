@@ -73,7 +73,7 @@ impl<'a> Session<'a> {
     ) -> Result<Self, Failure> {
         let schedule = schedule(scene, &simulation, None)?;
         let energies = forecast_energies(&mut simulation)?;
-        let health = Health::new(&simulation, &energies, Allowed::new(scene));
+        let health = Health::new(&simulation, &energies, Allowed::new(scene, &simulation));
         let record = Record::create(folder, scene, &simulation)?;
         let earlier = Clock { wall_s: 0.0, stages: Vec::new() };
         let (at_resume, saved) = (None, None);

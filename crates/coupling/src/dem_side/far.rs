@@ -19,7 +19,7 @@ pub struct RemoteSolver {
     mesh: Arc<FarMesh>,
     /// Corners of its faces, where a gas flows.
     shapes: Arc<CellShapes>,
-    shared: Arc<Mutex<Shared>>,
+    pub(super) shared: Arc<Mutex<Shared>>,
     /// Cells of the charges that were asked about last, where each is spread over its cell.
     cells: Vec<u64>,
 }
@@ -183,6 +183,10 @@ impl FarField for RemoteSolver {
 
     fn solve(&mut self, request: &FarRequest<'_>, values: &mut FarValues) -> Result<(), FieldError> {
         Ok(self.ask_for(request, values)?)
+    }
+
+    fn potentials(&mut self, times_s: &[f64], values: &mut Vec<f64>) -> Result<(), FieldError> {
+        Ok(self.ask_for_potentials(times_s, values)?)
     }
 
     fn ask(&mut self, request: &FarRequest<'_>) -> Result<(), FieldError> {

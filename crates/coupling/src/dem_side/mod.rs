@@ -6,6 +6,7 @@ mod far;
 mod flow;
 mod launch;
 mod patient;
+mod potentials;
 mod remote;
 mod settings;
 mod shared;

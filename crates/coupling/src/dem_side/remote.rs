@@ -51,7 +51,8 @@ impl Remote {
         layout: impl FnOnce(Layout) -> Layout,
         write: impl FnOnce(&Layout, &mut [MaybeUninit<Block64>]) -> Result<(), WireError>,
     ) -> Result<(), CouplingError> {
-        self.solve += 1;
+        // Potentials are asked for beside a solve, and are there at once.
+        self.solve += u64::from(kind != MessageKind::Times);
         let layout = layout(Layout::new(Header::new(kind, self.link.run(), self.solve)));
         let outcome =
             self.link.send(&layout, self.settings.ranks as usize, |payload| write(&layout, payload));

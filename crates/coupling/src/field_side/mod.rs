@@ -2,6 +2,7 @@
 
 mod density;
 mod flow;
+mod potentials;
 mod question;
 mod side;
 

@@ -14,6 +14,8 @@ pub enum Question {
     State,
     /// A state of the flow to take in.
     Restore,
+    /// Potentials that change, at some times.
+    Potentials,
 }
 
 impl Question {
@@ -35,6 +37,8 @@ impl Question {
             Ok(Self::State)
         } else if is(MessageKind::Restore) {
             Ok(Self::Restore)
+        } else if is(MessageKind::Times) {
+            Ok(Self::Potentials)
         } else {
             let Header { kind, solve, rank, ranks, .. } = *header;
             Err(WireError::Unexpected { kind, solve, rank, ranks })

@@ -18,6 +18,7 @@ pub struct MeshArrays {
     first_corner: Vec<u64>,
     corners: Vec<[f64; 3]>,
     patches: String,
+    changing: Vec<u64>,
 }
 
 impl MeshArrays {
@@ -50,6 +51,7 @@ impl MeshArrays {
             first_corner,
             corners,
             patches: mesh.patches().iter().map(|patch| format!("{} {}\n", patch.name, patch.kind)).collect(),
+            changing: mesh.changing().iter().map(|&patch| u64::from(patch)).collect(),
         }
     }
 
@@ -76,6 +78,7 @@ impl MeshArrays {
             first_corner: &self.first_corner,
             corners: &self.corners,
             patches: self.patches.as_bytes(),
+            changing: &self.changing,
             points: &[],
             first_face_corner: &[],
             face_corners: &[],

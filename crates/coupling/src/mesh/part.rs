@@ -36,6 +36,8 @@ pub struct MeshPart<'a> {
     pub corners: &'a [[f64; 3]],
     /// Patches of the mesh: lines of a name, a blank and a type; the same for all ranks.
     pub patches: &'a [u8],
+    /// Patches whose potential changes with time, by their places among all; the same for all ranks.
+    pub changing: &'a [u64],
     /// Corners of this rank's faces, each once [m]; empty unless a gas flows between grains, as are the next
     /// two.
     pub points: &'a [[f64; 3]],
@@ -60,6 +62,7 @@ impl MeshPart<'_> {
             .with::<u64>(Section::FirstCorner, self.first_corner.len())
             .with::<[f64; 3]>(Section::Corners, self.corners.len())
             .with::<u8>(Section::Patches, self.patches.len())
+            .with::<u64>(Section::ChangingPatches, self.changing.len())
             .with::<[f64; 3]>(Section::Points, self.points.len())
             .with::<u64>(Section::FirstFaceCorner, self.first_face_corner.len())
             .with::<u32>(Section::FaceCorners, self.face_corners.len())
@@ -83,6 +86,7 @@ impl MeshPart<'_> {
         layout.section_mut::<u64>(payload, Section::FirstCorner)?.copy_from_slice(self.first_corner);
         layout.section_mut::<[f64; 3]>(payload, Section::Corners)?.copy_from_slice(self.corners);
         layout.section_mut::<u8>(payload, Section::Patches)?.copy_from_slice(self.patches);
+        layout.section_mut::<u64>(payload, Section::ChangingPatches)?.copy_from_slice(self.changing);
         layout.section_mut::<[f64; 3]>(payload, Section::Points)?.copy_from_slice(self.points);
         let first = layout.section_mut::<u64>(payload, Section::FirstFaceCorner)?;
         first.copy_from_slice(self.first_face_corner);
@@ -111,6 +115,7 @@ impl MeshPart<'_> {
             first_corner: sections.exactly(Section::FirstCorner, boundary_faces.len() + 1)?,
             corners: sections.get(Section::Corners)?,
             patches: sections.get(Section::Patches)?,
+            changing: sections.get(Section::ChangingPatches)?,
             points: sections.get(Section::Points)?,
             first_face_corner: sections.get(Section::FirstFaceCorner)?,
             face_corners: sections.get(Section::FaceCorners)?,
@@ -141,6 +146,7 @@ pub fn assemble(parts: &[MeshPart<'_>]) -> Result<FarMesh, CouplingError> {
         first_corner: vec![0],
         corners: Vec::new(),
         patches: patches_of(&parts[0]),
+        changing: changing_of(&parts[0])?,
     };
     for part in parts {
         let first = whole.centres.len();
@@ -149,7 +155,7 @@ pub fn assemble(parts: &[MeshPart<'_>]) -> Result<FarMesh, CouplingError> {
         if announced != first as u64 {
             return Err(broken(format!("a rank's cells begin at {announced} instead of {first}")));
         }
-        if part.patches != parts[0].patches {
+        if part.patches != parts[0].patches || part.changing != parts[0].changing {
             return Err(broken("its ranks have different patches".to_owned()));
         }
         whole.centres.extend(part.centres.iter().map(|&centre| Vector3::from(centre)));
@@ -214,6 +220,11 @@ fn patches_of(part: &MeshPart<'_>) -> Vec<MeshPatch> {
         MeshPatch { name: name.to_owned(), kind: kind.to_owned() }
     };
     String::from_utf8_lossy(part.patches).lines().map(patch).collect()
+}
+
+/// Patches whose potential changes with time, by their places.
+fn changing_of(part: &MeshPart<'_>) -> Result<Vec<u32>, CouplingError> {
+    part.changing.iter().map(|&patch| index(i64::try_from(patch).unwrap_or(i64::MAX))).collect()
 }
 
 /// A boundary face as it travels, of a rank whose first cell has the number `first` among all.

@@ -4,7 +4,7 @@
 //! Seven-point finite volumes with walls at cell faces, as OpenFOAM's `Gauss linear` makes of such a mesh,
 //! and conjugate gradients.
 
-use amberfield_core::{Domain, SourceCloud, Vector3};
+use amberfield_core::{Domain, FaceCourse, PotentialCourse, SourceCloud, Vector3};
 use amberfield_field::FieldError;
 use amberfield_field::far::{
     Condition, FarField, FarMesh, FarMeshParts, FarRequest, FarValues, Neighbour, SmoothDensity,
@@ -20,6 +20,8 @@ const MOST_ITERATIONS: u64 = 10_000;
 pub struct BoxSolver {
     mesh: FarMesh,
     density: Option<(SourceCloud, SmoothDensity)>,
+    /// Potentials of the patches that change, in their order.
+    courses: Vec<PotentialCourse>,
 }
 
 impl BoxSolver {
@@ -36,7 +38,24 @@ impl BoxSolver {
     /// # Errors
     /// Parts that make no sense.
     pub fn over(parts: FarMeshParts) -> Result<Self, FieldError> {
-        Ok(Self { mesh: FarMesh::new(parts)?, density: None })
+        Ok(Self { mesh: FarMesh::new(parts)?, density: None, courses: Vec::new() })
+    }
+
+    /// `counts` equal cells in a domain without open faces, with the domain's potentials that change.
+    ///
+    /// # Errors
+    /// Open faces.
+    pub fn changing(domain: &Domain, counts: [usize; 3]) -> Result<Self, FieldError> {
+        let mut parts = FarMeshParts::of_box(domain, counts)?;
+        let patch = |face: &FaceCourse| 2 * face.axis.index() as u32 + face.side as u32;
+        parts.changing = domain.courses().iter().map(patch).collect();
+        for face in &mut parts.boundary {
+            if parts.changing.contains(&face.patch) {
+                face.condition = Condition::Potential(0.0);
+            }
+        }
+        let courses = domain.courses().iter().map(|face| face.course.clone()).collect();
+        Ok(Self { courses, ..Self::over(parts)? })
     }
 
     /// Charge of each cell [C].
@@ -118,6 +137,12 @@ impl BoxSolver {
 impl FarField for BoxSolver {
     fn mesh(&self) -> &FarMesh {
         &self.mesh
+    }
+
+    fn potentials(&mut self, times_s: &[f64], values: &mut Vec<f64>) -> Result<(), FieldError> {
+        values.clear();
+        values.extend(self.courses.iter().flat_map(|course| times_s.iter().map(|time_s| course.at(*time_s))));
+        Ok(())
     }
 
     fn solve(&mut self, request: &FarRequest<'_>, values: &mut FarValues) -> Result<(), FieldError> {

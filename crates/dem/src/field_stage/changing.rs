@@ -11,9 +11,12 @@ use super::members::Extras;
 use crate::error::{DemError, SceneKey};
 use crate::motion::grains::Grains;
 use amberfield_core::{CouplingInterval, Domain, Particles, Vector3};
+use amberfield_field::far::{FarSolver, Look};
 
 /// Longest time between two trades, over that in which what changes goes along a straight line.
 const TRADES: f64 = 0.2;
+/// Most steps of an interval that are looked at ahead, and that it may thus have.
+const MOST_LOOKS: u64 = 4096;
 
 impl FieldStage {
     /// Whether a potential or the external field changes with time.
@@ -58,17 +61,34 @@ impl FieldStage {
         self.settings.longest_step_s(domain.courses())
     }
 
+    /// Has the next evaluation look ahead at potentials that only a field solver knows, in steps of a length
+    /// [s].
+    pub(super) fn look_ahead(&mut self, step_s: f64) {
+        let (before, most) = (self.control.age, self.control.longest_next().min(MOST_LOOKS));
+        let automatic = self.is_automatic();
+        if let Some(solver) = self.source.field.far_solver_mut().filter(|_| automatic) {
+            solver.look_ahead(Look { before, step_s, most });
+        }
+    }
+
     /// Most steps of a length [s] between two evaluations that follow the potentials.
     pub(super) fn most_steps(&self, step_s: f64) -> u64 {
+        let followed = self.source.field.far_solver().and_then(FarSolver::followed);
         // A cast ends at the largest number.
-        (self.source.field.longest_forecast_s(self.source.time_s) / step_s) as u64
+        let most = (self.source.field.longest_forecast_s(self.source.time_s) / step_s) as u64;
+        followed.map_or(most, |followed| followed.min(most))
     }
 
     /// Most steps between two trades of charge that follow what changes: areas grow in a part of that time,
     /// and the field of its middle stands for theirs.
     pub(crate) fn most_steps_of_trades(&self) -> u64 {
         let longest_s = TRADES * self.source.field.longest_look_s(self.source.time_s);
-        (longest_s / self.step_s) as u64
+        let most = (longest_s / self.step_s) as u64;
+        if self.source.field.far_solver().is_some_and(FarSolver::changes) {
+            // An interval ends where a straight line does.
+            return most.min((TRADES * self.control.intervals.steps_now as f64) as u64);
+        }
+        most
     }
 
     /// Checks that a step [s], and an interval of steps that the scene fixes, show what changes.

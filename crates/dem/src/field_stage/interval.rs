@@ -165,9 +165,18 @@ impl IntervalControl {
             let curvature = drift / (length * (length + before));
             0.5 * ((length * length + 4.0 * aim / (EXTRAPOLATED * curvature)).sqrt() - length)
         };
-        // An interval that charges cut short says little about a longer one: it comes back to what it was.
-        let longest = (MOST_GROWTH * length).max(self.intervals.steps_now as f64);
-        wanted.clamp(LEAST_GROWTH * length, longest) as u64
+        wanted.clamp(LEAST_GROWTH * length, self.longest_after(steps)) as u64
+    }
+
+    /// Most steps of the interval that begins now.
+    pub(crate) fn longest_next(&self) -> u64 {
+        self.longest_after(self.age) as u64
+    }
+
+    /// Most steps of an interval after one of `steps`. One that charges cut short says little about a longer
+    /// one: it comes back to what it was.
+    fn longest_after(&self, steps: u64) -> f64 {
+        (MOST_GROWTH * steps as f64).max(self.intervals.steps_now as f64)
     }
 }
 

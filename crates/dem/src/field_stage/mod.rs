@@ -227,6 +227,7 @@ impl FieldStage {
     ) -> Result<(), DemError> {
         self.members.collect(&self.member, domain, grains, particles, extras);
         self.members.time_s = moment.time_s;
+        self.look_ahead(moment.step_s);
         self.source.evaluate(domain, &self.settings, &self.members, &mut self.values)?;
         extras.add_gained(&self.members.index, &mut self.values.e);
         let far = self.source.field.far_solver();

@@ -87,6 +87,12 @@ impl Simulation {
         state.particles(&self.particles, &self.domain)
     }
 
+    /// Whether a potential or the external field changes with time: they do work on the grains.
+    #[must_use]
+    pub fn field_changes(&self) -> bool {
+        self.field.as_ref().is_some_and(FieldStage::changes)
+    }
+
     /// Electric force on each grain in the last step [N], in the order of [`Self::particles`]; `None` without
     /// a field.
     #[must_use]

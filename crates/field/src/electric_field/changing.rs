@@ -2,6 +2,7 @@
 
 use super::ElectricField;
 use crate::error::FieldError;
+use crate::levels::far::FarSolver;
 use crate::values::FieldAt;
 use amberfield_core::{Domain, FieldSettings, Method};
 use nalgebra::Vector3;
@@ -12,6 +13,9 @@ impl ElectricField {
     pub fn set_time(&mut self, time_s: f64) {
         self.external.set_time(self.settings.external_course.as_ref(), time_s);
         self.faces.set_time(time_s);
+        if let Some(solver) = self.method.far_solver_mut() {
+            solver.set_time(time_s);
+        }
     }
 
     /// Whether any part of E changes with time though no charge moves.
@@ -20,6 +24,7 @@ impl ElectricField {
         self.settings.external_course.is_some()
             || self.faces.changing_uniform().is_some()
             || self.faces.changing_otherwise().is_some()
+            || self.method.far_solver().is_some_and(FarSolver::changes)
     }
 
     /// External field at the time that was set [V/m].

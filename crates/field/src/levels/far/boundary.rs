@@ -1,6 +1,6 @@
 //! Faces at the end of a mesh as polygons, and the patches that they belong to.
 
-use super::FarMeshParts;
+use super::{Condition, FarMeshParts};
 use crate::error::FieldError;
 use std::fmt::Display;
 
@@ -45,6 +45,28 @@ pub(super) fn check_boundary(parts: &FarMeshParts) -> Result<(), FieldError> {
             let patch = format!("{} of {patches}", parts.boundary[face].patch);
             bad("patch of boundary face", face, &patch)
         }
-        None => Ok(()),
+        None => check_changing(parts),
     }
+}
+
+/// Refuses potentials that change of patches that are not there, or that have none.
+fn check_changing(parts: &FarMeshParts) -> Result<(), FieldError> {
+    let bad = |patch: u32, what: &str| {
+        Err(FieldError::Settings(format!(
+            "the mesh's patch {patch}, whose potential changes, {what}; the mesh is broken"
+        )))
+    };
+    for &patch in &parts.changing {
+        if patch as usize >= parts.patches.len() {
+            return bad(patch, "is not there");
+        }
+        if parts
+            .boundary
+            .iter()
+            .any(|face| face.patch == patch && face.condition != Condition::Potential(0.0))
+        {
+            return bad(patch, "has faces without one");
+        }
+    }
+    Ok(())
 }

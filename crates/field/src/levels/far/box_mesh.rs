@@ -33,17 +33,7 @@ impl FarMeshParts {
                     let last = if side == 0 { at[a] == 0 } else { at[a] + 1 == counts[a] };
                     let mut next = at;
                     next[a] = (at[a] + if side == 0 { counts[a] - 1 } else { 1 }) % counts[a];
-                    let condition = match domain.faces()[a][side] {
-                        Boundary::Grounded => Condition::Potential(0.0),
-                        Boundary::Potential(volts) => Condition::Potential(volts),
-                        Boundary::Insulating { normal_field_v_m } => Condition::Slope(-normal_field_v_m),
-                        Boundary::Periodic => Condition::Slope(0.0),
-                        _ => {
-                            return Err(FieldError::Settings(
-                                "a mesh has no open faces; close the domain".into(),
-                            ));
-                        }
-                    };
+                    let condition = condition_of(domain.faces()[a][side])?;
                     let neighbour = if !last {
                         Neighbour::Cell { cell: index(next), shift: Vector3::zeros() }
                     } else if domain.is_periodic(axis) {
@@ -79,7 +69,19 @@ impl FarMeshParts {
         let volumes = vec![size.product(); centres.len()];
         let wall = |name: &str| MeshPatch { name: name.to_owned(), kind: "wall".to_owned() };
         let patches = PATCHES.map(wall).to_vec();
-        Ok(Self { domain, centres, volumes, first_face, faces, boundary, first_corner, corners, patches })
+        let changing = Vec::new();
+        Ok(Self {
+            domain,
+            centres,
+            volumes,
+            first_face,
+            faces,
+            boundary,
+            first_corner,
+            corners,
+            patches,
+            changing,
+        })
     }
 
     /// Puts a sheet without thickness into a box of equal cells: at every face between cells whose centre [m]
@@ -120,6 +122,17 @@ impl FarMeshParts {
             }
         }
         self
+    }
+}
+
+/// Condition of a face of a box.
+fn condition_of(face: Boundary) -> Result<Condition, FieldError> {
+    match face {
+        Boundary::Grounded => Ok(Condition::Potential(0.0)),
+        Boundary::Potential(volts) => Ok(Condition::Potential(volts)),
+        Boundary::Insulating { normal_field_v_m } => Ok(Condition::Slope(-normal_field_v_m)),
+        Boundary::Periodic => Ok(Condition::Slope(0.0)),
+        _ => Err(FieldError::Settings("a mesh has no open faces; close the domain".into())),
     }
 }
 

@@ -235,6 +235,7 @@ impl FarLevel {
                 Condition::Slope(slope) => slope + face.normal.dot(&short.e),
             }
         }));
+        self.solver.add_changing(&mut self.boundary)?;
         let question = FarQuestion {
             cloud: SourceCloud { radius_m: self.cloud.radius, shape: self.cloud.shape },
             permittivity_f_m: self.medium.permittivity.absolute(),
@@ -254,6 +255,7 @@ impl FarLevel {
             guess: &[],
         };
         self.solver.solve(&request)?;
+        self.solver.forecast_changing(&mut self.boundary);
         let mesh = self.solver.mesh();
         self.fits.fit(mesh, self.solver.potential(), &self.boundary);
         Ok(())

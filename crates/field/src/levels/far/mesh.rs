@@ -118,6 +118,9 @@ pub struct FarMeshParts {
     pub corners: Vec<Vector3<f64>>,
     /// Patches of the boundary; some may have no face.
     pub patches: Vec<MeshPatch>,
+    /// Patches whose potential changes with time, by their places: the solver knows it, and the conditions of
+    /// their faces say 0 V.
+    pub changing: Vec<u32>,
 }
 
 /// The cells of a far level.
@@ -193,6 +196,12 @@ impl FarMesh {
     #[must_use]
     pub fn patches(&self) -> &[MeshPatch] {
         &self.parts.patches
+    }
+
+    /// Patches whose potential changes with time, by their places; the conditions of their faces say 0 V.
+    #[must_use]
+    pub fn changing(&self) -> &[u32] {
+        &self.parts.changing
     }
 
     /// Place at which a boundary face's condition counts [m]: a slope at the face's centre; a potential at

@@ -12,6 +12,7 @@ mod level;
 mod local_fit;
 mod mesh;
 mod polygon;
+mod potentials;
 mod radii;
 mod reentrant;
 mod search;
@@ -24,6 +25,7 @@ pub(crate) use connected::check_net_charge;
 pub use density::SmoothDensity;
 pub(crate) use level::{FarLevel, Medium};
 pub use mesh::{BoundaryFace, CellFace, Condition, FarMesh, FarMeshParts, Neighbour};
+pub use potentials::Look;
 pub use radii::FarRadii;
 pub use solver::{FarSolver, FarState};
 
@@ -111,6 +113,16 @@ pub trait FarField: fmt::Debug + Send + Sync {
     /// # Errors
     /// A peer that is lost, a request that does not fit the mesh, an answer that makes no sense.
     fn solve(&mut self, request: &FarRequest<'_>, values: &mut FarValues) -> Result<(), FieldError>;
+
+    /// Gives the potentials [V] of the patches that change, at some times [s]: patch by patch in the order of
+    /// [`FarMesh::changing`], all times of each. One that is not known, because a table ends, is no number.
+    ///
+    /// # Errors
+    /// A peer that is lost.
+    fn potentials(&mut self, _times_s: &[f64], values: &mut Vec<f64>) -> Result<(), FieldError> {
+        values.clear();
+        Ok(())
+    }
 
     /// Asks without waiting for the answer, which [`Self::take`] gives.
     ///

@@ -5,6 +5,7 @@
 //! two answers. The far field is smooth in space and slow in time; what the forecast misses is measured
 //! when the answer comes.
 
+use super::potentials::{Look, Potentials};
 use super::{FarField, FarMesh, FarRequest, FarValues};
 use crate::error::FieldError;
 use amberfield_core::{FarQuestion, SourceCloud};
@@ -21,6 +22,8 @@ pub struct FarSolver {
     guess: Vec<f64>,
     /// `None`: every evaluation waits for its own answer.
     overlap: Option<Box<Overlap>>,
+    /// Potentials of patches that change; `None`: none does.
+    potentials: Option<Box<Potentials>>,
 }
 
 /// State of a far field: what a run needs to go on bit for bit.
@@ -130,7 +133,55 @@ impl OpenQuestion {
 impl FarSolver {
     pub(crate) fn new(solver: Box<dyn FarField>, overlap: bool) -> Self {
         let overlap = overlap.then(Box::default);
-        Self { solver, values: FarValues::default(), guess: Vec::new(), overlap }
+        let potentials = Potentials::new(solver.mesh());
+        Self { solver, values: FarValues::default(), guess: Vec::new(), overlap, potentials }
+    }
+
+    /// Whether potentials of patches change with time.
+    #[must_use]
+    pub fn changes(&self) -> bool {
+        self.potentials.is_some()
+    }
+
+    /// Takes the potentials of a time [s] from now on.
+    pub(crate) fn set_time(&mut self, time_s: f64) {
+        if let Some(potentials) = &mut self.potentials {
+            potentials.time_s = time_s;
+        }
+    }
+
+    /// Looks ahead at potentials that change when the next solve asks for them.
+    pub fn look_ahead(&mut self, look: Look) {
+        if let Some(potentials) = &mut self.potentials {
+            potentials.look_ahead(look);
+        }
+    }
+
+    /// Steps for which the potentials that change may be taken as going along a straight line, by the last
+    /// look; `None` where nothing changes, or nobody has looked.
+    #[must_use]
+    pub fn followed(&self) -> Option<u64> {
+        self.potentials.as_ref()?.followed()
+    }
+
+    /// Adds the potentials that change [V] to the values of their faces.
+    pub(crate) fn add_changing(&mut self, boundary: &mut [f64]) -> Result<(), FieldError> {
+        let Some(potentials) = &mut self.potentials else { return Ok(()) };
+        let answers = self.overlap.as_ref().map_or_else(Vec::new, |overlap| overlap.times());
+        potentials.ask(&mut *self.solver, &answers)?;
+        potentials.add(self.solver.mesh(), boundary);
+        Ok(())
+    }
+
+    /// Takes the potentials that change from the present to a forecast, whose cells know those of its answers
+    /// only.
+    pub(crate) fn forecast_changing(&self, boundary: &mut [f64]) {
+        if let (Some(potentials), Some(overlap)) = (&self.potentials, &self.overlap)
+            && overlap.pending.is_some()
+        {
+            let answers = overlap.times_of_answers();
+            potentials.add_forecast(self.solver.mesh(), &answers, boundary);
+        }
     }
 
     pub(crate) fn mesh(&self) -> &FarMesh {
@@ -250,6 +301,21 @@ impl FarSolver {
 }
 
 impl Overlap {
+    /// Times of the answers from which the next evaluation forecasts [s], the later first.
+    fn times(&self) -> Vec<f64> {
+        match &self.pending {
+            Some(asked) => vec![asked.time_s, self.latest_s],
+            None if self.begun => self.times_of_answers(),
+            None => Vec::new(),
+        }
+    }
+
+    /// Times of the answers that are known [s], the later first.
+    fn times_of_answers(&self) -> Vec<f64> {
+        let earlier = self.earlier.as_ref().map(|(time_s, _)| *time_s);
+        std::iter::once(self.latest_s).chain(earlier).collect()
+    }
+
     /// Forecasts the answer at a time [s] from the last one and the one before.
     fn foresee(&mut self, latest: &FarValues, time_s: f64) {
         self.forecast = Answer::of(latest);

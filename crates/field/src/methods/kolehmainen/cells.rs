@@ -113,6 +113,12 @@ impl ChargeCells for SolverCells {
         }
         mesh.check_inside(positions, cells)?;
         check_net_charge(mesh, permittivity, self.neutralising_background, charges, cells)?;
+        if self.solver.changes() {
+            let conditions = self.solver.mesh().boundary().iter().map(|face| face.condition.value());
+            self.boundary.clear();
+            self.boundary.extend(conditions);
+            self.solver.add_changing(&mut self.boundary)?;
+        }
         let question = FarQuestion {
             cloud: SourceCloud::nearest_cell(),
             permittivity_f_m: permittivity.absolute(),
