@@ -104,6 +104,23 @@ fn grains_in_dpmfoam_move_as_over_the_program_of_our_own() {
 }
 
 #[test]
+fn potentials_that_change_are_those_of_the_grains_time_inside_another_solver() {
+    let bench = bed();
+    let energy = |table: &CsvTable| table.numbers("electric_J");
+    let grounded = run(&bench, "grounded", &[]);
+    let lid =
+        "boundaryField { top { type uniformFixedValue; uniformValue table ((0 0) (1e-4 2e4) (3e-4 -1e4)); }";
+    bench.write("foam/0/phiE", POTENTIAL.replace("boundaryField {", lid));
+    let own = run(&bench, "own", &[]);
+    let apart = difference(&energy(&own), &energy(&grounded));
+    assert!(apart > 1e-3, "the lid is felt: {apart:e}");
+
+    let controls = bench.read("foam/system/controlDict") + FUNCTION;
+    bench.write("foam/system/controlDict", controls);
+    assert_eq!(run(&bench, "inside", &["--set", "solver.application=\"DPMFoam\""]), own);
+}
+
+#[test]
 fn a_function_object_without_a_run_says_what_to_set() {
     let bench = bed();
     let controls =

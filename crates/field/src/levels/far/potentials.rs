@@ -20,8 +20,11 @@ use amberfield_core::LEAST_PER_PERIOD;
 const MISSED: f64 = 0.02;
 /// Round-off of a potential, over its size.
 const ROUND_OFF: f64 = 1e-12;
-/// Evaluations one after another whose line does not hold for one step, from which on steps are too long.
-const UNSHOWN: u32 = 20;
+/// Difference over the range in a single step that a step does not show, as at the crest of a sine with fewer
+/// than 20 steps in a period.
+const UNSHOWN: f64 = 0.05;
+/// Evaluations, less those that are well, of which steps that do not show a potential are told.
+const MANY: u32 = 20;
 
 /// Way to look ahead at potentials that change.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -42,7 +45,7 @@ pub(super) struct Potentials {
     look: Option<Look>,
     /// Steps for which the lines may be followed, of the last look.
     followed: Option<u64>,
-    /// Evaluations of late whose lines did not hold for one step.
+    /// Evaluations of late in steps that do not show the potentials, less those in others.
     unshown: u32,
     /// Times that were asked for [s]: that of the field first.
     times: Vec<f64>,
@@ -109,10 +112,20 @@ impl Potentials {
 
     /// Takes what the last look has seen.
     fn see(&mut self, first: usize, look: Look) {
-        let of_patch = |values: &[f64]| followed(values[0], &values[first..], look);
-        let steps = self.values.chunks(self.times.len()).map(of_patch).min().unwrap_or(look.most);
-        self.unshown = if steps == 0 { self.unshown + 1 } else { 0 };
-        if self.unshown == UNSHOWN {
+        let of_patch = |values: &[f64]| {
+            let line = Line::new(values[0], &values[first..], look);
+            [MISSED, UNSHOWN].map(|share| line.steps_within(share))
+        };
+        let lines = self.values.chunks(self.times.len()).map(of_patch);
+        let [steps, shown] = lines.fold([look.most; 2], |[a, b], [c, d]| [a.min(c), b.min(d)]);
+        self.followed = Some(steps.max(1));
+        // Jumps are few; where each evaluation follows in the next step already, it is the steps.
+        if self.unshown > MANY {
+            return;
+        }
+        let unshown = look.before == 1 && shown == 0;
+        self.unshown = if unshown { self.unshown + 1 } else { self.unshown.saturating_sub(1) };
+        if self.unshown > MANY {
             tracing::warn!(
                 "steps of {:e} s do not show the potentials of the case that change with time, at \
                  t = {:e} s; make time.step_s shorter",
@@ -120,7 +133,6 @@ impl Potentials {
                 self.time_s
             );
         }
-        self.followed = Some(steps.max(1));
     }
 
     /// Adds the present potentials [V] to the values of the faces of their patches.
@@ -151,17 +163,38 @@ impl Potentials {
     }
 }
 
-/// Steps for which the line through a potential now and before stands for it, at most those of the look.
-/// `course` is the potential before, in the steps to come, and in these steps times [`LEAST_PER_PERIOD`] [V];
-/// what is not known there is no number.
-fn followed(now: f64, course: &[f64], look: Look) -> u64 {
-    let (before, ahead) = (course[0], &course[1..]);
-    let slope = if look.before > 0 { (now - before) / look.before as f64 } else { 0.0 };
-    let low = ahead.iter().fold(now, |low, value| low.min(*value));
-    let high = ahead.iter().fold(now, |high, value| high.max(*value));
-    let most = MISSED * (high - low) + ROUND_OFF * high.abs().max(low.abs());
-    let holds = |(step, value): (u64, &f64)| (value - now - slope * step as f64).abs() <= most;
-    (1..=look.most).zip(ahead).take_while(|step| holds(*step)).count() as u64
+/// Line through a potential now and before, and the potential to come.
+struct Line<'a> {
+    /// Potential now [V].
+    now: f64,
+    /// Change in a step [V].
+    slope: f64,
+    /// Potentials in the steps to come [V]; what is not known is no number.
+    ahead: &'a [f64],
+    /// Range of the potentials to come [V].
+    range: f64,
+    /// Error of potentials by round-off [V].
+    round_off: f64,
+}
+
+impl<'a> Line<'a> {
+    /// Line of a potential. `course` is that before, in the steps to come, and in these steps times
+    /// [`LEAST_PER_PERIOD`] [V].
+    fn new(now: f64, course: &'a [f64], look: Look) -> Self {
+        let (before, ahead) = (course[0], &course[1..]);
+        let slope = if look.before > 0 { (now - before) / look.before as f64 } else { 0.0 };
+        let low = ahead.iter().fold(now, |low, value| low.min(*value));
+        let high = ahead.iter().fold(now, |high, value| high.max(*value));
+        let round_off = ROUND_OFF * high.abs().max(low.abs());
+        Self { now, slope, ahead: &ahead[..look.most as usize], range: high - low, round_off }
+    }
+
+    /// Steps for which it misses less than a share of the range.
+    fn steps_within(&self, share: f64) -> u64 {
+        let most = share * self.range + self.round_off;
+        let holds = |(step, value): (u64, &f64)| (value - self.now - self.slope * step as f64).abs() <= most;
+        (1..).zip(self.ahead).take_while(|step| holds(*step)).count() as u64
+    }
 }
 
 #[cfg(test)]
@@ -181,7 +214,7 @@ mod tests {
             for stride in [1.0, LEAST_PER_PERIOD] {
                 course.extend((1..=look.most).map(|step| potential(time(stride, step))));
             }
-            steps = followed(potential(now as f64), &course, look).max(1);
+            steps = Line::new(potential(now as f64), &course, look).steps_within(MISSED).max(1);
             before = steps;
             at.push(now + steps);
         }
@@ -215,9 +248,9 @@ mod tests {
         assert!(at.len() < 120, "{at:?}");
         let look = Look { before: 1, step_s: 1.0, most: 4 };
         let course = [0.0, 2.0, 3.0, f64::NAN, f64::NAN, f64::NAN, f64::NAN, f64::NAN, f64::NAN];
-        assert_eq!(followed(1.0, &course, look), 2);
+        assert_eq!(Line::new(1.0, &course, look).steps_within(MISSED), 2);
         // The first interval holds what it has: nothing is before it.
         let course = [0.0, 0.0, 0.0, 0.0, 1.0, 1.0, 1.0, 1.0, 1.0];
-        assert_eq!(followed(0.0, &course, Look { before: 0, ..look }), 3);
+        assert_eq!(Line::new(0.0, &course, Look { before: 0, ..look }).steps_within(MISSED), 3);
     }
 }
