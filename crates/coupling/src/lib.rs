@@ -12,7 +12,7 @@ mod meeting;
 mod mesh;
 mod stand_in;
 
-pub use case::{CaseContents, Stop, Workplace, foam_command, has_field};
+pub use case::{CaseContents, Stop, Workplace, foam_command, lacks_field};
 pub use dem_side::{
     Announced, PatientSolver, RemoteFlow, RemoteSolver, SolverSettings, Surroundings, existing, program_name,
     solver_program,

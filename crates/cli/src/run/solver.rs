@@ -8,7 +8,8 @@ use crate::failure::Failure;
 use crate::interrupt;
 use amberfield_core::{Axis, Domain, Method};
 use amberfield_coupling::{
-    Announced, CaseContents, CouplingError, PatientSolver, RemoteSolver, SolverSettings, Workplace, has_field,
+    Announced, CaseContents, CouplingError, PatientSolver, RemoteSolver, SolverSettings, Workplace,
+    lacks_field,
 };
 use amberfield_field::far::{Connect, FarField};
 use amberfield_gas::ConnectFlow;
@@ -178,7 +179,7 @@ fn refuse(field: &ElectricFieldSettings, solver: &OpenFoamSettings) -> Result<()
 fn refuse_without_potential(scene: &Scene, solver: &OpenFoamSettings) -> Result<(), Failure> {
     const POTENTIAL: &str = "phiE";
     let case = &solver.openfoam_case;
-    if !solver.start || has_field(case, POTENTIAL).map_err(of_coupling)? {
+    if !(solver.start && lacks_field(case, POTENTIAL)) {
         return Ok(());
     }
     let place =

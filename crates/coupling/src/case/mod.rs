@@ -14,7 +14,7 @@ mod tools;
 mod workplace;
 
 pub use contents::CaseContents;
-pub use start_time::has_field;
+pub use start_time::lacks_field;
 pub use tools::{Stop, foam_command};
 pub(crate) use tools::{last_words, on_path};
 pub use workplace::Workplace;

@@ -66,14 +66,13 @@ pub(super) fn times_up_to_start(case: &Path) -> Result<Vec<TimeFolder>, Coupling
     Err(unusable(case, problem))
 }
 
-/// Whether a case has a field of a name at the time from which its solver starts, or before.
-///
-/// # Errors
-/// A case that has no such time.
-pub fn has_field(case: &Path, name: &str) -> Result<bool, CouplingError> {
-    let times = times_up_to_start(case)?;
+/// Whether a case is known to lack a field of a name at the time from which its solver starts, and before.
+/// A case whose start is not found, or not plain text, may have it: OpenFOAM's own programs say more of it.
+#[must_use]
+pub fn lacks_field(case: &Path, name: &str) -> bool {
+    let Ok(times) = times_up_to_start(case) else { return false };
     let folders = times.iter().map(|time| time.name.as_str()).chain(["constant"]);
     let is_in =
         |folder: &str| ["", ".gz"].iter().any(|end| case.join(folder).join(format!("{name}{end}")).is_file());
-    Ok(folders.into_iter().any(is_in))
+    !folders.into_iter().any(is_in)
 }

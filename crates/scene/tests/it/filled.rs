@@ -120,7 +120,7 @@ fn bad_origins_are_refused_with_advice() {
         (&["particles.from=cut.amber"], &["cut.amber", "cut short"]),
         (&["particles.from=damaged.amber"], &["damaged.amber", "take an earlier checkpoint"]),
         (&["particles.from=empty.amber"], &["empty.amber is empty"]),
-        (&["particles.from=format.amber"], &["has format 4, this version reads 6"]),
+        (&["particles.from=format.amber"], &["has format 4, this version reads "]),
         (&["particles.from=nowhere.amber"], &["there is no file nowhere.amber"]),
         (&["particles.from=runs"], &["runs has no checkpoints/*.amber; name a run folder"]),
         (&["particles.from=none.amber"], &["has no grains"]),
