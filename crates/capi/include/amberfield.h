@@ -295,7 +295,30 @@ typedef struct AmberfieldHostSettings {
   uint64_t ranks;
   // Time that an answer of the solver may take [s]; 0: 30.
   double timeout;
+  // Threads that the library uses; 0: one for each core that this process may use.
+  uint64_t threads;
 } AmberfieldHostSettings;
+
+// Contact whose area grows, of two grains or of a grain with a wall.
+typedef struct AmberfieldContact {
+  // Charges of the grains [C]; of a wall none is read.
+  double charge[2];
+  // Radii of the grains [m]; of a wall none is read.
+  double radius[2];
+  // Work functions [eV].
+  double work_function_ev[2];
+  // Cut-off distance of the transfer [m].
+  double cutoff;
+  // Relative permittivity of the medium.
+  double relative_permittivity;
+  // Field at the contact of everything but the two bodies, and at a wall but the grain's image, along the
+  // normal from the first to the second [V/m].
+  double normal_field;
+  // Growth of the contact's area [m^2].
+  double growth;
+  // Field at which the medium breaks down [V/m]; 0: it never does.
+  double breakdown;
+} AmberfieldContact;
 
 #ifdef __cplusplus
 extern "C" {
@@ -461,6 +484,22 @@ enum AmberfieldStatus amberfield_host_field(struct AmberfieldHost *host,
                                             double *e,
                                             double *potential);
 
+// Computes the energy of the charges [J], whose change with their places gives the forces qE: that of the
+// charges among themselves, their images among them, ½ Σ q V, and that of the charges in the field of the
+// faces' potentials and normal fields, Σ q V. With an OpenFOAM case the second is in the first, once instead
+// of twice a half. Particles are as in amberfield_host_field.
+//
+// # Safety
+// `host` comes from amberfield_host_open and is not closed; the arrays have `count` particles; both energies
+// may be written.
+enum AmberfieldStatus amberfield_host_energy(struct AmberfieldHost *host,
+                                             double time,
+                                             uint64_t count,
+                                             const double *positions,
+                                             const double *charges,
+                                             double *of_charges,
+                                             double *of_faces);
+
 // Chooses parameters anew at the next call, for particles that are no longer what they were.
 //
 // # Safety
@@ -472,6 +511,59 @@ void amberfield_host_retune(struct AmberfieldHost *host);
 // # Safety
 // `host` comes from amberfield_host_open and is not closed; the handle is gone afterwards.
 void amberfield_host_close(struct AmberfieldHost *host);
+
+// Returns the relative RMS error of E that was measured when parameters were chosen; 0 where the sum is
+// exact, and below 0 where none was measured, as with parameters from a restart file.
+//
+// # Safety
+// `host` comes from amberfield_host_open and is not closed.
+double amberfield_host_measured_error(const struct AmberfieldHost *host);
+
+// Returns the parameters in force as text, for amberfield_host_use_parameters of a later run; empty before
+// the first field. The text is valid until the next call.
+//
+// # Safety
+// `host` comes from amberfield_host_open and is not closed.
+const char *amberfield_host_parameters(struct AmberfieldHost *host);
+
+// Takes the parameters of an earlier run, instead of choosing some at the next call.
+//
+// # Safety
+// `host` comes from amberfield_host_open and is not closed; `parameters` is a C string.
+enum AmberfieldStatus amberfield_host_use_parameters(struct AmberfieldHost *host, const char *parameters);
+
+// Returns the charge [C] that moves from the first grain to the second.
+//
+// # Safety
+// `contact` may be read.
+double amberfield_charge_between_grains(const struct AmberfieldContact *contact);
+
+// Returns the charge [C] that moves from a grain, the first body, to a grounded wall.
+//
+// # Safety
+// `contact` may be read.
+double amberfield_charge_to_grounded_wall(const struct AmberfieldContact *contact);
+
+// Returns the area of a Hertz contact [m^2], for an effective radius and an overlap [m].
+double amberfield_contact_area(double effective_radius, double overlap);
+
+// Returns the factor of the area of two bodies whose moduli are softer in the computation than in truth:
+// Young's moduli [Pa] of both bodies as computed, the real ones, and Poisson's ratios.
+//
+// # Safety
+// Each array has two numbers.
+double amberfield_area_correction(const double *soft, const double *real, const double *poisson);
+
+// Returns the radius-weighted rate at which a contact of grains relaxes, 1/(4 pi) (1/r_i^2 + 1/r_j^2) times
+// the growth of its area: what share of a difference of charge moves, where it is small. At a grounded wall
+// the second radius is that of the first.
+//
+// # Safety
+// `contact` may be read.
+double amberfield_relaxation(const struct AmberfieldContact *contact);
+
+// Returns Coulomb's constant in the medium, 1/(4 pi epsilon) [m/F], for a relative permittivity.
+double amberfield_coulomb(double relative_permittivity);
 
 #ifdef __cplusplus
 }  // extern "C"

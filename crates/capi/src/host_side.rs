@@ -5,7 +5,8 @@ use crate::status::AmberfieldStatus;
 use amberfield_core::{Boundary, Domain, FieldSettings, Permittivity, Tuning, Vector3};
 use amberfield_coupling::{Announced, SolverSettings};
 use amberfield_field::far::FarField;
-use amberfield_field::{ElectricField, FieldValues, Wanted};
+use amberfield_field::{Choice, ElectricField, FieldValues, Wanted};
+use rayon::{ThreadPool, ThreadPoolBuilder};
 use std::ffi::{CStr, CString, c_char};
 use std::time::Duration;
 
@@ -62,6 +63,8 @@ pub struct AmberfieldHostSettings {
     pub ranks: u64,
     /// Time that an answer of the solver may take [s]; 0: 30.
     pub timeout: f64,
+    /// Threads that the library uses; 0: one for each core that this process may use.
+    pub threads: u64,
 }
 
 /// The field of a host program's particles.
@@ -72,34 +75,78 @@ pub struct AmberfieldHostSettings {
 /// it every so many steps and keep E in between.
 #[derive(Debug)]
 pub struct AmberfieldHost {
-    scene: Option<Scene>,
+    pub(crate) scene: Option<Scene>,
     /// Chosen for the first particles.
-    field: Option<ElectricField>,
+    pub(crate) field: Option<ElectricField>,
+    /// Threads of its own; `None`: those of the process.
+    threads: Option<ThreadPool>,
     positions: Vec<Vector3<f64>>,
     values: FieldValues,
-    error: CString,
+    /// Parameters in force, as text.
+    pub(crate) parameters: CString,
+    pub(crate) error: CString,
+}
+
+impl AmberfieldHost {
+    /// E and what else is wanted at particles, in `values`.
+    fn evaluate(
+        &mut self,
+        time: f64,
+        places: &[[f64; 3]],
+        charges: &[f64],
+        wanted: Wanted,
+    ) -> Result<(), String> {
+        let Self { scene, field, threads, positions, values, .. } = self;
+        let scene = scene.as_mut().ok_or(NOT_OPEN)?;
+        positions.clear();
+        positions.extend(places.iter().map(|&place| Vector3::from(place)));
+        let mut evaluate = || {
+            if field.is_none() {
+                *field = Some(scene.field(positions, charges)?);
+            }
+            let field = field.as_mut().ok_or(NOT_OPEN)?;
+            for position in positions.iter_mut() {
+                *position = scene.domain.wrap(*position);
+            }
+            field.set_time(time);
+            field.evaluate_at(time, positions, charges, wanted, values).map_err(|error| error.to_string())
+        };
+        match threads {
+            Some(threads) => threads.install(evaluate),
+            None => evaluate(),
+        }
+    }
 }
 
 #[derive(Debug)]
-struct Scene {
+pub(crate) struct Scene {
     domain: Domain,
     settings: FieldSettings,
     solver: Option<SolverSettings>,
+    /// Parameters that were chosen earlier.
+    pub(crate) choice: Option<Choice>,
 }
 
 impl Scene {
     /// Builds the field, with parameters for these particles.
     fn field(&mut self, positions: &[Vector3<f64>], charges: &[f64]) -> Result<ElectricField, String> {
         let text = |error: &dyn std::fmt::Display| error.to_string();
+        let choice = self.choice.take();
         let Some(solver) = &self.solver else {
-            return ElectricField::new(&self.domain, &self.settings, positions, charges)
-                .map_err(|error| text(&error));
+            let field = match choice {
+                Some(choice) => ElectricField::with_choice(&self.domain, &self.settings, &choice),
+                None => ElectricField::new(&self.domain, &self.settings, positions, charges),
+            };
+            return field.map_err(|error| text(&error));
         };
         let connected = Announced::new(solver.clone()).and_then(Announced::connect);
-        let connected = connected.map_err(|error| text(&error))?;
+        let connected = Box::new(connected.map_err(|error| text(&error))?);
         self.domain = connected.mesh().domain().clone();
-        ElectricField::over_mesh(Box::new(connected), &self.settings, positions, charges)
-            .map_err(|error| text(&error))
+        let field = match choice {
+            Some(choice) => ElectricField::over_mesh_with_choice(connected, &self.settings, &choice),
+            None => ElectricField::over_mesh(connected, &self.settings, positions, charges),
+        };
+        field.map_err(|error| text(&error))
     }
 }
 
@@ -114,8 +161,10 @@ pub unsafe extern "C" fn amberfield_host_open(
     let mut host = Box::new(AmberfieldHost {
         scene: None,
         field: None,
+        threads: None,
         positions: Vec::new(),
         values: FieldValues::default(),
+        parameters: CString::default(),
         error: CString::default(),
     });
     // SAFETY: the caller's promise.
@@ -123,9 +172,10 @@ pub unsafe extern "C" fn amberfield_host_open(
     let case = (!settings.openfoam_case.is_null())
         // SAFETY: the caller's promise.
         .then(|| unsafe { CStr::from_ptr(settings.openfoam_case) }.to_string_lossy().into_owned());
-    let AmberfieldHost { scene, error, .. } = &mut *host;
+    let AmberfieldHost { scene, threads, error, .. } = &mut *host;
     guarded(error, || {
         *scene = Some(read(settings, case)?);
+        *threads = pool(settings.threads)?;
         Ok(AmberfieldStatus::Ok)
     });
     Box::into_raw(host)
@@ -163,32 +213,65 @@ pub unsafe extern "C" fn amberfield_host_field(
     // SAFETY: the caller's promise; three doubles have the layout of an array of three.
     let (places, charges) = unsafe { (slice::<[f64; 3]>(positions.cast(), count), slice(charges, count)) };
     // SAFETY: the caller's promise.
-    let AmberfieldHost { scene, field, positions, values, error } = unsafe { &mut *host };
-    guarded(error, || {
-        let scene = scene.as_mut().ok_or("the field is not open")?;
-        positions.clear();
-        positions.extend(places.iter().map(|&place| Vector3::from(place)));
-        if field.is_none() {
-            *field = Some(scene.field(positions, charges)?);
-        }
-        let field = field.as_mut().ok_or("the field is not open")?;
-        for position in positions.iter_mut() {
-            *position = scene.domain.wrap(*position);
-        }
+    let host = unsafe { &mut *host };
+    let mut error = std::mem::take(&mut host.error);
+    let status = guarded(&mut error, || {
         let wanted = Wanted { potential: !potential.is_null(), ..Wanted::default() };
-        field.set_time(time);
-        field.evaluate_at(time, positions, charges, wanted, values).map_err(|error| error.to_string())?;
+        host.evaluate(time, places, charges, wanted)?;
         // SAFETY: the caller's promise.
         let out = unsafe { slice_mut::<[f64; 3]>(e.cast(), count) };
-        for (out, e) in out.iter_mut().zip(&values.e) {
+        for (out, e) in out.iter_mut().zip(&host.values.e) {
             *out = (*e).into();
         }
         if !potential.is_null() {
             // SAFETY: the caller's promise.
-            unsafe { slice_mut(potential, count) }.copy_from_slice(&values.potential);
+            unsafe { slice_mut(potential, count) }.copy_from_slice(&host.values.potential);
         }
         Ok(AmberfieldStatus::Ok)
-    })
+    });
+    host.error = error;
+    status
+}
+
+/// Computes the energy of the charges [J], whose change with their places gives the forces qE: that of the
+/// charges among themselves, their images among them, ½ Σ q V, and that of the charges in the field of the
+/// faces' potentials and normal fields, Σ q V. With an OpenFOAM case the second is in the first, once instead
+/// of twice a half. Particles are as in amberfield_host_field.
+///
+/// # Safety
+/// `host` comes from amberfield_host_open and is not closed; the arrays have `count` particles; both energies
+/// may be written.
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn amberfield_host_energy(
+    host: *mut AmberfieldHost,
+    time: f64,
+    count: u64,
+    positions: *const f64,
+    charges: *const f64,
+    of_charges: *mut f64,
+    of_faces: *mut f64,
+) -> AmberfieldStatus {
+    let count = count as usize;
+    // SAFETY: the caller's promise; three doubles have the layout of an array of three.
+    let (places, charges) = unsafe { (slice::<[f64; 3]>(positions.cast(), count), slice(charges, count)) };
+    // SAFETY: the caller's promise.
+    let host = unsafe { &mut *host };
+    let mut error = std::mem::take(&mut host.error);
+    let status = guarded(&mut error, || {
+        host.evaluate(time, places, charges, Wanted { potential: true, ..Wanted::default() })?;
+        let field = host.field.as_ref().ok_or(NOT_OPEN)?;
+        let (mut among, mut given) = (0.0, 0.0);
+        for ((place, charge), potential) in host.positions.iter().zip(charges).zip(&host.values.potential) {
+            let of_faces = field.given(place).faces.potential;
+            among += 0.5 * charge * (potential - of_faces);
+            given += charge * of_faces;
+        }
+        // SAFETY: the caller's promise.
+        unsafe { (*of_charges, *of_faces) = (among, given) };
+        Ok(AmberfieldStatus::Ok)
+    });
+    host.error = error;
+    status
 }
 
 /// Chooses parameters anew at the next call, for particles that are no longer what they were.
@@ -198,9 +281,12 @@ pub unsafe extern "C" fn amberfield_host_field(
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn amberfield_host_retune(host: *mut AmberfieldHost) {
     // SAFETY: the caller's promise.
-    let AmberfieldHost { field, error, .. } = unsafe { &mut *host };
+    let AmberfieldHost { scene, field, error, .. } = unsafe { &mut *host };
     guarded(error, || {
         *field = None;
+        if let Some(scene) = scene {
+            scene.choice = None;
+        }
         Ok(AmberfieldStatus::Ok)
     });
 }
@@ -268,8 +354,24 @@ fn read(settings: &AmberfieldHostSettings, case: Option<String>) -> Result<Scene
             far_tolerance: FAR_TOLERANCE * tolerance,
             ..SolverSettings::awaited(case)
         }),
+        choice: None,
     })
 }
+
+/// Threads of a handle's own; `None` for 0.
+fn pool(threads: u64) -> Result<Option<ThreadPool>, String> {
+    if threads == 0 {
+        return Ok(None);
+    }
+    let count = usize::try_from(threads).ok().filter(|&count| count <= MOST_THREADS);
+    let count = count.ok_or_else(|| format!("threads is {threads}; give at most {MOST_THREADS}"))?;
+    ThreadPoolBuilder::new().num_threads(count).build().map(Some).map_err(|error| error.to_string())
+}
+
+/// Message of a handle that was not opened well.
+pub(crate) const NOT_OPEN: &str = "the field is not open";
+/// Most threads of a handle.
+const MOST_THREADS: usize = 4096;
 
 /// Folder in which the field solver works, in that of the host.
 const WORKPLACE: &str = "amberfield-solver";

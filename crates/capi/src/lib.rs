@@ -3,13 +3,19 @@
 //!
 //! `include/amberfield.h` is made of this crate by `cargo xtask header`; a test fails when it is stale.
 
+mod charge_laws;
 mod field_flow;
 mod field_potentials;
 mod field_side;
 mod foreign;
+mod host_parameters;
 mod host_side;
 mod status;
 
+pub use charge_laws::{
+    AmberfieldContact, amberfield_area_correction, amberfield_charge_between_grains,
+    amberfield_charge_to_grounded_wall, amberfield_contact_area, amberfield_coulomb, amberfield_relaxation,
+};
 pub use field_flow::{
     AmberfieldFlow, amberfield_field_grains, amberfield_field_reply_flow, amberfield_field_reply_state,
     amberfield_field_state,
@@ -21,8 +27,12 @@ pub use field_side::{
     amberfield_field_fail, amberfield_field_guess, amberfield_field_open, amberfield_field_refuse,
     amberfield_field_reply, amberfield_field_send_mesh, amberfield_field_wait,
 };
+pub use host_parameters::{
+    amberfield_host_measured_error, amberfield_host_parameters, amberfield_host_use_parameters,
+};
 pub use host_side::{
     AmberfieldBoundary, AmberfieldFace, AmberfieldHost, AmberfieldHostSettings, amberfield_host_close,
-    amberfield_host_error, amberfield_host_field, amberfield_host_open, amberfield_host_retune,
+    amberfield_host_energy, amberfield_host_error, amberfield_host_field, amberfield_host_open,
+    amberfield_host_retune,
 };
 pub use status::AmberfieldStatus;

@@ -1,7 +1,8 @@
 //! The C header is what the library's source says, and a compiler finds all that it names.
 
 use amberfield_capi::{
-    AmberfieldFar, AmberfieldFlow, AmberfieldHostSettings, AmberfieldMesh, AmberfieldRequest,
+    AmberfieldContact, AmberfieldFar, AmberfieldFlow, AmberfieldHostSettings, AmberfieldMesh,
+    AmberfieldRequest,
 };
 use amberfield_wire::payloads::{
     BoundaryFace, FarQuestion, FlowAnswer, FlowQuestion, MeshOutline, SourceCloud,
@@ -12,12 +13,14 @@ use std::path::{Path, PathBuf};
 /// The variable that makes this test write the header instead: `cargo xtask header` sets it.
 const WRITE: &str = "AMBERFIELD_WRITE_HEADER";
 /// Sources of the header, the shared structures of other crates among them.
-const SOURCES: [&str; 10] = [
+const SOURCES: [&str; 12] = [
     "src/status.rs",
     "src/field_side.rs",
     "src/field_flow.rs",
     "src/field_potentials.rs",
     "src/host_side.rs",
+    "src/host_parameters.rs",
+    "src/charge_laws.rs",
     "../core/src/far_question.rs",
     "../wire/src/payloads/boundary_face.rs",
     "../wire/src/payloads/flow_answer.rs",
@@ -25,8 +28,9 @@ const SOURCES: [&str; 10] = [
     "../wire/src/payloads/mesh_outline.rs",
 ];
 /// Size of every structure here, by its name there [bytes].
-const SIZES: [(&str, usize); 11] = [
+const SIZES: [(&str, usize); 12] = [
     ("AmberfieldBoundaryFace", size_of::<BoundaryFace>()),
+    ("AmberfieldContact", size_of::<AmberfieldContact>()),
     ("AmberfieldFar", size_of::<AmberfieldFar>()),
     ("AmberfieldFarQuestion", size_of::<FarQuestion>()),
     ("AmberfieldFlow", size_of::<AmberfieldFlow>()),

@@ -12,7 +12,7 @@ const ALLOWED: [(&str, &[&str]); 15] = [
     ("dem", &["core", "laws", "field", "gas"]),
     ("wire", &["core"]),
     ("coupling", &["core", "field", "gas", "wire"]),
-    ("capi", &["core", "field", "wire", "coupling"]),
+    ("capi", &["core", "laws", "field", "wire", "coupling"]),
     ("oracle", &["core"]),
     ("scene", &["core"]),
     ("draw", &["core"]),

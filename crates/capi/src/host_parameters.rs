@@ -1,0 +1,58 @@
+//! Parameters of a host's field: how good they are, and their way into the host's own restart files.
+
+use crate::foreign::guarded;
+use crate::host_side::{AmberfieldHost, NOT_OPEN};
+use crate::status::AmberfieldStatus;
+use std::ffi::{CStr, CString, c_char};
+
+/// Returns the relative RMS error of E that was measured when parameters were chosen; 0 where the sum is
+/// exact, and below 0 where none was measured, as with parameters from a restart file.
+///
+/// # Safety
+/// `host` comes from amberfield_host_open and is not closed.
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn amberfield_host_measured_error(host: *const AmberfieldHost) -> f64 {
+    // SAFETY: the caller's promise.
+    let field = unsafe { &*host }.field.as_ref();
+    let measured = field.map(|field| (field.choice(), field.error_measured()));
+    match measured {
+        Some((_, Some(measured))) => measured.relative_rms,
+        Some((amberfield_field::Choice::AllPairs | amberfield_field::Choice::Direct, None)) => 0.0,
+        _ => -1.0,
+    }
+}
+
+/// Returns the parameters in force as text, for amberfield_host_use_parameters of a later run; empty before
+/// the first field. The text is valid until the next call.
+///
+/// # Safety
+/// `host` comes from amberfield_host_open and is not closed.
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn amberfield_host_parameters(host: *mut AmberfieldHost) -> *const c_char {
+    // SAFETY: the caller's promise.
+    let host = unsafe { &mut *host };
+    let text = host.field.as_ref().and_then(|field| serde_json::to_string(field.choice()).ok());
+    host.parameters = CString::new(text.unwrap_or_default()).unwrap_or_default();
+    host.parameters.as_ptr()
+}
+
+/// Takes the parameters of an earlier run, instead of choosing some at the next call.
+///
+/// # Safety
+/// `host` comes from amberfield_host_open and is not closed; `parameters` is a C string.
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn amberfield_host_use_parameters(
+    host: *mut AmberfieldHost,
+    parameters: *const c_char,
+) -> AmberfieldStatus {
+    // SAFETY: the caller's promise.
+    let (host, text) = unsafe { (&mut *host, CStr::from_ptr(parameters)) };
+    let AmberfieldHost { scene, field, error, .. } = host;
+    guarded(error, || {
+        let scene = scene.as_mut().ok_or(NOT_OPEN)?;
+        let choice = serde_json::from_slice(text.to_bytes());
+        scene.choice = Some(choice.map_err(|error| format!("parameters of an earlier run: {error}"))?);
+        *field = None;
+        Ok(AmberfieldStatus::Ok)
+    })
+}
