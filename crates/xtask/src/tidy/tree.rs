@@ -13,9 +13,12 @@ pub(super) struct Tree {
 }
 
 /// Endings of the files that the rules look at.
-const ENDINGS: [&str; 12] = ["rs", "toml", "md", "sh", "yml", "yaml", "py", "c", "h", "C", "H", "Dockerfile"];
+const ENDINGS: [&str; 13] =
+    ["rs", "toml", "md", "sh", "yml", "yaml", "py", "c", "h", "cpp", "C", "H", "Dockerfile"];
 /// Folders of the root that are made by runs and builds.
 const SKIPPED: [&str; 4] = ["target", "build", "runs", ".git"];
+/// Beginning of the folders that are made by builds of the field solver.
+const SOLVER_BUILDS: &str = "openfoam-solver/build";
 
 impl Tree {
     /// Reads every text file below the root; results of builds and runs are left out.
@@ -32,7 +35,8 @@ impl Tree {
             let name = entry.file_name().to_string_lossy().into_owned();
             let path = if folder.is_empty() { name.clone() } else { format!("{folder}/{name}") };
             let kind = entry.file_type()?;
-            let is_skipped = folder.is_empty() && SKIPPED.contains(&name.as_str());
+            let is_skipped = folder.is_empty() && SKIPPED.contains(&name.as_str())
+                || kind.is_dir() && path.starts_with(SOLVER_BUILDS);
             if !is_skipped {
                 self.paths.insert(path.clone());
             }

@@ -1,0 +1,57 @@
+// SPDX-License-Identifier: MIT
+// Part of amberfield: the electric field of charged grains.
+
+#include "forecast.h"
+
+#include "memory.h"
+
+#include <algorithm>
+
+using amberfield::Forecast;
+
+Forecast::~Forecast()
+{
+    memory->destroy(e);
+    memory->destroy(slope);
+    memory->destroy(charge);
+    memory->destroy(known);
+}
+
+void Forecast::grow(int atoms)
+{
+    memory->grow(e, atoms, 3, "amberfield/field:e");
+    memory->grow(slope, atoms, 3, "amberfield/field:slope");
+    memory->grow(charge, atoms, "amberfield/field:charge");
+    memory->grow(known, atoms, "amberfield/field:known");
+}
+
+void Forecast::copy(int from, int to)
+{
+    double buffer[SIZE];
+    pack(from, buffer);
+    unpack(to, buffer);
+}
+
+void Forecast::clear(int i)
+{
+    const double nothing[SIZE] = {};
+    unpack(i, nothing);
+}
+
+int Forecast::pack(int i, double *buffer) const
+{
+    std::copy_n(e[i], 3, buffer);
+    std::copy_n(slope[i], 3, buffer + 3);
+    buffer[6] = charge[i];
+    buffer[7] = known[i];
+    return SIZE;
+}
+
+int Forecast::unpack(int i, const double *buffer)
+{
+    std::copy_n(buffer, 3, e[i]);
+    std::copy_n(buffer + 3, 3, slope[i]);
+    charge[i] = buffer[6];
+    known[i] = buffer[7];
+    return SIZE;
+}

@@ -1,0 +1,263 @@
+# SPDX-License-Identifier: MIT
+"""fix amberfield/field: the field against the direct sum, and what runs make of it."""
+
+import os
+import shutil
+
+import numpy as np
+import pytest
+from support import HERE, data_file, error, exact_field, grains, message, run, start
+
+BOX = ([0.0, 0.0, 0.0], [0.01, 0.01, 0.01])
+# The field meets its tolerance with room to spare; sums in other orders differ in the last digits.
+ROUND_OFF = 1e-11
+
+
+def faces_of(words):
+    """Six letters of a boundary in words."""
+    return [letter for word in words.split() for letter in (word[0], word[-1])]
+
+
+def snapshot(folder, boundary, words, count=300, net=0.0, ranks=1, more="", tolerance=1e-4):
+    x, q = grains(count, seed=7, net=net)
+    data_file(folder / "data.grains", x, q, BOX)
+    field = f"fix E all amberfield/field tolerance {tolerance} boundary {words} {more}\nrun 0"
+    state = run(
+        folder, [[start(boundary) + field, "now"]], ranks=ranks, fixes=["E"], globals=[("error", "E", 1)]
+    )
+    return state["now"]
+
+
+@pytest.mark.parametrize(
+    ("boundary", "words", "net"),
+    [
+        ("p p p", "p p p", 0.0),
+        ("p p f", "p p g", 2e-14),
+        ("p p f", "p p o", 2e-14),
+        ("p f f", "p g o", 2e-14),
+        ("f f f", "g g g", 2e-14),
+        ("f f f", "o o o", 2e-14),
+        ("f f f", "i i g", 2e-14),
+        ("f f f", "i i i", 0.0),
+        ("f f f", "o o go", 2e-14),
+        ("f f f", "gi og p".replace("p", "io"), 2e-14),
+    ],
+)
+def test_field_is_that_of_the_direct_sum(tmp_path, boundary, words, net):
+    state = snapshot(tmp_path, boundary, words, net=net)
+    exact = exact_field(tmp_path, state["x"], state["q"][:, 0], BOX, faces_of(words))
+    assert error(state["e"], exact) < 2e-4
+    assert 0.0 <= state["error"] <= 1e-4
+
+
+def test_potentials_of_faces_are_there(tmp_path):
+    state = snapshot(tmp_path, "p p f", "p p g", net=1e-15, more="zhi potential 1000")
+    exact = exact_field(tmp_path, state["x"], state["q"][:, 0], BOX, ["p", "p", "p", "p", "g", 1000.0])
+    assert error(state["e"], exact) < 1e-4
+    assert abs(state["e"][:, 2].mean() + 1e5) < 3e3
+
+
+@pytest.mark.parametrize(("boundary", "words"), [("p p p", "p p p"), ("p p f", "p p g"), ("f f f", "o o o")])
+def test_number_of_ranks_does_not_matter(tmp_path, boundary, words):
+    one, two = (snapshot(tmp_path, boundary, words, ranks=ranks) for ranks in (1, 2))
+    assert np.array_equal(one["e"], two["e"])
+    force = one["q"] * one["e"]
+    assert abs(one["f"] - force).max() < 1e-12 * abs(force).max()
+    assert np.array_equal(one["f"], two["f"])
+
+
+def test_net_charge_needs_a_background_which_is_a_word(tmp_path):
+    state = snapshot(tmp_path, "p p p", "p p p", net=2e-14, more="background yes")
+    exact = exact_field(tmp_path, state["x"], state["q"][:, 0], BOX, ["p"] * 6, background=True)
+    assert error(state["e"], exact) < 2e-4
+
+
+def test_permittivity_divides_the_field(tmp_path):
+    one, two = (snapshot(tmp_path, "f f f", "o o o", more=more) for more in ("", "permittivity 2"))
+    assert error(2 * two["e"], one["e"]) < 1e-3
+
+
+def test_cgs_is_the_same_field_in_other_units(tmp_path):
+    light = 299792458.0
+    x, q = grains(200, seed=3, net=1e-14)
+    si = snapshot_of(tmp_path, x, q, BOX, "si", 1e-4)
+    box = ([0.0] * 3, [1.0] * 3)
+    cgs = snapshot_of(tmp_path, 100 * x, q * 10 * light, box, "cgs", 1e-2)
+    assert error(cgs["e"] * 1e-4 * light, si["e"]) < ROUND_OFF
+    # dyn and erg
+    assert error(cgs["f"] * 1e-5, si["f"]) < ROUND_OFF
+    assert abs(cgs["energy"] * 1e-7 / si["energy"] - 1) < ROUND_OFF
+
+
+def snapshot_of(folder, x, q, box, units, radius):
+    data_file(folder / "data.grains", x, q, box, radius=radius)
+    pair = f"pair_style zero {5 * radius}\npair_coeff * *"
+    potential = 1000.0 if units == "si" else 1000.0 / 299.792458
+    field = f"fix E all amberfield/field tolerance 1e-4 boundary p p g zhi potential {potential:.17g}\nrun 0"
+    commands = start("p p f", units=units, pair=pair) + field
+    return run(folder, [[commands, "now"]], fixes=["E"], globals=[("energy", "E", 0)])["now"]
+
+
+@pytest.mark.parametrize("ranks", [1, 2])
+def test_bed_that_moves_keeps_its_energy_and_its_error(tmp_path, ranks):
+    x, q = grains(216, seed=5)
+    random = np.random.default_rng(1)
+    data_file(tmp_path / "data.grains", x, 5 * q, BOX, v=random.normal(0, 0.05, x.shape))
+    dynamics = """
+fix N all nve/sphere
+fix E all amberfield/field tolerance 1e-3 boundary p p p
+fix_modify E energy yes
+timestep 1e-5
+thermo_style custom step ke pe etotal f_E f_E[1] f_E[2] f_E[3]
+"""
+    wanted = [("energy", "E", 0), ("error", "E", 1), ("interval", "E", 2), ("evaluations", "E", 3)]
+    parts = [[start() + dynamics + "run 0", "begin"], ["run 400", "end"]]
+    states = run(tmp_path, parts, ranks=ranks, fixes=["E"], globals=wanted, thermo=["ke", "pe", "etotal"])
+    begin, end = states["begin"], states["end"]
+    assert abs(end["pe"] / end["energy"] - 1) < 1e-9
+    exchanged = abs(end["ke"] - begin["ke"])
+    assert abs(end["etotal"] - begin["etotal"]) < 0.02 * max(exchanged, 0.01 * begin["ke"])
+    assert end["interval"] > 1 and end["evaluations"] < 200
+    assert 0 < end["error"] < 1e-3
+    exact = exact_field(tmp_path, end["x"] % 0.01, end["q"][:, 0], BOX, ["p"] * 6)
+    assert error(end["e"], exact) < 3e-3
+
+
+def test_interval_that_is_given_is_kept(tmp_path):
+    x, q = grains(64, seed=5)
+    data_file(tmp_path / "data.grains", x, q, BOX)
+    commands = (
+        "fix N all nve/sphere\nfix E all amberfield/field boundary p p p every 7\ntimestep 1e-5\nrun 70"
+    )
+    state = run(
+        tmp_path, [[start() + commands, "end"]], globals=[("every", "E", 2), ("evaluations", "E", 3)]
+    )["end"]
+    # One at the start, held for a step, and each seventh behind.
+    assert state["every"] == 7 and state["evaluations"] == 11
+
+
+MOVING = """
+fix N all nve/sphere
+fix E all amberfield/field tolerance 1e-3 boundary p p g
+fix_modify E energy yes
+timestep 1e-5
+"""
+
+
+def test_runs_in_parts_and_from_a_restart_are_the_whole_run(tmp_path):
+    x, q = grains(125, seed=9)
+    data_file(tmp_path / "data.grains", x, 3 * q, BOX, v=np.full(x.shape, 0.01))
+    whole = run(tmp_path, [[start("p p f") + MOVING + "run 90", "end"]], fixes=["E"])["end"]
+    parts = [[start("p p f") + MOVING + "run 40\nwrite_restart half.restart", None], ["run 50", "end"]]
+    in_parts = run(tmp_path, parts, fixes=["E"])["end"]
+    assert error(in_parts["e"], whole["e"]) < 1e-9
+    again = start("p p f").replace("read_data data.grains", "read_restart half.restart")
+    again = again.replace("atom_style hybrid sphere charge\natom_modify map array\nboundary p p f\n", "")
+    again = again.replace("units si\n", "")
+    resumed = run(tmp_path, [[again + MOVING + "run 50", "end"]], fixes=["E"], globals=[("n", "E", 3)])["end"]
+    assert error(resumed["e"], whole["e"]) < 1e-9
+    assert abs(resumed["x"] - whole["x"]).max() < 1e-12
+
+
+def test_other_steps_boxes_and_atoms_are_followed(tmp_path):
+    x, q = grains(125, seed=9)
+    data_file(tmp_path / "data.grains", x, q, BOX)
+    wanted = [("evaluations", "E", 3)]
+    parts = [
+        [start("p p f") + MOVING + "run 20", "first"],
+        ["reset_timestep 1000\nrun 0", "renumbered"],
+        ["displace_atoms all move 1e-5 0 0\nrun 0", "displaced"],
+        ["change_box all z final 0 0.012\nrun 0", "larger"],
+        ["group some id 1:20\ndelete_atoms group some\nrun 5", "fewer"],
+        ["create_atoms 1 single 0.0051 0.0052 0.0113\nset group all diameter 2e-4\nrun 5", "more"],
+        ["unfix E\nrun 5", None],
+        ["fix E all amberfield/field tolerance 1e-3 boundary p p g\nrun 0", "again"],
+    ]
+    states = run(tmp_path, parts, fixes=["E"], globals=wanted)
+    count = {name: state["evaluations"] for name, state in states.items()}
+    assert count["renumbered"] == count["first"] and count["displaced"] == count["first"] + 1
+    assert count["larger"] == count["displaced"] + 1 and count["again"] == 1
+    for name in ("displaced", "larger", "fewer", "more", "again"):
+        state = states[name]
+        box = (BOX[0], [0.01, 0.01, 0.012 if name != "displaced" else 0.01])
+        exact = exact_field(tmp_path, state["x"] % [0.01, 0.01, 1], state["q"][:, 0], box, list("ppppgg"))
+        assert error(state["e"], exact) < 3e-3, name
+
+
+def test_faces_that_shrink_around_open_space(tmp_path):
+    x, q = grains(64, seed=2)
+    v = (x - 0.005) * 20
+    data_file(tmp_path / "data.grains", x, q, BOX, v=v)
+    commands = "fix N all nve/sphere\nfix E all amberfield/field tolerance 1e-3 boundary o o o\n"
+    commands += "timestep 1e-4\nrun 300"
+    state = run(tmp_path, [[start("s s s") + commands, "end"]], fixes=["E"])["end"]
+    low, high = state["x"].min(0) - 1e-3, state["x"].max(0) + 1e-3
+    assert (high - low).min() > 0.012
+    exact = exact_field(tmp_path, state["x"], state["q"][:, 0], (low, high), ["o"] * 6)
+    assert error(state["e"], exact) < 3e-3
+
+
+def test_atoms_that_are_lost_are_felt_no_more(tmp_path):
+    x, q = grains(64, seed=2)
+    data_file(tmp_path / "data.grains", x, q, BOX, v=(x - 0.005) * 100)
+    commands = (
+        "fix N all nve/sphere\nfix E all amberfield/field tolerance 1e-3 boundary o o o\ntimestep 1e-4\n"
+    )
+    commands += "thermo_modify lost ignore\nthermo 10\nrun 60\nreset_atoms id\nrun 0"
+    state = run(tmp_path, [[start("f f f") + commands, "end"]], fixes=["E"])["end"]
+    assert 8 <= len(state["x"]) < 64
+    low, high = state["x"].min(0) - 1e-3, state["x"].max(0) + 1e-3
+    exact = exact_field(tmp_path, state["x"], state["q"][:, 0], (low, high), ["o"] * 6)
+    assert error(state["e"], exact) < 3e-3
+
+
+def test_pressure_of_charges_is_a_third_of_their_energy_density(tmp_path):
+    x, q = grains(125, seed=9)
+    data_file(tmp_path / "data.grains", x, q, BOX)
+    for boundary, words in [("p p p", "p p p"), ("f f f", "o o o"), ("p p f", "p p o")]:
+        field = f"fix E all amberfield/field tolerance 1e-6 boundary {words}\n"
+        field += "fix_modify E energy yes virial yes\n"
+        more = "compute P all pressure NULL virial\nthermo_style custom step c_P pe vol\nrun 0"
+        printed = run(tmp_path, [[start(boundary) + field + more, "now"]])["now"]["thermo"]
+        energy = 3 * printed["c_P"] * printed["Volume"]
+        assert abs(energy / printed["PotEng"] - 1) < 1e-4, words
+
+
+def test_minimisation_falls_along_the_energy(tmp_path):
+    x, q = grains(27, seed=4)
+    data_file(tmp_path / "data.grains", x, q, BOX)
+    field = "fix E all amberfield/field tolerance 1e-6 boundary g g g\nfix_modify E energy yes\n"
+    parts = [
+        [start("f f f") + field + "run 0", "begin"],
+        ["min_style sd\nmin_modify dmax 1e-6\nminimize 0 0 20 50", "end"],
+    ]
+    states = run(tmp_path, parts, globals=[("energy", "E", 0)])
+    assert states["end"]["energy"] < states["begin"]["energy"]
+
+
+needs_solver = pytest.mark.skipif(
+    "AMBERFIELD_SOLVER" not in os.environ, reason="cargo xtask test builds the field solver"
+)
+
+
+@needs_solver
+@pytest.mark.parametrize("ranks", [1, 2])
+def test_walls_of_an_openfoam_case(tmp_path, ranks):
+    # Plates across z, periodic along x and y: the same box as g and p.
+    shutil.copytree(HERE.parent.parent / "cases/coupled-settling-bed/foam", tmp_path / "foam")
+    box = ([0.0] * 3, [0.006, 0.006, 0.01])
+    x, q = grains(512, seed=6, box=0.006)
+    data_file(tmp_path / "data.grains", x, q, box)
+    field = "fix E all amberfield/field tolerance 1e-2 "
+    on_grid = run(tmp_path, [[start("p p f") + field + "boundary p p g\nrun 0", "now"]], fixes=["E"])["now"]
+    parts = [[start("p p f") + field + "case foam\nrun 0", "now"], ["fix N all nve/sphere\nrun 3", "later"]]
+    on_mesh = run(tmp_path, parts, fixes=["E"], ranks=ranks, globals=[("energy", "E", 0)])["now"]
+    assert error(on_mesh["e"], on_grid["e"]) < 2e-2
+
+
+@needs_solver
+def test_case_that_is_not_there_is_named(tmp_path):
+    x, q = grains(27, seed=1)
+    data_file(tmp_path / "data.grains", x, q, BOX)
+    said = message(tmp_path, start() + "fix E all amberfield/field case nowhere\nrun 0")
+    assert "nowhere" in said
