@@ -24,6 +24,9 @@ namespace {
 constexpr double TRAVEL = 0.5;
 // Two sums over all atoms are equal up to rounding, relative to the sum of the sizes
 constexpr double SAME = 1e-12;
+// Evaluations after which the error is measured again, the first time and from then on, as in amberfield's
+// own runs: each time costs several evaluations
+constexpr double RECHECK[2] = {200, 1000};
 
 }    // namespace
 
@@ -172,7 +175,9 @@ void FixAmberfieldField::evaluate(const Census &now)
     fresh_.resize(3 * atoms);
     rows_.resize(atoms);
     for (int i = 0; i < atoms; ++i) rows_[i] = &fresh_[3 * i];
-    source_.evaluate(rows_.data());
+    const double count = interval_.evaluations;
+    const bool recheck = count == RECHECK[0] || (count > 0.0 && std::fmod(count, RECHECK[1]) == 0.0);
+    source_.evaluate(rows_.data(), recheck);
 
     const double age = interval_.age;
     const bool others = now.known != evaluated_count_;

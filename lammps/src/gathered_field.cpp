@@ -211,18 +211,32 @@ void GatheredField::gather()
     }
 }
 
-void GatheredField::evaluate(double **e)
+bool GatheredField::has_charges() const
+{
+    return std::any_of(charges_.begin(), charges_.end(), [](double q) { return q != 0.0; });
+}
+
+void GatheredField::evaluate(double **e, bool recheck)
 {
     gather();
     bool failed = false;
     if (comm->me == 0) {
         e_.resize(places_.size());
-        failed = amberfield_host_error(host_)[0] != '\0'
+        // Parameters for no charges say nothing about the first ones.
+        const bool first_charges = !is_charged_ && has_charges();
+        is_charged_ |= first_charges;
+        failed = amberfield_host_error(host_)[0] != '\0';
+        if (!failed && (recheck || first_charges)) {
+            failed = amberfield_host_recheck(host_, charges_.size(), places_.data(), charges_.data())
+                != AmberfieldStatus_Ok;
+        }
+        failed = failed
             || amberfield_host_field(host_, time(), charges_.size(), places_.data(), charges_.data(),
                                      e_.data(), nullptr)
                 != AmberfieldStatus_Ok;
         if (!failed) {
-            measured_error_ = amberfield_host_measured_error(host_);
+            const double measured = amberfield_host_measured_error(host_);
+            if (measured >= 0.0) measured_error_ = measured;
             for (size_t k = 0; k < order_.size(); ++k) std::copy_n(&e_[3 * k], 3, &gathered_[3 * order_[k]]);
         }
     }

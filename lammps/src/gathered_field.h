@@ -30,8 +30,9 @@ class GatheredField : protected LAMMPS_NS::Pointers {
     // Takes the box as it is; where it has changed, parameters are chosen anew. Returns whether it has.
     bool follow_box();
 
-    // Writes E at the rank's own atoms; others of the group are not touched.
-    void evaluate(double **e);
+    // Writes E at the rank's own atoms; others of the group are not touched. With `recheck` the error is
+    // measured first, and parameters are chosen anew where it has left the tolerance.
+    void evaluate(double **e, bool recheck);
 
     // Energy of the charges, whose change with their places is the force.
     struct Energy {
@@ -40,7 +41,7 @@ class GatheredField : protected LAMMPS_NS::Pointers {
     };
     Energy energy();
 
-    // Relative error of E that was measured when parameters were chosen; below 0 where none was.
+    // Relative error of E that was measured last; below 0 where none was.
     double measured_error() const { return measured_error_; }
 
     // Parameters as text, on rank 0, and their way back before the first evaluation.
@@ -55,6 +56,7 @@ class GatheredField : protected LAMMPS_NS::Pointers {
     void close();
     void gather();
     void check_place(int i) const;
+    bool has_charges() const;
     // Ends the run on all ranks where rank 0 failed.
     void check(bool failed);
     void fit_open_faces();
@@ -70,6 +72,8 @@ class GatheredField : protected LAMMPS_NS::Pointers {
     AmberfieldHost *host_ = nullptr;
     std::string given_parameters_;
     double measured_error_ = -1.0;
+    // Whether any charge has been there when parameters were chosen or looked at
+    bool is_charged_ = false;
     // Box of the field
     double low_[3], high_[3];
 

@@ -512,12 +512,24 @@ void amberfield_host_retune(struct AmberfieldHost *host);
 // `host` comes from amberfield_host_open and is not closed; the handle is gone afterwards.
 void amberfield_host_close(struct AmberfieldHost *host);
 
-// Returns the relative RMS error of E that was measured when parameters were chosen; 0 where the sum is
-// exact, and below 0 where none was measured, as with parameters from a restart file.
+// Returns the relative RMS error of E that was measured last, when parameters were chosen or by
+// amberfield_host_recheck; 0 where the sum is exact, and below 0 where none was measured, as with parameters
+// from a restart file or without any charge.
 //
 // # Safety
 // `host` comes from amberfield_host_open and is not closed.
 double amberfield_host_measured_error(const struct AmberfieldHost *host);
+
+// Measures the error of E on a sample of particles, which have moved since parameters were chosen. Where it
+// has left the tolerance, the next call chooses parameters anew. Those of an OpenFOAM case stay. Particles
+// are as in amberfield_host_field.
+//
+// # Safety
+// `host` comes from amberfield_host_open and is not closed; the arrays have `count` particles.
+enum AmberfieldStatus amberfield_host_recheck(struct AmberfieldHost *host,
+                                              uint64_t count,
+                                              const double *positions,
+                                              const double *charges);
 
 // Returns the parameters in force as text, for amberfield_host_use_parameters of a later run; empty before
 // the first field. The text is valid until the next call.

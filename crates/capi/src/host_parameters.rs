@@ -1,12 +1,13 @@
 //! Parameters of a host's field: how good they are, and their way into the host's own restart files.
 
-use crate::foreign::guarded;
+use crate::foreign::{guarded, slice};
 use crate::host_side::{AmberfieldHost, NOT_OPEN};
 use crate::status::AmberfieldStatus;
 use std::ffi::{CStr, CString, c_char};
 
-/// Returns the relative RMS error of E that was measured when parameters were chosen; 0 where the sum is
-/// exact, and below 0 where none was measured, as with parameters from a restart file.
+/// Returns the relative RMS error of E that was measured last, when parameters were chosen or by
+/// amberfield_host_recheck; 0 where the sum is exact, and below 0 where none was measured, as with parameters
+/// from a restart file or without any charge.
 ///
 /// # Safety
 /// `host` comes from amberfield_host_open and is not closed.
@@ -20,6 +21,30 @@ pub unsafe extern "C" fn amberfield_host_measured_error(host: *const AmberfieldH
         Some((amberfield_field::Choice::AllPairs | amberfield_field::Choice::Direct, None)) => 0.0,
         _ => -1.0,
     }
+}
+
+/// Measures the error of E on a sample of particles, which have moved since parameters were chosen. Where it
+/// has left the tolerance, the next call chooses parameters anew. Those of an OpenFOAM case stay. Particles
+/// are as in amberfield_host_field.
+///
+/// # Safety
+/// `host` comes from amberfield_host_open and is not closed; the arrays have `count` particles.
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn amberfield_host_recheck(
+    host: *mut AmberfieldHost,
+    count: u64,
+    positions: *const f64,
+    charges: *const f64,
+) -> AmberfieldStatus {
+    let count = count as usize;
+    // SAFETY: the caller's promise; three doubles have the layout of an array of three.
+    let (places, charges) = unsafe { (slice::<[f64; 3]>(positions.cast(), count), slice(charges, count)) };
+    // SAFETY: the caller's promise.
+    let host = unsafe { &mut *host };
+    let mut error = std::mem::take(&mut host.error);
+    let status = guarded(&mut error, || host.recheck(places, charges).map(|()| AmberfieldStatus::Ok));
+    host.error = error;
+    status
 }
 
 /// Returns the parameters in force as text, for amberfield_host_use_parameters of a later run; empty before

@@ -116,6 +116,26 @@ impl AmberfieldHost {
             None => evaluate(),
         }
     }
+
+    /// Measures the error of E; where it has left the tolerance, parameters are chosen anew by the next call.
+    pub(crate) fn recheck(&mut self, places: &[[f64; 3]], charges: &[f64]) -> Result<(), String> {
+        let Self { scene, field, threads, positions, .. } = self;
+        let scene = scene.as_mut().ok_or(NOT_OPEN)?;
+        let Some(known) = field.as_mut() else { return Ok(()) };
+        positions.clear();
+        positions.extend(places.iter().map(|&place| scene.domain.wrap(Vector3::from(place))));
+        let mut measure = || known.measure_error(positions, charges);
+        let measured = match threads {
+            Some(threads) => threads.install(measure),
+            None => measure(),
+        };
+        let measured = measured.map_err(|error| error.to_string())?;
+        let has_left = measured.is_some_and(|measured| measured.relative_rms > scene.settings.tolerance);
+        if has_left && scene.solver.is_none() {
+            *field = None;
+        }
+        Ok(())
+    }
 }
 
 #[derive(Debug)]

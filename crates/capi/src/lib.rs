@@ -28,7 +28,8 @@ pub use field_side::{
     amberfield_field_reply, amberfield_field_send_mesh, amberfield_field_wait,
 };
 pub use host_parameters::{
-    amberfield_host_measured_error, amberfield_host_parameters, amberfield_host_use_parameters,
+    amberfield_host_measured_error, amberfield_host_parameters, amberfield_host_recheck,
+    amberfield_host_use_parameters,
 };
 pub use host_side::{
     AmberfieldBoundary, AmberfieldFace, AmberfieldHost, AmberfieldHostSettings, amberfield_host_close,

@@ -3,7 +3,8 @@
 use amberfield_capi::{
     AmberfieldBoundary, AmberfieldHost, AmberfieldHostSettings, AmberfieldStatus, amberfield_host_close,
     amberfield_host_energy, amberfield_host_error, amberfield_host_field, amberfield_host_measured_error,
-    amberfield_host_open, amberfield_host_parameters, amberfield_host_use_parameters,
+    amberfield_host_open, amberfield_host_parameters, amberfield_host_recheck,
+    amberfield_host_use_parameters,
 };
 use std::ffi::{CStr, CString};
 
@@ -92,6 +93,26 @@ fn energy_falls_by_the_work_of_the_force() {
     let expected: f64 =
         charges.iter().enumerate().map(|(k, q)| q * POTENTIAL * places[3 * k + 2] / EDGE).sum();
     assert!((given / expected - 1.0).abs() < 1e-9, "{given:e} {expected:e}");
+}
+
+#[test]
+fn parameters_are_chosen_anew_where_the_error_has_left_the_tolerance() {
+    let (places, charges) = particles();
+    let host = Host::new(0);
+    // Parameters for a few charges in the middle are none for pairs that nearly touch.
+    let few: Vec<f64> = charges.iter().enumerate().map(|(k, q)| if k < 3 { *q } else { 0.0 }).collect();
+    host.field(&places, &few);
+    let recheck = |charges: &[f64]| {
+        // SAFETY: the handle is open, the arrays have the lengths.
+        let status =
+            unsafe { amberfield_host_recheck(host.0, COUNT as u64, places.as_ptr(), charges.as_ptr()) };
+        assert_eq!(status, AmberfieldStatus::Ok, "{}", host.error());
+        host.field(&places, charges);
+        // SAFETY: the handle is open.
+        unsafe { amberfield_host_measured_error(host.0) }
+    };
+    assert!((0.0..=1e-6).contains(&recheck(&charges)));
+    assert!((0.0..=1e-6).contains(&recheck(&charges)));
 }
 
 #[test]
