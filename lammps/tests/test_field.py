@@ -261,3 +261,24 @@ def test_case_that_is_not_there_is_named(tmp_path):
     data_file(tmp_path / "data.grains", x, q, BOX)
     said = message(tmp_path, start() + "fix E all amberfield/field case nowhere\nrun 0")
     assert "nowhere" in said
+
+
+def test_stated_error_is_the_true_one(tmp_path):
+    x, q = grains(216, seed=5)
+    v = np.random.default_rng(1).normal(0, 0.05, x.shape)
+    data_file(tmp_path / "data.grains", x, 5 * q, BOX, v=v)
+    moving = "fix N all nve/sphere\nfix E all amberfield/field tolerance 1e-2 boundary p p p\ntimestep 1e-5\n"
+    # Samples at no multiple of any interval, behind the first evaluations.
+    parts = [[start() + moving + "run 150", None], *([f"run {23 + k % 5}", str(k)] for k in range(16))]
+    states = run(tmp_path, parts, fixes=["E"], globals=[("stated", "E", 1), ("interval", "E", 2)])
+    squares = []
+    for state in states.values():
+        charge = state["q"][:, 0]
+        exact = exact_field(tmp_path, state["x"] % 0.01, charge, BOX, ["p"] * 6)
+        weights = charge**2 / (charge**2).sum()
+        scale = np.sqrt((weights * (exact**2).sum(1)).sum())
+        at_random = 8.9875517873681764e9 * np.sqrt((charge**2).mean()) * (len(charge) / 1e-6) ** (2 / 3)
+        squares.append((weights * ((state["e"] - exact) ** 2).sum(1)).sum() / max(scale, at_random) ** 2)
+    true, stated = np.sqrt(np.mean(squares)), states["15"]["stated"]
+    assert states["15"]["interval"] > 5
+    assert stated / 3 < true < 2 * stated, (true, stated)

@@ -3,7 +3,15 @@
 use crate::foreign::{guarded, slice};
 use crate::host_side::{AmberfieldHost, NOT_OPEN};
 use crate::status::AmberfieldStatus;
+use amberfield_field::Choice;
+use serde::{Deserialize, Serialize};
 use std::ffi::{CStr, CString, c_char};
+
+/// Parameters as they stand in a text. In TOML all digits of a number survive.
+#[derive(Serialize, Deserialize)]
+struct Parameters {
+    choice: Choice,
+}
 
 /// Returns the relative RMS error of E that was measured last, when parameters were chosen or by
 /// amberfield_host_recheck; 0 where the sum is exact, and below 0 where none was measured, as with parameters
@@ -18,7 +26,7 @@ pub unsafe extern "C" fn amberfield_host_measured_error(host: *const AmberfieldH
     let measured = field.map(|field| (field.choice(), field.error_measured()));
     match measured {
         Some((_, Some(measured))) => measured.relative_rms,
-        Some((amberfield_field::Choice::AllPairs | amberfield_field::Choice::Direct, None)) => 0.0,
+        Some((Choice::AllPairs | Choice::Direct, None)) => 0.0,
         _ => -1.0,
     }
 }
@@ -56,7 +64,8 @@ pub unsafe extern "C" fn amberfield_host_recheck(
 pub unsafe extern "C" fn amberfield_host_parameters(host: *mut AmberfieldHost) -> *const c_char {
     // SAFETY: the caller's promise.
     let host = unsafe { &mut *host };
-    let text = host.field.as_ref().and_then(|field| serde_json::to_string(field.choice()).ok());
+    let written = |choice: &Choice| toml::to_string(&Parameters { choice: choice.clone() }).ok();
+    let text = host.field.as_ref().and_then(|field| written(field.choice()));
     host.parameters = CString::new(text.unwrap_or_default()).unwrap_or_default();
     host.parameters.as_ptr()
 }
@@ -75,8 +84,9 @@ pub unsafe extern "C" fn amberfield_host_use_parameters(
     let AmberfieldHost { scene, field, error, .. } = host;
     guarded(error, || {
         let scene = scene.as_mut().ok_or(NOT_OPEN)?;
-        let choice = serde_json::from_slice(text.to_bytes());
-        scene.choice = Some(choice.map_err(|error| format!("parameters of an earlier run: {error}"))?);
+        let read = toml::from_str::<Parameters>(&text.to_string_lossy());
+        let read = read.map_err(|error| format!("parameters of an earlier run: {}", error.message()))?;
+        scene.choice = Some(read.choice);
         *field = None;
         Ok(AmberfieldStatus::Ok)
     })
