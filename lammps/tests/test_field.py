@@ -241,8 +241,7 @@ needs_solver = pytest.mark.skipif(
 
 
 @needs_solver
-@pytest.mark.parametrize("ranks", [1, 2])
-def test_walls_of_an_openfoam_case(tmp_path, ranks):
+def test_walls_of_an_openfoam_case(tmp_path):
     # Plates across z, periodic along x and y: the same box as g and p.
     shutil.copytree(HERE.parent.parent / "cases/coupled-settling-bed/foam", tmp_path / "foam")
     box = ([0.0] * 3, [0.006, 0.006, 0.01])
@@ -251,8 +250,15 @@ def test_walls_of_an_openfoam_case(tmp_path, ranks):
     field = "fix E all amberfield/field tolerance 1e-2 "
     on_grid = run(tmp_path, [[start("p p f") + field + "boundary p p g\nrun 0", "now"]], fixes=["E"])["now"]
     parts = [[start("p p f") + field + "case foam\nrun 0", "now"], ["fix N all nve/sphere\nrun 3", "later"]]
-    on_mesh = run(tmp_path, parts, fixes=["E"], ranks=ranks, globals=[("energy", "E", 0)])["now"]
+    on_mesh = run(tmp_path, parts, fixes=["E"], globals=[("energy", "E", 0)])["now"]
     assert error(on_mesh["e"], on_grid["e"]) < 2e-2
+
+
+def test_openfoam_case_on_several_ranks_is_refused(tmp_path):
+    x, q = grains(27, seed=1)
+    data_file(tmp_path / "data.grains", x, q, BOX)
+    said = message(tmp_path, start("p p f") + "fix E all amberfield/field case foam\nrun 0", ranks=2)
+    assert "takes one rank" in said and "without mpiexec" in said
 
 
 @needs_solver
