@@ -14,8 +14,9 @@ use std::ops::Range;
 
 /// Loose grains that there are at most: they are compared with each other.
 pub(crate) const MOST_LOOSE: usize = 256;
-/// Distance over the sum of radii within which grains count as touching: round-off makes no contact.
-const BEYOND_TOUCH: f64 = 1.0 + 1e-6;
+/// Share of the radii by which grains that come stay off each other, walls and a region's ends: round-off
+/// makes no contact.
+pub(crate) const GAP: f64 = 1e-6;
 
 impl Contacts {
     /// Sorted indices of the loose grains.
@@ -55,7 +56,7 @@ impl Contacts {
     pub(crate) fn touch(&self, domain: &Domain, grains: &Grains, centre: &[f64; 4], skin: f64) -> bool {
         let [x, y, z, radius] = *centre;
         let is_touched = |&index: &usize| {
-            let apart = (radius + grains.centre[index][3]) * BEYOND_TOUCH;
+            let apart = (radius + grains.centre[index][3]) * (1.0 + GAP);
             let way = grains.position(index) - Vector3::new(x, y, z);
             domain.shortest(way).norm_squared() < apart * apart
         };

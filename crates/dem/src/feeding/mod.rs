@@ -17,7 +17,7 @@ use crate::error::DemError;
 use crate::motion::grains::{Grains, Newcomer};
 use crate::setup::Setup;
 use amberfield_core::{Axis, Domain, Feed, FeedRegion, Feeds, OnBlocked, Particles, Vector3, Volume};
-use places::{GAP, Places, Random};
+use places::{Places, Random};
 use room::Room;
 use serde::{Deserialize, Serialize};
 
@@ -251,7 +251,7 @@ impl Feeding {
             let is_free = |place: &Vector3<f64>| {
                 places.hold(place, radius)
                     && is_inside(domain, place, radius)
-                    && room.is_free(place, radius, radius * GAP)
+                    && room.is_free(place, radius, 0.0)
                     && !contacts.touch(domain, grains, &centre(place, radius), skin_m)
             };
             let is_alone = |place: &Vector3<f64>| {

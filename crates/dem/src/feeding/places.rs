@@ -1,11 +1,8 @@
 //! Places in the region of a feed: at random and on a lattice, the same ones in every run.
 
+use crate::contacts::loose::GAP;
 use amberfield_core::{Feed, FeedRegion, TriangleMesh, Vector3, Volume};
 use std::f64::consts::PI;
-
-/// Share of the radius by which grains stay off each other, walls and the region's ends: round-off makes no
-/// contact.
-pub(super) const GAP: f64 = 1e-6;
 
 /// Random numbers that are the same on every machine: `SplitMix64` (Steele, Lea & Flood, OOPSLA 2014).
 #[derive(Clone, Copy, Debug)]

@@ -1,5 +1,6 @@
 //! Room between the loose grains in and around a region.
 
+use crate::contacts::loose::GAP;
 use amberfield_core::{Axis, Domain, Vector3};
 use std::collections::HashMap;
 
@@ -60,14 +61,14 @@ impl<'a> Room<'a> {
         [0, 1, 2].map(|axis| ((place[axis] - self.low[axis]) / self.edge).floor() as i64)
     }
 
-    /// Whether a grain of a radius [m] leaves a gap [m] to all others at a place [m].
+    /// Whether a grain of a radius [m] touches no other at a place [m], and leaves a gap [m] to all.
     pub(super) fn is_free(&self, place: &Vector3<f64>, radius: f64, gap: f64) -> bool {
         let [x, y, z] = self.cell(place);
         (0..27).all(|code| {
             let cell = [x + code / 9 - 1, y + code / 3 % 3 - 1, z + code % 3 - 1];
             self.cells.get(&cell).is_none_or(|others| {
                 others.iter().all(|&[x, y, z, other]| {
-                    let apart = radius + other + gap;
+                    let apart = (radius + other) * (1.0 + GAP) + gap;
                     (Vector3::new(x, y, z) - place).norm_squared() >= apart * apart
                 })
             })
