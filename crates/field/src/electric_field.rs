@@ -5,6 +5,8 @@ mod changing;
 
 use crate::choosing::choice::{Choice, Measured};
 use crate::choosing::over_mesh;
+use crate::choosing::over_ranks::OverRanks;
+use crate::choosing::trials::OneProcess;
 use crate::choosing::tuner::Tuner;
 use crate::error::FieldError;
 use crate::geometry::inputs::{check_result, check_scene};
@@ -14,10 +16,12 @@ use crate::levels::far::FarSolver;
 use crate::methods::method::FieldMethod;
 use crate::numerics::stopwatch::Stopwatch;
 use crate::plan;
+use crate::ranks::Ranks;
 use crate::sum::{Part, Sum};
 use crate::values::{FieldValues, Wanted};
 use amberfield_core::{Domain, FieldSettings, Plan};
 use nalgebra::Vector3;
+use std::sync::Arc;
 
 pub use changing::GivenField;
 
@@ -44,6 +48,8 @@ pub struct ElectricField {
     stopwatch: Stopwatch,
     /// Cells of the field solver's mesh; `None` without one.
     mesh_cells: Option<usize>,
+    /// Ranks that share the field; `None` where this process has all particles.
+    ranks: Option<Arc<dyn Ranks>>,
     error_estimated: Option<f64>,
     error_measured: Option<Measured>,
 }
@@ -92,7 +98,7 @@ impl ElectricField {
         self.stopwatch.lap("faces");
         Sum { levels, faces, external: self.external, positions }.write(wanted, out);
         self.stopwatch.lap("sum");
-        check_result(&out.e)
+        self.method.agreed(check_result(&out.e))
     }
 
     /// Measures the error of E on a sample by a second, more exact splitting; `None` for methods that make no
@@ -112,13 +118,17 @@ impl ElectricField {
             self.error_measured = measured.or(self.error_measured);
             return Ok(measured);
         }
-        check_scene(&self.domain, &self.settings, positions, charges)?;
-        if charges.iter().all(|charge| *charge == 0.0) {
-            return Ok(None);
-        }
-        let tuner = Tuner::new(&self.domain, &self.settings, positions, charges);
-        self.error_measured = Some(tuner.measure(parameters, tuner.scale()?));
-        Ok(self.error_measured)
+        let (domain, settings) = (&self.domain, &self.settings);
+        let measured = if let Some(ranks) = &self.ranks {
+            let grains = OverRanks { ranks, domain, settings, positions, charges };
+            Tuner::new(domain, settings, grains.statistics()?, &grains).measured(parameters)?
+        } else {
+            check_scene(domain, settings, positions, charges)?;
+            let grains = OneProcess { domain, settings, positions, charges };
+            Tuner::new(domain, settings, grains.statistics(), &grains).measured(parameters)?
+        };
+        self.error_measured = measured.or(self.error_measured);
+        Ok(measured)
     }
 
     /// E that is there without charges, external and from the faces' values, at a place of the domain [V/m]

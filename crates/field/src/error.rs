@@ -44,6 +44,14 @@ pub enum FieldError {
         /// Index of the grain.
         index: usize,
     },
+    /// Another rank that shares the field failed.
+    #[error("{reason}")]
+    OfAnotherRank {
+        /// Number of that rank.
+        rank: usize,
+        /// Reason that it gave.
+        reason: String,
+    },
     /// The field solver of another process is lost or makes no sense.
     #[error("{0}")]
     Solver(String),

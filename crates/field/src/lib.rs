@@ -4,7 +4,7 @@
 //!
 //! [`ElectricField::evaluate`] computes the parts; `sum.rs` adds them, and nothing else does. Folders are
 //! what is added up (`levels`), how methods combine it (`methods`), how parameters are chosen (`choosing`),
-//! where charges and images are (`geometry`), and tools (`numerics`).
+//! where charges and images are (`geometry`), who shares a field (`ranks`), and tools (`numerics`).
 
 mod choosing;
 mod electric_field;
@@ -14,6 +14,7 @@ mod levels;
 mod methods;
 mod numerics;
 mod plan;
+mod ranks;
 mod sum;
 mod values;
 
@@ -28,5 +29,6 @@ pub use methods::direct::Direct;
 pub use methods::kolehmainen::Kolehmainen;
 pub use methods::method::{FieldMethod, TwoSplittings};
 pub use methods::p3m_parameters::P3mParameters;
+pub use ranks::{Parcels, Ranks, ThreadRank};
 pub use sum::{Levels, OwnClouds, Part};
 pub use values::{Components, FieldAt, FieldValues, Wanted};

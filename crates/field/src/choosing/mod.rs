@@ -7,5 +7,7 @@ pub(crate) mod choice;
 mod cost;
 pub(crate) mod error_model;
 pub(crate) mod over_mesh;
+pub(crate) mod over_ranks;
 mod splittings;
+pub(crate) mod trials;
 pub(crate) mod tuner;

@@ -8,6 +8,7 @@
 
 use crate::choosing::choice::Measured;
 use crate::choosing::splittings::{sample_of, second_splitting};
+use crate::choosing::trials::OneProcess;
 use crate::choosing::tuner::{Chosen, Tuner};
 use crate::error::FieldError;
 use crate::levels::far::{FarField, FarLevel, FarRadii};
@@ -136,7 +137,8 @@ fn tune(
              solver's mesh takes over; make it smaller or leave it out"
         )));
     }
-    Tuner::new(&domain, &alone, positions, charges).up_to(longest).choose()
+    let grains = OneProcess { domain: &domain, settings: &alone, positions, charges };
+    Tuner::new(&domain, &alone, grains.statistics(), &grains).up_to(longest).choose()
 }
 
 /// Measures the error of the whole sum on a sample; `None` where no grain is charged, and for a field without

@@ -38,6 +38,10 @@ pub(crate) fn second_splitting(first: P3mParameters) -> P3mParameters {
 
 /// Particles of so many on which an error is measured.
 pub(crate) fn sample_of(particles: usize) -> Vec<usize> {
-    let step = particles.div_ceil(SAMPLE).max(1);
-    (0..particles).step_by(step).collect()
+    (0..particles).step_by(sample_step(particles)).collect()
+}
+
+/// Distance in the list between two particles on which an error is measured.
+pub(crate) fn sample_step(particles: usize) -> usize {
+    particles.div_ceil(SAMPLE).max(1)
 }

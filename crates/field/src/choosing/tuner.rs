@@ -6,17 +6,13 @@ use crate::choosing::charge_statistics::ChargeStatistics;
 use crate::choosing::choice::{Choice, Measured};
 use crate::choosing::cost;
 use crate::choosing::error_model::{error_squared, smooth_error_squared};
-use crate::choosing::splittings::{sample_of, second_splitting, with_best_shapes};
+use crate::choosing::splittings::{second_splitting, with_best_shapes};
+use crate::choosing::trials::Trials;
 use crate::error::FieldError;
 use crate::levels::grid::level::{grid_sizes, widest_spacing};
 use crate::levels::grid::shapes::{ORDERS, Shapes, cutoff_over_spacing_for};
-use crate::methods::method::FieldMethod;
-use crate::methods::p3m::P3m;
 use crate::methods::p3m_parameters::P3mParameters;
-use crate::values::{FieldValues, Wanted};
 use amberfield_core::{Domain, FieldSettings, Tuning};
-use nalgebra::Vector3;
-use std::time::Instant;
 
 /// Share of the tolerance that the model aims at: a sample knows the true error to some ten per cent only.
 const AIM: f64 = 0.75;
@@ -29,9 +25,6 @@ const ACCEPT: f64 = 0.9;
 const ROUNDS: usize = 6;
 /// Nodes of the largest grid considered: 5 GiB.
 const MOST_NODES: f64 = 2e8;
-/// A time is the shortest of as many evaluations as this many particles need, three at most.
-const TIMED_PARTICLES: usize = 200_000;
-const MOST_EVALUATIONS: usize = 3;
 /// Candidates that are timed.
 const TIMED: usize = 4;
 /// Tolerance of the first look at E_rms.
@@ -62,8 +55,7 @@ pub(crate) struct Scale {
 pub(crate) struct Tuner<'a> {
     domain: &'a Domain,
     settings: &'a FieldSettings,
-    positions: &'a [Vector3<f64>],
-    charges: &'a [f64],
+    grains: &'a dyn Trials,
     cloud: ChargeStatistics,
     /// Largest cut-off radius [m].
     longest: f64,
@@ -73,11 +65,10 @@ impl<'a> Tuner<'a> {
     pub(crate) fn new(
         domain: &'a Domain,
         settings: &'a FieldSettings,
-        positions: &'a [Vector3<f64>],
-        charges: &'a [f64],
+        cloud: ChargeStatistics,
+        grains: &'a dyn Trials,
     ) -> Self {
-        let cloud = ChargeStatistics::new(domain, settings.permittivity, positions, charges);
-        Self { domain, settings, positions, charges, cloud, longest: f64::INFINITY }
+        Self { domain, settings, grains, cloud, longest: f64::INFINITY }
     }
 
     /// Share of the tolerance that the model aims at.
@@ -105,11 +96,9 @@ impl<'a> Tuner<'a> {
         let mut best: Option<f64> = None;
         for _ in 0..ROUNDS {
             let candidates = self.candidates(&self.cloud, aim * scale.all, scale.smooth);
-            if candidates.is_empty() {
-                break;
-            }
             let timed = self.fastest(&candidates, aim * scale.all, scale.smooth)?;
-            let measured = self.measure(timed, scale);
+            let Some(timed) = self.grains.shared(timed)? else { break };
+            let measured = self.measure(timed, scale)?;
             tracing::debug!(?timed, aim, measured = measured.relative_rms, "p3m candidate");
             if measured.relative_rms <= ACCEPT * asked {
                 return Ok(Chosen {
@@ -141,11 +130,12 @@ impl<'a> Tuner<'a> {
         let scale = if charged { self.scale()? } else { Scale { all: self.cloud.floor, smooth: 0.0 } };
         let error = self.aim() * self.settings.tolerance * scale.all;
         let one = |(_, parameters): &(f64, P3mParameters)| {
+            let measured = charged.then(|| self.measure(*parameters, scale)).transpose()?;
             Ok(Candidate {
                 choice: Choice::P3m(*parameters),
                 estimated: charged.then(|| self.estimate(parameters, scale)),
-                measured: charged.then(|| self.measure(*parameters, scale)),
-                seconds: self.time(parameters)?,
+                measured,
+                seconds: self.grains.seconds(*parameters)?,
             })
         };
         self.candidates(&self.cloud, error, scale.smooth).iter().map(one).collect()
@@ -154,27 +144,26 @@ impl<'a> Tuner<'a> {
     /// A first look at the field.
     pub(crate) fn scale(&self) -> Result<Scale, FieldError> {
         let first = self.best_by_model(&self.cloud, FIRST_LOOK * self.cloud.floor, 0.0)?;
-        let mut field = FieldValues::default();
-        let mut p3m = P3m::new(self.domain, self.settings, first);
-        let wanted = Wanted { components: true, ..Wanted::default() };
-        p3m.evaluate(self.positions, self.charges, wanted, &mut field)?;
-        let rms =
-            |e: &[Vector3<f64>]| (e.iter().map(Vector3::norm_squared).sum::<f64>() / self.cloud.count).sqrt();
+        let [of_all, of_grid] = self.grains.squares(first)?;
+        let rms = |sum: f64| (sum / self.cloud.count).sqrt();
         // Over a field solver's mesh the grid carries what lies between two clouds, and no mean field.
-        let smooth = if self.longest.is_finite() { 0.0 } else { rms(&field.components.far) };
-        Ok(Scale { all: rms(&field.e).max(self.cloud.floor), smooth })
+        let smooth = if self.longest.is_finite() { 0.0 } else { rms(of_grid) };
+        Ok(Scale { all: rms(of_all).max(self.cloud.floor), smooth })
+    }
+
+    /// Measures the error of parameters; `None` where no grain is charged.
+    pub(crate) fn measured(&self, parameters: P3mParameters) -> Result<Option<Measured>, FieldError> {
+        if self.cloud.charge == 0.0 {
+            return Ok(None);
+        }
+        self.measure(parameters, self.scale()?).map(Some)
     }
 
     /// Measures the error of parameters against a second, wider and more exact splitting.
-    pub(crate) fn measure(&self, parameters: P3mParameters, scale: Scale) -> Measured {
-        let sample = sample_of(self.positions.len());
-        let field = |parameters| {
-            P3m::new(self.domain, self.settings, parameters).sample(self.positions, self.charges, &sample)
-        };
-        let (first, second) = (field(parameters), field(second_splitting(parameters)));
-        let sum: f64 = first.iter().zip(&second).map(|(a, b)| (a - b).norm_squared()).sum();
-        let relative_rms = (sum / sample.len().max(1) as f64).sqrt() / scale.all;
-        Measured { relative_rms, sample: sample.len() }
+    pub(crate) fn measure(&self, parameters: P3mParameters, scale: Scale) -> Result<Measured, FieldError> {
+        let (sum, sample) = self.grains.difference(parameters, second_splitting(parameters))?;
+        let relative_rms = (sum / sample.max(1) as f64).sqrt() / scale.all;
+        Ok(Measured { relative_rms, sample })
     }
 
     /// A-priori relative error of parameters.
@@ -206,7 +195,8 @@ impl<'a> Tuner<'a> {
         smooth: f64,
     ) -> Result<P3mParameters, FieldError> {
         let candidates = self.candidates(cloud, error, smooth);
-        candidates.first().map(|(_, parameters)| *parameters).ok_or_else(|| self.no_parameters(error))
+        let best = self.grains.shared(candidates.first().map(|(_, parameters)| *parameters))?;
+        best.ok_or_else(|| self.no_parameters(error))
     }
 
     /// Says that no parameters have an error of at most `error` [V/m].
@@ -333,25 +323,26 @@ impl<'a> Tuner<'a> {
         cloud.count * per_particle + cost::TRANSFORM * nodes * nodes.max(2.0).log2()
     }
 
-    /// The candidate with the shortest evaluation, or the cheapest by the model when timing is off. Where
-    /// near and grid level balance depends on the processor: around the winner, spacings are tried until
-    /// none is faster.
+    /// The candidate with the shortest evaluation, or the cheapest by the model when timing is off; `None`
+    /// without candidates. Where near and grid level balance depends on the processor: around the winner,
+    /// spacings are tried until none is faster.
     fn fastest(
         &self,
         candidates: &[(f64, P3mParameters)],
         error: f64,
         smooth: f64,
-    ) -> Result<P3mParameters, FieldError> {
+    ) -> Result<Option<P3mParameters>, FieldError> {
         const WORTH_TIMING: f64 = 2.5;
         const STEPS: [f64; 2] = [1.2, 1.0 / 1.2];
         const MOST_STEPS: usize = 4;
+        let Some((cheapest, first)) = candidates.first().copied() else { return Ok(None) };
         if self.settings.tuning == Tuning::Model {
-            return Ok(candidates[0].1);
+            return Ok(Some(first));
         }
-        let worth = candidates.iter().take(TIMED).filter(|(cost, _)| *cost < WORTH_TIMING * candidates[0].0);
-        let mut best = (f64::INFINITY, candidates[0].1);
+        let worth = candidates.iter().take(TIMED).filter(|(cost, _)| *cost < WORTH_TIMING * cheapest);
+        let mut best = (f64::INFINITY, first);
         for (_, parameters) in worth {
-            best = faster(best, (self.time(parameters)?, *parameters));
+            best = faster(best, (self.grains.seconds(*parameters)?, *parameters));
         }
         for step in STEPS.into_iter().filter(|_| self.settings.grid_cells.is_none()) {
             for _ in 0..MOST_STEPS {
@@ -359,26 +350,13 @@ impl<'a> Tuner<'a> {
                 let Some(next) = self.candidate(&self.cloud, order, spacing_m * step, error, smooth) else {
                     break;
                 };
-                best = faster(best, (self.time(&next)?, next));
+                best = faster(best, (self.grains.seconds(next)?, next));
                 if best.0 >= seconds {
                     break;
                 }
             }
         }
-        Ok(best.1)
-    }
-
-    /// Shortest of a few evaluations [s].
-    fn time(&self, parameters: &P3mParameters) -> Result<f64, FieldError> {
-        let mut field = FieldValues::default();
-        let mut p3m = P3m::new(self.domain, self.settings, *parameters);
-        let mut shortest = f64::INFINITY;
-        for _ in 0..TIMED_PARTICLES.div_ceil(self.positions.len().max(1)).min(MOST_EVALUATIONS) {
-            let start = Instant::now();
-            p3m.evaluate(self.positions, self.charges, Wanted::default(), &mut field)?;
-            shortest = shortest.min(start.elapsed().as_secs_f64());
-        }
-        Ok(shortest)
+        Ok(Some(best.1))
     }
 }
 

@@ -4,10 +4,12 @@ use super::{ElectricField, changing};
 use crate::choosing::candidates::Candidate;
 use crate::choosing::choice::Choice;
 use crate::choosing::over_mesh::{self, OverMesh};
+use crate::choosing::over_ranks::OverRanks;
+use crate::choosing::trials::OneProcess;
 use crate::choosing::tuner::Tuner;
 use crate::error::FieldError;
 use crate::geometry::images::{Geometry, images_per_charge};
-use crate::geometry::inputs::{check_finite, check_scene};
+use crate::geometry::inputs::{check_finite, check_in_box, check_scene};
 use crate::levels::external::ExternalField;
 use crate::levels::faces::FacesLevel;
 use crate::levels::far::{FarField, FarLevel};
@@ -16,11 +18,14 @@ use crate::methods::direct::Direct;
 use crate::methods::kolehmainen::Kolehmainen;
 use crate::methods::method::FieldMethod;
 use crate::methods::p3m::P3m;
+use crate::methods::p3m_over_ranks::P3mOverRanks;
 use crate::methods::p3m_parameters::P3mParameters;
 use crate::numerics::stopwatch::Stopwatch;
+use crate::ranks::{Ranks, agreed};
 use crate::values::{FieldValues, Wanted};
-use amberfield_core::{Domain, FieldSettings, Method};
+use amberfield_core::{Domain, FieldSettings, Method, Tuning};
 use nalgebra::Vector3;
+use std::sync::Arc;
 use std::time::Instant;
 
 impl ElectricField {
@@ -44,7 +49,8 @@ impl ElectricField {
             Method::Kolehmainen => Choice::Kolehmainen { cutoff_m: cutoff_radius(settings)? },
             Method::P3m => {
                 check_scene(domain, settings, positions, charges)?;
-                let tuner = Tuner::new(domain, settings, positions, charges);
+                let grains = OneProcess { domain, settings, positions, charges };
+                let tuner = Tuner::new(domain, settings, grains.statistics(), &grains);
                 if Geometry::of(domain) == Geometry::Open
                     && tuner.all_pairs_are_cheaper(images_per_charge(domain))
                 {
@@ -61,6 +67,60 @@ impl ElectricField {
         };
         let field = Self::with_choice(domain, settings, &choice)?;
         Ok(Self { error_estimated, error_measured, ..field })
+    }
+
+    /// Chooses parameters for the particles of all ranks and builds what this one needs; each has its own
+    /// particles (positions in m, charges in C), and every rank calls the same functions in the same order.
+    /// Method p3m on the internal grid, parameters by the cost model.
+    ///
+    /// The field is that of one process with all particles, to round-off: numbers are added in another order.
+    ///
+    /// # Errors
+    /// The errors of [`Self::new`], on all ranks where one has them.
+    pub fn over_ranks(
+        ranks: Arc<dyn Ranks>,
+        domain: &Domain,
+        settings: &FieldSettings,
+        positions: &[Vector3<f64>],
+        charges: &[f64],
+    ) -> Result<Self, FieldError> {
+        agreed(ranks.as_ref(), check_over_ranks(domain, settings, positions, charges))?;
+        let settings = &FieldSettings { tuning: Tuning::Model, ..settings.clone() };
+        let grains = OverRanks { ranks: &ranks, domain, settings, positions, charges };
+        let chosen = Tuner::new(domain, settings, grains.statistics()?, &grains).choose()?;
+        let field = Self::over_ranks_with_choice(ranks, domain, settings, &Choice::P3m(chosen.parameters))?;
+        Ok(Self { error_estimated: chosen.estimated, error_measured: chosen.measured, ..field })
+    }
+
+    /// Builds a field as [`Self::over_ranks`] does, with parameters chosen earlier.
+    ///
+    /// # Errors
+    /// A choice that is none of p3m's.
+    pub fn over_ranks_with_choice(
+        ranks: Arc<dyn Ranks>,
+        domain: &Domain,
+        settings: &FieldSettings,
+        choice: &Choice,
+    ) -> Result<Self, FieldError> {
+        let Choice::P3m(parameters) = choice else {
+            return Err(FieldError::Settings(format!(
+                "ranks cannot share a field with the parameters {choice:?}; choose method p3m"
+            )));
+        };
+        changing::check(domain, settings)?;
+        Ok(Self {
+            domain: domain.clone(),
+            settings: settings.clone(),
+            choice: choice.clone(),
+            method: Box::new(P3mOverRanks::new(&ranks, domain, settings, *parameters)),
+            ranks: Some(ranks),
+            faces: FacesLevel::new(domain, settings)?,
+            external: ExternalField::new(domain, settings),
+            stopwatch: Stopwatch::default(),
+            mesh_cells: None,
+            error_estimated: None,
+            error_measured: None,
+        })
     }
 
     /// Makes the field over a field solver's mesh, whose boundary conditions take the place of a domain's:
@@ -113,6 +173,7 @@ impl ElectricField {
                     stopwatch: Stopwatch::default(),
                     domain,
                     mesh_cells: Some(cells),
+                    ranks: None,
                     settings: settings.clone(),
                     choice: choice.clone(),
                     method: Box::new(Kolehmainen::over(solver, permittivity, background, *cutoff_m)?),
@@ -140,6 +201,7 @@ impl ElectricField {
             stopwatch: Stopwatch::default(),
             domain,
             mesh_cells: Some(cells),
+            ranks: None,
             settings: settings.clone(),
             choice: Choice::P3m(parameters),
             method: Box::new(p3m),
@@ -178,6 +240,7 @@ impl ElectricField {
             external: ExternalField::new(domain, settings),
             stopwatch: Stopwatch::default(),
             mesh_cells: None,
+            ranks: None,
             error_estimated: None,
             error_measured: None,
         })
@@ -203,7 +266,8 @@ impl ElectricField {
             )));
         }
         check_scene(domain, settings, positions, charges)?;
-        let tuner = Tuner::new(domain, settings, positions, charges);
+        let grains = OneProcess { domain, settings, positions, charges };
+        let tuner = Tuner::new(domain, settings, grains.statistics(), &grains);
         let open = Geometry::of(domain) == Geometry::Open;
         let mut candidates = tuner.table()?;
         if open && tuner.all_pairs_are_cheaper(images_per_charge(domain)) {
@@ -216,6 +280,24 @@ impl ElectricField {
         }
         Ok(candidates)
     }
+}
+
+/// Refuses what ranks cannot share, on one of them.
+fn check_over_ranks(
+    domain: &Domain,
+    settings: &FieldSettings,
+    positions: &[Vector3<f64>],
+    charges: &[f64],
+) -> Result<(), FieldError> {
+    check_finite(positions, charges)?;
+    check_in_box(domain, positions)?;
+    if settings.method == Method::P3m {
+        return Ok(());
+    }
+    Err(FieldError::Settings(format!(
+        "method {} cannot be shared by ranks; choose method p3m",
+        settings.method
+    )))
 }
 
 /// Refuses methods that have no far level.

@@ -162,6 +162,18 @@ impl AxisImages {
         Self { period, images: vec![AxisImage::IDENTITY] }
     }
 
+    /// Whether an image of any coordinate from `from` to `to` lies in the closed interval from `low` to
+    /// `high` [m].
+    fn reach(&self, [from, to]: [f64; 2], low: f64, high: f64) -> bool {
+        self.images.iter().any(|image| {
+            let ends = [image.apply(from), image.apply(to)];
+            let (first, last) = (ends[0].min(ends[1]), ends[0].max(ends[1]));
+            // The last image that begins at or below the interval's end.
+            let periods = self.period.map_or(0.0, |period| ((high - first) / period).floor() * period);
+            first + periods <= high && last + periods >= low
+        })
+    }
+
     /// Calls `visit` for every image of `x` in the closed interval from `low` to `high` [m].
     fn for_each_between(&self, x: f64, low: f64, high: f64, mut visit: impl FnMut(AxisCopy)) {
         for (index, image) in self.images.iter().enumerate() {
@@ -230,6 +242,16 @@ impl BoundingBox {
     pub(crate) fn extent(&self) -> Vector3<f64> {
         self.max - self.min
     }
+
+    /// Whether a point lies strictly inside.
+    pub(crate) fn contains(&self, point: &Vector3<f64>) -> bool {
+        (0..3).all(|axis| self.min[axis] < point[axis] && point[axis] < self.max[axis])
+    }
+
+    /// Square of the distance of a point to the box, zero inside [m²].
+    pub(crate) fn distance_squared(&self, point: &Vector3<f64>) -> f64 {
+        (point - point.sup(&self.min).inf(&self.max)).norm_squared()
+    }
 }
 
 /// The images of any point in a box.
@@ -286,6 +308,14 @@ impl ImageLattice {
         });
     }
 
+    /// Whether an image of any point of a box may lie within `radius` [m] of another.
+    pub(crate) fn reaches(&self, from: &BoundingBox, target: &BoundingBox, radius: f64) -> bool {
+        (0..3).all(|axis| {
+            let (low, high) = (target.min[axis] - radius, target.max[axis] + radius);
+            self.axes[axis].reach([from.min[axis], from.max[axis]], low, high)
+        })
+    }
+
     /// Calls `visit` for every image without periods: all there are in an open box.
     pub(crate) fn for_each_finite(&self, x: &Vector3<f64>, mut visit: impl FnMut(Image)) {
         for (i, first) in self.axes[0].images.iter().enumerate() {
@@ -300,6 +330,18 @@ impl ImageLattice {
                 }
             }
         }
+    }
+}
+
+/// The part of a domain none of whose points has an image, but itself, within `radius` [m] of a target box;
+/// empty where the target lies outside the domain.
+pub(crate) fn without_images(domain: &Domain, target: &BoundingBox, radius: f64) -> BoundingBox {
+    let is_inside =
+        |axis: usize| domain.min()[axis] <= target.min[axis] && target.max[axis] <= domain.max()[axis];
+    if (0..3).all(is_inside) {
+        BoundingBox { min: domain.min().add_scalar(radius), max: domain.max().add_scalar(-radius) }
+    } else {
+        BoundingBox { min: domain.max(), max: domain.min() }
     }
 }
 

@@ -45,7 +45,7 @@ pub(crate) fn check_inside(domain: &Domain, positions: &[Vector3<f64>]) -> Resul
 }
 
 /// Refuses grains beyond any face that is not periodic. `index` is counted from 0.
-fn check_in_box(domain: &Domain, positions: &[Vector3<f64>]) -> Result<(), FieldError> {
+pub(crate) fn check_in_box(domain: &Domain, positions: &[Vector3<f64>]) -> Result<(), FieldError> {
     check_inside(domain, positions)?;
     let outside = |position: &Vector3<f64>| {
         Axis::ALL.into_iter().any(|axis| {
@@ -81,19 +81,34 @@ fn normal_fluxes(domain: &Domain) -> impl Iterator<Item = f64> {
     })
 }
 
+/// Sums of charges [C].
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub(crate) struct ChargeSums {
+    /// Sum of the charges.
+    pub(crate) net: f64,
+    /// Sum of their sizes.
+    pub(crate) absolute: f64,
+}
+
+impl ChargeSums {
+    /// Sums of the given charges.
+    pub(crate) fn of(charges: &[f64]) -> Self {
+        Self { net: charges.iter().sum(), absolute: charges.iter().map(|charge| charge.abs()).sum() }
+    }
+}
+
 /// Refuses a net charge that no face can take.
 pub(crate) fn check_net_charge(
     domain: &Domain,
     permittivity: Permittivity,
     neutralising_background: bool,
-    charges: &[f64],
+    sums: ChargeSums,
 ) -> Result<(), FieldError> {
     if neutralising_background || !domain.needs_neutrality() {
         return Ok(());
     }
-    let net_charge_c = charges.iter().sum::<f64>() - charge_of_normal_fields(domain, permittivity);
-    let absolute = charges.iter().map(|charge| charge.abs()).sum::<f64>()
-        + permittivity.absolute() * normal_fluxes(domain).map(f64::abs).sum::<f64>();
+    let net_charge_c = sums.net - charge_of_normal_fields(domain, permittivity);
+    let absolute = sums.absolute + permittivity.absolute() * normal_fluxes(domain).map(f64::abs).sum::<f64>();
     if net_charge_c.abs() > NET_CHARGE_ROUND_OFF * absolute {
         return Err(FieldError::NetCharge { net_charge_c });
     }
@@ -111,7 +126,7 @@ pub(crate) fn check_charges_in_box(
 ) -> Result<(), FieldError> {
     check_finite(positions, charges)?;
     check_in_box(domain, positions)?;
-    check_net_charge(domain, permittivity, neutralising_background, charges)
+    check_net_charge(domain, permittivity, neutralising_background, ChargeSums::of(charges))
 }
 
 /// Refuses particles that a grid in the box of a scene with these settings cannot carry, as p3m does at every
@@ -155,9 +170,12 @@ mod tests {
         let domain =
             box_with([[insulating(field), insulating(0.0)], [insulating(0.0); 2], [Boundary::Periodic; 2]]);
         let taken = permittivity.absolute() * field * 6.0;
-        assert!(check_net_charge(&domain, permittivity, false, &[0.5 * taken, 0.5 * taken]).is_ok());
-        assert!(check_net_charge(&domain, permittivity, false, &[taken, -taken]).is_err());
-        assert!(check_net_charge(&domain, permittivity, true, &[taken, -taken]).is_ok());
+        assert!(
+            check_net_charge(&domain, permittivity, false, ChargeSums::of(&[0.5 * taken, 0.5 * taken]))
+                .is_ok()
+        );
+        assert!(check_net_charge(&domain, permittivity, false, ChargeSums::of(&[taken, -taken])).is_err());
+        assert!(check_net_charge(&domain, permittivity, true, ChargeSums::of(&[taken, -taken])).is_ok());
     }
 
     #[test]
@@ -165,15 +183,21 @@ mod tests {
         let net = [1e-14, 2e-14];
         let refused = box_with([[Boundary::Periodic; 2]; 3]);
         assert!(matches!(
-            check_net_charge(&refused, Permittivity::VACUUM, false, &net),
+            check_net_charge(&refused, Permittivity::VACUUM, false, ChargeSums::of(&net)),
             Err(FieldError::NetCharge { .. })
         ));
         assert!(
-            check_net_charge(&refused, Permittivity::VACUUM, false, &[1e-14, -1e-14 * (1.0 + 1e-13)]).is_ok()
+            check_net_charge(
+                &refused,
+                Permittivity::VACUUM,
+                false,
+                ChargeSums::of(&[1e-14, -1e-14 * (1.0 + 1e-13)])
+            )
+            .is_ok()
         );
         let grounded =
             box_with([[Boundary::Periodic; 2], [insulating(0.0), Boundary::Grounded], [Boundary::Open; 2]]);
-        assert!(check_net_charge(&grounded, Permittivity::VACUUM, false, &net).is_ok());
+        assert!(check_net_charge(&grounded, Permittivity::VACUUM, false, ChargeSums::of(&net)).is_ok());
     }
 
     #[test]

@@ -4,3 +4,4 @@
 pub(crate) mod image_cells;
 pub(crate) mod images;
 pub(crate) mod inputs;
+pub(crate) mod uncut;

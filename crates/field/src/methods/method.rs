@@ -52,7 +52,16 @@ pub trait FieldMethod: fmt::Debug + Send + Sync {
     ) -> Result<(), FieldError> {
         let levels = self.levels(0.0, positions, charges, wanted)?;
         Sum::of_charges(levels, positions).write(wanted, out);
-        check_result(&out.e)
+        self.agreed(check_result(&out.e))
+    }
+
+    /// Returns an outcome of what follows the levels; where ranks share the field, the first bad one of all
+    /// ranks.
+    ///
+    /// # Errors
+    /// The outcome's.
+    fn agreed(&self, outcome: Result<(), FieldError>) -> Result<(), FieldError> {
+        outcome
     }
 
     /// Computes E at a sample of the particles twice, by the method's own parameters and by others that err

@@ -5,4 +5,5 @@ pub(crate) mod direct;
 pub(crate) mod kolehmainen;
 pub(crate) mod method;
 pub(crate) mod p3m;
+pub(crate) mod p3m_over_ranks;
 pub(crate) mod p3m_parameters;

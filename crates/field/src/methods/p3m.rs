@@ -20,6 +20,7 @@ use crate::numerics::stopwatch::Stopwatch;
 use crate::sum::{Levels, OwnClouds, Part, Sum};
 use crate::values::{FieldAt, FieldValues, Wanted};
 use amberfield_core::{Domain, FieldSettings, Permittivity};
+use amberfield_laws::kaiser_bessel_cloud::Cloud;
 use nalgebra::Vector3;
 use std::f64::consts::PI;
 
@@ -138,15 +139,12 @@ impl P3m {
         }
         targets
     }
+}
 
-    /// Mean potential of the near level in a box without conductor, where the mean must vanish.
-    fn background_potential(&self, charges: &[f64]) -> f64 {
-        if !self.domain.needs_neutrality() {
-            return 0.0;
-        }
-        let net: f64 = charges.iter().sum();
-        2.0 * PI * self.parameters.cloud().mean_square() * net / self.domain.volume()
-    }
+/// Mean potential over Coulomb's constant [C/m] of the pairs of a net charge [C], in a box without conductor,
+/// where the mean must vanish; zero in others.
+pub(crate) fn background_potential(domain: &Domain, cloud: Cloud, net: f64) -> f64 {
+    if domain.needs_neutrality() { 2.0 * PI * cloud.mean_square() * net / domain.volume() } else { 0.0 }
 }
 
 impl FieldMethod for P3m {
@@ -204,7 +202,7 @@ impl FieldMethod for P3m {
             far_of_charges,
             far_of_cells: Part::new(&self.far_field),
             own_clouds: OwnClouds { charges, at_centre: self.parameters.cloud().potential(0.0) },
-            background: self.background_potential(charges),
+            background: background_potential(&self.domain, self.parameters.cloud(), charges.iter().sum()),
             ..Levels::default()
         })
     }

@@ -79,6 +79,11 @@ impl GridAxis {
         Self { nodes, spacing, origin, transform, offset, open: kind.is_open(), kind }
     }
 
+    /// Whether both ends are joined.
+    pub(crate) fn is_periodic(&self) -> bool {
+        self.kind == AxisKind::Periodic
+    }
+
     /// Greatest distance between a charge and a node, images included [m].
     pub(crate) fn reach(&self) -> f64 {
         let images = if self.open && self.transform.symmetry() != Symmetry::Periodic { 2.0 } else { 1.0 };

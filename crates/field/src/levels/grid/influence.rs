@@ -22,6 +22,7 @@ use nalgebra::Vector3;
 use rayon::prelude::*;
 use rustdct::DctPlanner;
 use std::f64::consts::PI;
+use std::ops::Range;
 
 /// Width of the singular part's Gaussian in node spacings: its spectrum is e^{−32} at the zone's edge.
 const SINGULAR_WIDTH: f64 = 2.55;
@@ -50,6 +51,11 @@ impl AxisWaves {
         }
     }
 
+    /// Some of the waves.
+    fn part(&self, rows: Range<usize>) -> Self {
+        Self { wave: self.wave[rows.clone()].to_vec(), per_window: self.per_window[rows].to_vec() }
+    }
+
     fn of(axis: &GridAxis, window: &Window) -> Self {
         let transform = &axis.transform;
         let phases = (0..transform.wave_count()).map(|index| transform.wave_number(index));
@@ -58,11 +64,14 @@ impl AxisWaves {
 }
 
 /// The influence function of a grid, with the transforms' scale and the cell volume divided out, by wave
-/// index.
+/// index; for all waves or for some along y.
 #[derive(Debug)]
 pub(crate) struct Influence {
     dimensions: [usize; 3],
+    /// Place of an axis' wave 0 in the whole table.
     first: [usize; 3],
+    /// Rows of the whole table that are held.
+    rows: Range<usize>,
     /// `[y][z][x]`.
     values: Vec<f64>,
 }
@@ -70,15 +79,27 @@ pub(crate) struct Influence {
 impl Influence {
     /// Influence function of a cloud that a window spreads.
     pub(crate) fn new(axes: &[GridAxis; 3], window: &Window, cloud: Cloud) -> Self {
+        Self::part(axes, window, cloud, all(axes))
+    }
+
+    /// Influence function of a cloud that a window spreads, for some of the coefficients along y.
+    pub(crate) fn part(
+        axes: &[GridAxis; 3],
+        window: &Window,
+        cloud: Cloud,
+        coefficients: Range<usize>,
+    ) -> Self {
         let wide = singular_width(axes.each_ref().map(|axis| axis.spacing), cloud);
         let mut open = (0..3).filter(|&axis| axes[axis].open);
         match (open.next(), open.next()) {
-            (None, _) => Self::closed(axes, window, 0.0, |_, wave_squared| cloud.spectrum(wave_squared)),
-            (Some(_), Some(_)) => cut_in_space(axes, window, cloud, wide),
+            (None, _) => {
+                Self::closed(axes, window, coefficients, 0.0, |_, wave_squared| cloud.spectrum(wave_squared))
+            }
+            (Some(_), Some(_)) => cut_in_space(axes, window, cloud, wide, coefficients),
             (Some(open), None) => {
                 let radius = axes[open].reach() + TAIL_WIDTHS * wide;
                 let at_origin = 0.5 * (wide * wide - cloud.mean_square() - radius * radius);
-                Self::closed(axes, window, at_origin, |wave, wave_squared| {
+                Self::closed(axes, window, coefficients, at_origin, |wave, wave_squared| {
                     truncated(cloud, wide, slab_truncation(wave, open, radius), wave_squared)
                 })
             }
@@ -88,14 +109,14 @@ impl Influence {
     /// Influence function of a cloud less a wider one: nothing is left beyond the wider one's end.
     pub(crate) fn between(axes: &[GridAxis; 3], window: &Window, cloud: Cloud, wider: Cloud) -> Self {
         let at_origin = 0.5 * (wider.mean_square() - cloud.mean_square());
-        Self::closed(axes, window, at_origin, |_, wave_squared| {
+        Self::closed(axes, window, all(axes), at_origin, |_, wave_squared| {
             cloud.spectrum(wave_squared) - wider.spectrum(wave_squared)
         })
     }
 
     /// Influence function that makes of charges the density of their clouds [C/m³] in place of a potential.
     pub(crate) fn density(axes: &[GridAxis; 3], window: &Window, cloud: Cloud) -> Self {
-        Self::closed(axes, window, 0.25 / PI, |_, wave_squared| {
+        Self::closed(axes, window, all(axes), 0.25 / PI, |_, wave_squared| {
             0.25 / PI * wave_squared * cloud.spectrum(wave_squared)
         })
     }
@@ -104,16 +125,19 @@ impl Influence {
     fn closed(
         axes: &[GridAxis; 3],
         window: &Window,
+        coefficients: Range<usize>,
         at_origin: f64,
         spectrum: impl Fn(Vector3<f64>, f64) -> f64 + Sync,
     ) -> Self {
-        let waves = axes.each_ref().map(|axis| AxisWaves::of(axis, window));
+        let rows = rows(&axes[1], 0, coefficients);
+        let mut waves = axes.each_ref().map(|axis| AxisWaves::of(axis, window));
+        waves[1] = waves[1].part(rows.clone());
         let mut values = table(&waves, at_origin, |_, wave, squared| spectrum(wave, squared));
         let scale: f64 = axes.iter().map(|axis| axis.transform.scale() * axis.spacing).product();
         for value in &mut values {
             *value *= 4.0 * PI / scale;
         }
-        Self { dimensions: waves.map(|axis| axis.wave.len()), first: [0; 3], values }
+        Self { dimensions: waves.map(|axis| axis.wave.len()), first: [0; 3], rows, values }
     }
 
     /// Bytes held.
@@ -124,12 +148,27 @@ impl Influence {
     /// Multiplies a line of coefficients along x, at wave indices `y` and `z`.
     pub(crate) fn apply(&self, axes: &[GridAxis; 3], line: &mut [f64], y: usize, z: usize) {
         let [x_count, _, z_count] = self.dimensions;
-        let start = ((y + self.first[1]) * z_count + z + self.first[2]) * x_count + self.first[0];
+        let start =
+            ((y + self.first[1] - self.rows.start) * z_count + z + self.first[2]) * x_count + self.first[0];
         let values = &self.values[start..];
         for (coefficient, value) in line.iter_mut().enumerate() {
             *value *= values[axes[0].transform.wave_index(coefficient)];
         }
     }
+}
+
+/// All coefficients along y.
+fn all(axes: &[GridAxis; 3]) -> Range<usize> {
+    0..axes[1].transform.len()
+}
+
+/// Rows of a table for some coefficients along y, where wave 0 is row `first`.
+fn rows(axis: &GridAxis, first: usize, coefficients: Range<usize>) -> Range<usize> {
+    if coefficients.is_empty() {
+        return 0..0;
+    }
+    let row = |coefficient| first + axis.transform.wave_index(coefficient);
+    row(coefficients.start)..row(coefficients.end - 1) + 1
 }
 
 /// `spectrum`/(k² W²) at every wave vector (which is handed over with its indices and its square),
@@ -176,7 +215,13 @@ fn slab_truncation(wave: Vector3<f64>, open_axis: usize, radius: f64) -> f64 {
 
 /// Kernel of a box with two or three axes with an open face: cut at a cylinder or a sphere on a grid wide
 /// enough for it, then cropped in real space to the displacements that occur.
-fn cut_in_space(axes: &[GridAxis; 3], window: &Window, cloud: Cloud, wide: f64) -> Influence {
+fn cut_in_space(
+    axes: &[GridAxis; 3],
+    window: &Window,
+    cloud: Cloud,
+    wide: f64,
+    coefficients: Range<usize>,
+) -> Influence {
     let closed = axes.iter().position(|axis| !axis.open);
     let reach = Vector3::from_fn(|axis, _| if closed == Some(axis) { 0.0 } else { axes[axis].reach() });
     let radius = reach.norm() + TAIL_WIDTHS * wide;
@@ -190,20 +235,31 @@ fn cut_in_space(axes: &[GridAxis; 3], window: &Window, cloud: Cloud, wide: f64) 
         let phases = (0..=wide_half).map(|index| PI * index as f64 / wide_half as f64);
         AxisWaves::new(axes[axis].spacing, window, phases)
     });
-    let mut values = match closed {
-        Some(closed) => around_axis(closed, &axes[closed], &waves, cloud, wide, radius),
+    // Odd lines have no constant coefficient: their first wave is the second of the even kernel.
+    let first: [usize; 3] = std::array::from_fn(|axis| {
+        usize::from(closed != Some(axis) && axes[axis].transform.wave_number(0) > 0.0)
+    });
+    let rows = rows(&axes[1], first[1], coefficients);
+    let kernel = |waves: &[AxisWaves; 3]| match closed {
+        Some(closed) => around_axis(closed, &axes[closed], waves, cloud, wide, radius),
         None => {
             let at_origin = 0.5 * (wide * wide - cloud.mean_square() + radius * radius);
-            table(&waves, at_origin, |_, _, wave_squared| {
+            table(waves, at_origin, |_, _, wave_squared| {
                 let truncation = -(wave_squared.sqrt() * radius).cos();
                 truncated(cloud, wide, truncation, wave_squared)
             })
         }
     };
     let mut dimensions = waves.each_ref().map(|axis| axis.wave.len());
+    dimensions[1] = rows.len();
+    let mut values = if closed == Some(1) {
+        kernel(&[waves[0].clone(), waves[1].part(rows.clone()), waves[2].clone()])
+    } else {
+        cropped_rows(&waves, half[1], rows.clone(), kernel)
+    };
     // In the order of the table: y, z, x.
     for axis in [1, 2, 0] {
-        if closed != Some(axis) {
+        if axis != 1 && closed != Some(axis) {
             values = crop_axis(&values, &mut dimensions, axis, half[axis]);
         }
         let normalised = axes[axis].transform.scale();
@@ -215,11 +271,34 @@ fn cut_in_space(axes: &[GridAxis; 3], window: &Window, cloud: Cloud, wide: f64) 
     for value in &mut values {
         *value *= 4.0 * PI / volume;
     }
-    // Odd lines have no constant coefficient: their first wave is the second of the even kernel.
-    let first: [usize; 3] = std::array::from_fn(|axis| {
-        usize::from(closed != Some(axis) && axes[axis].transform.wave_number(0) > 0.0)
-    });
-    Influence { dimensions, first, values }
+    Influence { dimensions, first, rows, values }
+}
+
+/// Some rows of a kernel that is cropped to the displacements along y that occur, `keep` nodes. Where they
+/// are few, the kernel is computed in pieces of z, and never held as a whole.
+fn cropped_rows(
+    waves: &[AxisWaves; 3],
+    keep: usize,
+    rows: Range<usize>,
+    kernel: impl Fn(&[AxisWaves; 3]) -> Vec<f64>,
+) -> Vec<f64> {
+    /// Waves along z that are computed at a time.
+    const PIECE: usize = 16;
+    let [x_count, y_count, z_count] = waves.each_ref().map(|axis| axis.wave.len());
+    let piece = if rows.len() >= keep { z_count } else { PIECE };
+    let mut values = vec![0.0; rows.len() * z_count * x_count];
+    for start in (0..z_count).step_by(piece) {
+        let part = start..z_count.min(start + piece);
+        let mut dimensions = [x_count, y_count, part.len()];
+        let whole = kernel(&[waves[0].clone(), waves[1].clone(), waves[2].part(part.clone())]);
+        let cropped = crop_axis(&whole, &mut dimensions, 1, keep);
+        let length = part.len() * x_count;
+        for (to, from) in rows.clone().enumerate() {
+            values[(to * z_count + start) * x_count..][..length]
+                .copy_from_slice(&cropped[from * length..][..length]);
+        }
+    }
+    values
 }
 
 /// Spectrum over k² of the kernel around the only closed axis, cut at a radius; `[y][z][x]`.

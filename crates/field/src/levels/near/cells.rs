@@ -1,7 +1,7 @@
 //! Charges and those of their images that lie near, sorted into long cells, in units of the cut-off radius.
 
 use super::candidates::Sources;
-use crate::geometry::images::{BoundingBox, ImageLattice};
+use crate::geometry::images::{BoundingBox, ImageLattice, without_images};
 use crate::numerics::processor::PADDING;
 use amberfield_core::Domain;
 use nalgebra::Vector3;
@@ -57,20 +57,20 @@ pub(super) struct NearCells {
 }
 
 impl NearCells {
-    /// Sorts the charges and their images within the cut-off radius of the positions' bounding box;
-    /// positions and radius in m and inside the domain.
+    /// Sorts the charges and their images within the cut-off radius of the bounding box of the first
+    /// `targets` positions; positions and radius in m, positions inside the domain or within a period of it.
     pub(super) fn build(
         &mut self,
         domain: &Domain,
         lattice: &ImageLattice,
-        positions: &[Vector3<f64>],
-        charges: &[f64],
+        (positions, charges): (&[Vector3<f64>], &[f64]),
+        targets: usize,
         radius: f64,
         per_charge: f64,
     ) {
         self.entries.clear();
         self.counts = [0; 3];
-        if let Some(target) = BoundingBox::around(positions) {
+        if let Some(target) = BoundingBox::around(&positions[..targets]) {
             let low = target.min.add_scalar(-radius);
             self.collect(domain, lattice, positions, charges, &target, radius);
             for entry in &mut self.entries {
@@ -92,12 +92,11 @@ impl NearCells {
         target: &BoundingBox,
         radius: f64,
     ) {
-        // No image of what lies deeper inside the domain than the cut-off is near.
-        let (low, high) = (domain.min().add_scalar(radius), domain.max().add_scalar(-radius));
+        let deep = without_images(domain, target, radius);
         for (index, (position, &charge)) in positions.iter().zip(charges).enumerate() {
             #[expect(clippy::cast_possible_truncation, reason = "fewer than 2³² particles")]
             let real = index as u32;
-            if (0..3).all(|axis| low[axis] < position[axis] && position[axis] < high[axis]) {
+            if deep.contains(position) {
                 self.entries.push(Entry { place: (*position).into(), charge, real, cell: 0 });
                 continue;
             }
@@ -263,7 +262,7 @@ mod tests {
         // No image lies exactly at the cut-off: rounding would decide.
         for radius in [0.11, 0.5, 2.57] {
             let mut cells = NearCells::default();
-            cells.build(&domain, &lattice, &positions, &charges, radius, 1.0);
+            cells.build(&domain, &lattice, (&positions, &charges), positions.len(), radius, 1.0);
             let target = BoundingBox::around(&positions).unwrap();
             let near = |a: [f64; 3], b: [f64; 3]| (Vector3::from(a) - Vector3::from(b)).norm() < 1.0;
             for source in (0..cells.real.len()).filter(|&source| cells.real[source] != IMAGE) {

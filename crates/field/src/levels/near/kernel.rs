@@ -245,7 +245,7 @@ mod tests {
         let domain =
             Domain::new(Vector3::repeat(-2.0), Vector3::repeat(2.0), [[Boundary::Open; 2]; 3]).unwrap();
         let mut cells = NearCells::default();
-        cells.build(&domain, &ImageLattice::new(&domain), &positions, &charges, CUTOFF, 1.0);
+        cells.build(&domain, &ImageLattice::new(&domain), (&positions, &charges), COUNT, CUTOFF, 1.0);
         Scatter { positions, charges, cells }
     }
 

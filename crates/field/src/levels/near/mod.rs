@@ -2,6 +2,7 @@
 
 mod candidates;
 mod cells;
+pub(crate) mod ghosts;
 mod kernel;
 mod target;
 
@@ -90,12 +91,12 @@ impl NearLevel {
     }
 
     /// Sorts charges and their images into cells; the field will be asked for at the first `targets` of
-    /// them. Positions lie inside the domain.
+    /// them. Positions lie inside the domain or within a period of it.
     pub(crate) fn sort(&mut self, positions: &[Vector3<f64>], charges: &[f64], targets: usize) {
         self.largest = charges.iter().fold(0.0, |largest, charge| charge.abs().max(largest));
         let per_charge = if self.largest > 0.0 { 1.0 / self.largest } else { 0.0 };
         let Self { domain, lattice, parameters, cells, .. } = self;
-        cells.build(domain, lattice, positions, charges, parameters.cutoff_m, per_charge);
+        cells.build(domain, lattice, (positions, charges), targets, parameters.cutoff_m, per_charge);
         self.targets.clear();
         // An image's index lies beyond any particle's.
         let real = self.cells.real.iter().enumerate().filter(|(_, particle)| (**particle as usize) < targets);

@@ -7,7 +7,7 @@ mod splitting;
 use crate::error::FieldError;
 use crate::geometry::image_cells::ImageCells;
 use crate::geometry::images::{BoundingBox, Geometry, ImageLattice};
-use crate::geometry::inputs::{check_finite, check_inside, check_net_charge};
+use crate::geometry::inputs::{ChargeSums, check_finite, check_inside, check_net_charge};
 use crate::methods::method::FieldMethod;
 use crate::numerics::stopwatch::Stopwatch;
 use crate::sum::{Levels, OwnClouds, Part};
@@ -89,7 +89,8 @@ impl Direct {
     fn sum(&mut self, positions: &[Vector3<f64>], charges: &[f64]) -> Result<Parts, FieldError> {
         check_finite(positions, charges)?;
         check_inside(&self.domain, positions)?;
-        check_net_charge(&self.domain, self.permittivity, self.neutralising_background, charges)?;
+        let sums = ChargeSums::of(charges);
+        check_net_charge(&self.domain, self.permittivity, self.neutralising_background, sums)?;
         self.stopwatch.restart();
         self.wrapped.clear();
         self.wrapped.extend(positions.iter().map(|position| self.domain.wrap(*position)));
