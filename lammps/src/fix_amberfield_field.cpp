@@ -251,7 +251,7 @@ double FixAmberfieldField::longest() const
     return all;
 }
 
-amberfield::GatheredField::Energy FixAmberfieldField::energy()
+amberfield::SharedField::Energy FixAmberfieldField::energy()
 {
     if (energy_step_ != update->ntimestep) {
         energy_ = source_.energy();
@@ -263,7 +263,7 @@ amberfield::GatheredField::Energy FixAmberfieldField::energy()
 // Electric energy at present, evaluated once more: the force is its slope.
 double FixAmberfieldField::compute_scalar()
 {
-    const amberfield::GatheredField::Energy now = energy();
+    const amberfield::SharedField::Energy now = energy();
     return now.of_charges + now.of_faces;
 }
 

@@ -6,8 +6,8 @@
 
 #include "field_words.h"
 #include "forecast.h"
-#include "gathered_field.h"
 #include "interval.h"
+#include "shared_field.h"
 #include "units.h"
 
 #include "fix.h"
@@ -72,13 +72,13 @@ class FixAmberfieldField : public Fix {
     double scale(const double *sums, const Census &census) const;
     double longest() const;
     void add_virial();
-    amberfield::GatheredField::Energy energy();
+    amberfield::SharedField::Energy energy();
     // Sums that change where an atom was moved or charged by another command
     std::vector<double> fingerprint() const;
 
     const amberfield::Units units_;
     const amberfield::FieldWords words_;
-    amberfield::GatheredField source_;
+    amberfield::SharedField source_;
     amberfield::Forecast forecast_;
     amberfield::Interval interval_;
 
@@ -89,7 +89,7 @@ class FixAmberfieldField : public Fix {
     double evaluated_count_ = 0.0;
     bigint last_step_ = -1;
     bigint energy_step_ = -1;
-    amberfield::GatheredField::Energy energy_ = {0.0, 0.0};
+    amberfield::SharedField::Energy energy_ = {0.0, 0.0};
     std::vector<double> left_at_;    // fingerprint at the end of the last run
 };
 

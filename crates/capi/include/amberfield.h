@@ -49,10 +49,9 @@ typedef struct AmberfieldField AmberfieldField;
 
 // The field of a host program's particles.
 //
-// A code that runs under MPI gathers positions and charges to one rank of each machine (32 bytes a particle,
-// little beside the work), calls the library there and scatters the fields. The library uses all cores that
-// this rank may use. One handle for the whole run keeps parameters, memory and a solver's warm start. Call
-// it every so many steps and keep E in between.
+// A code that runs under MPI opens it with amberfield_host_open_over_ranks; each rank then gives its own
+// particles, and gets their field. One handle for the whole run keeps parameters, memory and a solver's warm
+// start. Call it every so many steps and keep E in between.
 typedef struct AmberfieldHost AmberfieldHost;
 
 // Box and periodic axes of the mesh of all ranks, and where the cells of one rank are among them.
@@ -299,6 +298,34 @@ typedef struct AmberfieldHostSettings {
   uint64_t threads;
 } AmberfieldHostSettings;
 
+// Sends `sent_counts[k]` numbers to every rank k and receives `received_counts[k]` from it; both lie side by
+// side in the order of the ranks. MPI_Alltoallv does this. Returns 0, or anything else on failure.
+typedef int32_t (*AmberfieldExchange)(void *context,
+                                      const double *sent,
+                                      const uint64_t *sent_counts,
+                                      double *received,
+                                      const uint64_t *received_counts);
+
+// Replaces `count` numbers by their sums over the ranks, to the same bits on all of them. MPI_Allreduce does
+// this. Returns 0, or anything else on failure.
+typedef int32_t (*AmberfieldSum)(void *context, double *values, uint64_t count);
+
+// Functions of a host program by which its ranks exchange numbers. Every rank opens the field with its own
+// table, and calls the same functions of the library in the same order. The functions are called in the
+// thread that calls the library.
+typedef struct AmberfieldRanks {
+  // Number of this rank, from 0.
+  uint64_t rank;
+  // Number of ranks.
+  uint64_t count;
+  // First argument of the functions.
+  void *context;
+  // Exchange of numbers.
+  AmberfieldExchange exchange;
+  // Sums of numbers.
+  AmberfieldSum sum;
+} AmberfieldRanks;
+
 // Contact whose area grows, of two grains or of a grain with a wall.
 typedef struct AmberfieldContact {
   // Charges of the grains [C]; of a wall none is read.
@@ -462,6 +489,19 @@ enum AmberfieldStatus amberfield_field_reply_potentials(struct AmberfieldField *
 // `settings` may be read; its case is a C string or NULL.
 struct AmberfieldHost *amberfield_host_open(const struct AmberfieldHostSettings *settings);
 
+// Opens a field that ranks share: every rank of the host program opens it with the same settings and its own
+// table, gives its own particles to the calls that follow, and gets their field. All ranks make the same
+// calls in the same order, also those without particles; what fails on one rank fails on all. A rank should
+// have the particles of a compact piece of the box. `threads` 0 stands for all cores that this rank may use.
+//
+// With an OpenFOAM case rank 0 starts the solver and gets the particles of all ranks.
+//
+// # Safety
+// As for amberfield_host_open; `ranks` may be read, and its functions may be called until the handle is
+// closed.
+struct AmberfieldHost *amberfield_host_open_over_ranks(const struct AmberfieldHostSettings *settings,
+                                                       const struct AmberfieldRanks *ranks);
+
 // Returns the reason why the last call on a handle failed; empty if it did not. The text is valid until the
 // next call.
 //
@@ -487,7 +527,8 @@ enum AmberfieldStatus amberfield_host_field(struct AmberfieldHost *host,
 // Computes the energy of the charges [J], whose change with their places gives the forces qE: that of the
 // charges among themselves, their images among them, ½ Σ q V, and that of the charges in the field of the
 // faces' potentials and normal fields, Σ q V. With an OpenFOAM case the second is in the first, once instead
-// of twice a half. Particles are as in amberfield_host_field.
+// of twice a half. Particles are as in amberfield_host_field; ranks that share a field get the energy of the
+// particles of all.
 //
 // # Safety
 // `host` comes from amberfield_host_open and is not closed; the arrays have `count` particles; both energies
@@ -532,7 +573,7 @@ enum AmberfieldStatus amberfield_host_recheck(struct AmberfieldHost *host,
                                               const double *charges);
 
 // Returns the parameters in force as text, for amberfield_host_use_parameters of a later run; empty before
-// the first field. The text is valid until the next call.
+// the first field, and with an OpenFOAM case on all ranks but 0. The text is valid until the next call.
 //
 // # Safety
 // `host` comes from amberfield_host_open and is not closed.

@@ -1,7 +1,6 @@
 //! Parameters of a host's field: how good they are, and their way into the host's own restart files.
 
-use crate::foreign::{guarded, slice};
-use crate::host_side::{AmberfieldHost, NOT_OPEN};
+use crate::host::{AmberfieldHost, NOT_OPEN, Particles, call};
 use crate::status::AmberfieldStatus;
 use amberfield_field::Choice;
 use serde::{Deserialize, Serialize};
@@ -22,13 +21,7 @@ struct Parameters {
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn amberfield_host_measured_error(host: *const AmberfieldHost) -> f64 {
     // SAFETY: the caller's promise.
-    let field = unsafe { &*host }.field.as_ref();
-    let measured = field.map(|field| (field.choice(), field.error_measured()));
-    match measured {
-        Some((_, Some(measured))) => measured.relative_rms,
-        Some((Choice::AllPairs | Choice::Direct, None)) => 0.0,
-        _ => -1.0,
-    }
+    unsafe { &*host }.measured.unwrap_or(-1.0)
 }
 
 /// Measures the error of E on a sample of particles, which have moved since parameters were chosen. Where it
@@ -44,19 +37,13 @@ pub unsafe extern "C" fn amberfield_host_recheck(
     positions: *const f64,
     charges: *const f64,
 ) -> AmberfieldStatus {
-    let count = count as usize;
-    // SAFETY: the caller's promise; three doubles have the layout of an array of three.
-    let (places, charges) = unsafe { (slice::<[f64; 3]>(positions.cast(), count), slice(charges, count)) };
     // SAFETY: the caller's promise.
-    let host = unsafe { &mut *host };
-    let mut error = std::mem::take(&mut host.error);
-    let status = guarded(&mut error, || host.recheck(places, charges).map(|()| AmberfieldStatus::Ok));
-    host.error = error;
-    status
+    let (host, particles) = unsafe { (&mut *host, Particles::new(count, positions, charges)) };
+    call(host, |host| host.recheck(particles))
 }
 
 /// Returns the parameters in force as text, for amberfield_host_use_parameters of a later run; empty before
-/// the first field. The text is valid until the next call.
+/// the first field, and with an OpenFOAM case on all ranks but 0. The text is valid until the next call.
 ///
 /// # Safety
 /// `host` comes from amberfield_host_open and is not closed.
@@ -81,13 +68,13 @@ pub unsafe extern "C" fn amberfield_host_use_parameters(
 ) -> AmberfieldStatus {
     // SAFETY: the caller's promise.
     let (host, text) = unsafe { (&mut *host, CStr::from_ptr(parameters)) };
-    let AmberfieldHost { scene, field, error, .. } = host;
-    guarded(error, || {
-        let scene = scene.as_mut().ok_or(NOT_OPEN)?;
+    call(host, |host| {
+        let scene = host.scene.as_mut().ok_or(NOT_OPEN)?;
         let read = toml::from_str::<Parameters>(&text.to_string_lossy());
         let read = read.map_err(|error| format!("parameters of an earlier run: {}", error.message()))?;
         scene.choice = Some(read.choice);
-        *field = None;
-        Ok(AmberfieldStatus::Ok)
+        host.field = None;
+        host.measured = None;
+        Ok(())
     })
 }

@@ -8,7 +8,11 @@ mod field_flow;
 mod field_potentials;
 mod field_side;
 mod foreign;
+mod host;
+mod host_gathered;
 mod host_parameters;
+mod host_ranks;
+mod host_settings;
 mod host_side;
 mod status;
 
@@ -27,13 +31,15 @@ pub use field_side::{
     amberfield_field_fail, amberfield_field_guess, amberfield_field_open, amberfield_field_refuse,
     amberfield_field_reply, amberfield_field_send_mesh, amberfield_field_wait,
 };
+pub use host::AmberfieldHost;
 pub use host_parameters::{
     amberfield_host_measured_error, amberfield_host_parameters, amberfield_host_recheck,
     amberfield_host_use_parameters,
 };
+pub use host_ranks::{AmberfieldExchange, AmberfieldRanks, AmberfieldSum};
+pub use host_settings::{AmberfieldBoundary, AmberfieldFace, AmberfieldHostSettings};
 pub use host_side::{
-    AmberfieldBoundary, AmberfieldFace, AmberfieldHost, AmberfieldHostSettings, amberfield_host_close,
-    amberfield_host_energy, amberfield_host_error, amberfield_host_field, amberfield_host_open,
-    amberfield_host_retune,
+    amberfield_host_close, amberfield_host_energy, amberfield_host_error, amberfield_host_field,
+    amberfield_host_open, amberfield_host_open_over_ranks, amberfield_host_retune,
 };
 pub use status::AmberfieldStatus;

@@ -2,7 +2,7 @@
 
 use amberfield_capi::{
     AmberfieldContact, AmberfieldFar, AmberfieldFlow, AmberfieldHostSettings, AmberfieldMesh,
-    AmberfieldRequest,
+    AmberfieldRanks, AmberfieldRequest,
 };
 use amberfield_wire::payloads::{
     BoundaryFace, FarQuestion, FlowAnswer, FlowQuestion, MeshOutline, SourceCloud,
@@ -13,11 +13,14 @@ use std::path::{Path, PathBuf};
 /// The variable that makes this test write the header instead: `cargo xtask header` sets it.
 const WRITE: &str = "AMBERFIELD_WRITE_HEADER";
 /// Sources of the header, the shared structures of other crates among them.
-const SOURCES: [&str; 12] = [
+const SOURCES: [&str; 15] = [
     "src/status.rs",
     "src/field_side.rs",
     "src/field_flow.rs",
     "src/field_potentials.rs",
+    "src/host_settings.rs",
+    "src/host_ranks.rs",
+    "src/host.rs",
     "src/host_side.rs",
     "src/host_parameters.rs",
     "src/charge_laws.rs",
@@ -28,7 +31,8 @@ const SOURCES: [&str; 12] = [
     "../wire/src/payloads/mesh_outline.rs",
 ];
 /// Size of every structure here, by its name there [bytes].
-const SIZES: [(&str, usize); 12] = [
+const SIZES: [(&str, usize); 13] = [
+    ("AmberfieldRanks", size_of::<AmberfieldRanks>()),
     ("AmberfieldBoundaryFace", size_of::<BoundaryFace>()),
     ("AmberfieldContact", size_of::<AmberfieldContact>()),
     ("AmberfieldFar", size_of::<AmberfieldFar>()),
@@ -81,15 +85,18 @@ fn names(text: &str) -> Vec<&str> {
     names
 }
 
-/// Types that the header declares, by the word before their names: complete ones with their bodies, others
-/// without.
+/// Types that the header declares, by the word before their names: complete ones with their bodies, others,
+/// those of functions among them, without.
 fn declared<'a>(header: &'a str, kind: &str) -> Vec<(&'a str, Option<&'a str>)> {
     let start = format!("typedef {kind} ");
     let mut found = Vec::new();
     for (place, _) in header.match_indices(&start) {
         let rest = &header[place + start.len()..];
         let name = names(rest.lines().next().expect("a line")).first().copied().expect("a name");
-        let body = rest[name.len()..].trim_start().strip_prefix('{').map(|rest| &rest[..end_of(rest, "\n}")]);
+        let body = rest.trim_start_matches("(*")[name.len()..]
+            .trim_start()
+            .strip_prefix('{')
+            .map(|rest| &rest[..end_of(rest, "\n}")]);
         found.push((name, body));
     }
     found
@@ -154,8 +161,9 @@ fn functions(header: &str) -> Vec<&str> {
 #[test]
 fn every_type_that_the_header_names_is_declared() {
     let header = header();
+    let kinds = ["enum", "struct", "int32_t"];
     let known: Vec<&str> =
-        ["enum", "struct"].iter().flat_map(|kind| declared(&header, kind)).map(|(name, _)| name).collect();
+        kinds.iter().flat_map(|kind| declared(&header, kind)).map(|(name, _)| name).collect();
     for name in names(&header) {
         assert!(known.contains(&name), "{name} is named and not declared");
     }

@@ -10,7 +10,7 @@ use crate::choosing::trials::{Trials, difference, squares};
 use crate::error::FieldError;
 use crate::methods::p3m_over_ranks::P3mOverRanks;
 use crate::methods::p3m_parameters::P3mParameters;
-use crate::ranks::{Parcels, Ranks, exchange_of_any_size};
+use crate::ranks::{Parcels, Ranks};
 use amberfield_core::{Domain, FieldSettings};
 use nalgebra::Vector3;
 use std::sync::Arc;
@@ -60,7 +60,7 @@ impl OverRanks<'_> {
             }
             sent.end_parcel();
         }
-        exchange_of_any_size(self.ranks.as_ref(), &sent, &mut received)?;
+        self.ranks.exchange_of_any_size(&sent, &mut received)?;
         let mut pairs = received.values.as_chunks::<2>().0.to_vec();
         pairs.sort_by(|a, b| a[0].total_cmp(&b[0]));
         let of_bin = |together: &[[f64; 2]]| together.iter().map(|[_, sum]| sum).sum::<f64>().powi(2);

@@ -21,7 +21,7 @@ use crate::methods::p3m::P3m;
 use crate::methods::p3m_over_ranks::P3mOverRanks;
 use crate::methods::p3m_parameters::P3mParameters;
 use crate::numerics::stopwatch::Stopwatch;
-use crate::ranks::{Ranks, agreed};
+use crate::ranks::Ranks;
 use crate::values::{FieldValues, Wanted};
 use amberfield_core::{Domain, FieldSettings, Method, Tuning};
 use nalgebra::Vector3;
@@ -84,7 +84,7 @@ impl ElectricField {
         positions: &[Vector3<f64>],
         charges: &[f64],
     ) -> Result<Self, FieldError> {
-        agreed(ranks.as_ref(), check_over_ranks(domain, settings, positions, charges))?;
+        ranks.agreed(check_over_ranks(domain, settings, positions, charges))?;
         let settings = &FieldSettings { tuning: Tuning::Model, ..settings.clone() };
         let grains = OverRanks { ranks: &ranks, domain, settings, positions, charges };
         let chosen = Tuner::new(domain, settings, grains.statistics()?, &grains).choose()?;

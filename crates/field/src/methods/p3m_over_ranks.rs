@@ -16,7 +16,7 @@ use crate::methods::method::FieldMethod;
 use crate::methods::p3m::background_potential;
 use crate::methods::p3m_parameters::P3mParameters;
 use crate::numerics::stopwatch::Stopwatch;
-use crate::ranks::{Parcels, Ranks, agreed};
+use crate::ranks::{Parcels, Ranks};
 use crate::sum::{Levels, OwnClouds, Part, Sum};
 use crate::values::{FieldAt, Wanted};
 use amberfield_core::{Domain, FieldSettings};
@@ -153,7 +153,7 @@ impl P3mOverRanks {
             is_good &= *has_failed == 0.0;
         }
         if !is_good {
-            agreed(ranks, own)?;
+            ranks.agreed(own)?;
         }
         // The same numbers on all ranks: all refuse or none.
         let FieldSettings { permittivity, neutralising_background, .. } = self.settings;
@@ -187,7 +187,7 @@ impl FieldMethod for P3mOverRanks {
     }
 
     fn agreed(&self, outcome: Result<(), FieldError>) -> Result<(), FieldError> {
-        agreed(self.ranks.as_ref(), outcome)
+        self.ranks.agreed(outcome)
     }
 
     fn pairs_per_particle(&self) -> f64 {

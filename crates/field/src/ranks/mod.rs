@@ -11,9 +11,7 @@ mod threads;
 use crate::error::FieldError;
 use std::fmt;
 
-pub(crate) use agreement::agreed;
 pub use parcels::Parcels;
-pub(crate) use parcels::exchange_of_any_size;
 pub(crate) use shares::share;
 pub use threads::ThreadRank;
 

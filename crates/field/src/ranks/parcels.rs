@@ -36,14 +36,14 @@ impl Parcels {
         self.values.resize(end, 0.0);
     }
 
-    /// Removes all parcels.
-    pub(crate) fn clear(&mut self) {
+    /// Removes all parcels; memory is kept.
+    pub fn clear(&mut self) {
         self.values.clear();
         self.ends.clear();
     }
 
     /// Ends the next rank's parcel behind the numbers that are there.
-    pub(crate) fn end_parcel(&mut self) {
+    pub fn end_parcel(&mut self) {
         self.ends.push(self.values.len());
     }
 
@@ -58,18 +58,23 @@ impl Parcels {
     }
 }
 
-/// Exchanges parcels of which only those who send them know the sizes.
-pub(crate) fn exchange_of_any_size(
-    ranks: &dyn Ranks,
-    sent: &Parcels,
-    received: &mut Parcels,
-) -> Result<(), FieldError> {
-    let values = sent.sizes().map(|size| size as f64).collect();
-    let told = Parcels { values, ends: (1..=ranks.count()).collect() };
-    let mut sizes = Parcels::default();
-    sizes.resize((0..ranks.count()).map(|_| 1));
-    ranks.exchange(&told, &mut sizes)?;
-    #[expect(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "a size, exact in a double")]
-    received.resize(sizes.values.iter().map(|&size| size as usize));
-    ranks.exchange(sent, received)
+impl dyn Ranks + '_ {
+    /// Exchanges parcels of which only those who send them know the sizes.
+    ///
+    /// # Errors
+    /// The errors of [`Ranks::exchange`].
+    pub fn exchange_of_any_size(&self, sent: &Parcels, received: &mut Parcels) -> Result<(), FieldError> {
+        let values = sent.sizes().map(|size| size as f64).collect();
+        let told = Parcels { values, ends: (1..=self.count()).collect() };
+        let mut sizes = Parcels::default();
+        sizes.resize((0..self.count()).map(|_| 1));
+        self.exchange(&told, &mut sizes)?;
+        #[expect(
+            clippy::cast_possible_truncation,
+            clippy::cast_sign_loss,
+            reason = "a size, exact in a double"
+        )]
+        received.resize(sizes.values.iter().map(|&size| size as usize));
+        self.exchange(sent, received)
+    }
 }

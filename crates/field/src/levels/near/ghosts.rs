@@ -2,7 +2,7 @@
 
 use crate::error::FieldError;
 use crate::geometry::images::{BoundingBox, ImageLattice, without_images};
-use crate::ranks::{Parcels, Ranks, exchange_of_any_size};
+use crate::ranks::{Parcels, Ranks};
 use amberfield_core::Domain;
 use nalgebra::Vector3;
 
@@ -54,7 +54,7 @@ impl Ghosts {
             }
             self.sent.end_parcel();
         }
-        exchange_of_any_size(ranks, &self.sent, &mut self.received)?;
+        ranks.exchange_of_any_size(&self.sent, &mut self.received)?;
         for [x, y, z, charge] in self.received.values.as_chunks::<NUMBERS>().0 {
             positions.push(Vector3::new(*x, *y, *z));
             charges.push(*charge);

@@ -1,9 +1,10 @@
 //! The internal grid, shared by ranks.
 //!
 //! Every rank spreads its own grains onto the nodes that they touch. Planes of x are shared out: the rank
-//! that has a plane adds up what the others spread onto it, in the order of the ranks, and transforms it along
-//! z and y. Coefficients of y are shared out too: the rank that has some gets their part of all planes, and
-//! transforms, convolves and transforms back along x. Planes and bricks get their values the same way back.
+//! that has a plane adds up what the others spread onto it, in the order of the ranks, and transforms it
+//! along z and y. Coefficients of y are shared out too: the rank that has some gets their part of all
+//! planes, and transforms, convolves and transforms back along x. Planes and bricks get their values the
+//! same way back.
 
 mod brick;
 

@@ -1,10 +1,11 @@
 // SPDX-License-Identifier: MIT
 // Part of amberfield: the electric field of charged grains.
 
-#ifndef AMBERFIELD_GATHERED_FIELD_H
-#define AMBERFIELD_GATHERED_FIELD_H
+#ifndef AMBERFIELD_SHARED_FIELD_H
+#define AMBERFIELD_SHARED_FIELD_H
 
 #include "field_words.h"
+#include "rank_table.h"
 #include "units.h"
 
 #include "amberfield.h"
@@ -15,17 +16,17 @@
 
 namespace amberfield {
 
-// How E comes to the atoms: positions and charges of all ranks go to rank 0, which computes the field, and E
-// is scattered. Nothing else of the plugin knows how E is found, so that another class can take its place.
+// How E comes to the atoms: every rank gives its own atoms to the library, which shares the field among the
+// ranks. Nothing else of the plugin knows how E is found.
 //
 // All calls are collective, and all quantities are in LAMMPS' units. A failure ends the run.
-class GatheredField : protected LAMMPS_NS::Pointers {
+class SharedField : protected LAMMPS_NS::Pointers {
   public:
-    GatheredField(LAMMPS_NS::LAMMPS *lmp, const char *fix, int groupbit, const FieldWords &words,
-                  const Units &units);
-    ~GatheredField() override;
-    GatheredField(const GatheredField &) = delete;
-    GatheredField &operator=(const GatheredField &) = delete;
+    SharedField(LAMMPS_NS::LAMMPS *lmp, const char *fix, int groupbit, const FieldWords &words,
+                const Units &units);
+    ~SharedField() override;
+    SharedField(const SharedField &) = delete;
+    SharedField &operator=(const SharedField &) = delete;
 
     // Takes the box as it is; where it has changed, parameters are chosen anew. Returns whether it has.
     bool follow_box();
@@ -54,11 +55,11 @@ class GatheredField : protected LAMMPS_NS::Pointers {
   private:
     void open();
     void close();
-    void gather();
+    void collect();
     void check_place(int i) const;
     bool has_charges() const;
-    // Ends the run on all ranks where rank 0 failed.
-    void check(bool failed);
+    // Ends the run where a call failed; it has failed on all ranks.
+    void check(AmberfieldStatus status);
     void fit_open_faces();
     double time() const;
     int threads() const;
@@ -67,6 +68,7 @@ class GatheredField : protected LAMMPS_NS::Pointers {
     const int groupbit_;
     const FieldWords words_;
     const Units units_;
+    RankTable ranks_;
     // Ranks that share a machine with this one
     int beside_ = 1;
     AmberfieldHost *host_ = nullptr;
@@ -77,15 +79,9 @@ class GatheredField : protected LAMMPS_NS::Pointers {
     // Box of the field
     double low_[3], high_[3];
 
-    // Of this rank: atoms of the group, and their places and charges
+    // Atoms of the group on this rank, their places and charges in SI, and E there
     std::vector<int> own_;
-    std::vector<double> own_places_, own_charges_;
-    std::vector<LAMMPS_NS::tagint> own_tags_;
-    // Of all ranks, on rank 0: as they come, and in the order of their ids
-    std::vector<int> counts_, starts_, counts3_, starts3_;
-    std::vector<double> gathered_, places_, charges_, e_;
-    std::vector<LAMMPS_NS::tagint> tags_;
-    std::vector<int> order_;
+    std::vector<double> places_, charges_, e_;
 };
 
 }    // namespace amberfield
