@@ -206,9 +206,20 @@ void GatheredField::gather()
         std::copy_n(&gathered_[3 * order_[k]], 3, &places_[3 * k]);
     }
     if (comm->me == 0) {
+        places_.insert(places_.end(), wall_places_.begin(), wall_places_.end());
+        charges_.insert(charges_.end(), wall_charges_.begin(), wall_charges_.end());
         fit_open_faces();
         if (host_ == nullptr) open();
     }
+}
+
+void GatheredField::set_charges_of_walls(const std::vector<double> &places,
+                                         const std::vector<double> &charges)
+{
+    wall_places_ = places;
+    wall_charges_ = charges;
+    for (double &place : wall_places_) place *= units_.length;
+    for (double &charge : wall_charges_) charge *= units_.charge;
 }
 
 bool GatheredField::has_charges() const
@@ -270,7 +281,9 @@ void GatheredField::check(bool failed)
     int length = 0;
     std::string reason;
     if (failed) {
-        reason = amberfield_host_error(host_);
+        std::vector<tagint> ids(order_.size());
+        for (size_t k = 0; k < ids.size(); ++k) ids[k] = tags_[order_[k]];
+        reason = message_of_library(amberfield_host_error(host_), ids);
         length = reason.size();
     }
     int state[2] = {failed ? 1 : 0, length};

@@ -34,6 +34,9 @@ class GatheredField : protected LAMMPS_NS::Pointers {
     // measured first, and parameters are chosen anew where it has left the tolerance.
     void evaluate(double **e, bool recheck);
 
+    // Charges at places that are no atoms', the same on all ranks. Evaluations have them among their sources.
+    void set_charges_of_walls(const std::vector<double> &places, const std::vector<double> &charges);
+
     // Energy of the charges, whose change with their places is the force.
     struct Energy {
         double of_charges;    // among themselves, with images
@@ -81,6 +84,8 @@ class GatheredField : protected LAMMPS_NS::Pointers {
     std::vector<int> own_;
     std::vector<double> own_places_, own_charges_;
     std::vector<LAMMPS_NS::tagint> own_tags_;
+    // Charges on walls, in SI
+    std::vector<double> wall_places_, wall_charges_;
     // Of all ranks, on rank 0: as they come, and in the order of their ids
     std::vector<int> counts_, starts_, counts3_, starts3_;
     std::vector<double> gathered_, places_, charges_, e_;

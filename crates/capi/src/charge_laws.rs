@@ -226,12 +226,13 @@ mod tests {
         }
         assert!((e[2] * 1e-8 - 1.0).abs() < 1e-12 && e[0] == 0.0, "{e:?}");
         let per_charge = e[2] / (4.0 * std::f64::consts::PI);
+        let contact = CONTACT;
         // SAFETY: a contact of this frame.
         let [grounded, bare, charged] = unsafe {
             [
-                amberfield_charge_to_grounded_wall(&raw const CONTACT),
-                amberfield_charge_to_insulating_wall(&raw const CONTACT, 0.0, per_charge),
-                amberfield_charge_to_insulating_wall(&raw const CONTACT, 1e6, per_charge),
+                amberfield_charge_to_grounded_wall(&raw const contact),
+                amberfield_charge_to_insulating_wall(&raw const contact, 0.0, per_charge),
+                amberfield_charge_to_insulating_wall(&raw const contact, 1e6, per_charge),
             ]
         };
         let neutral = AmberfieldContact { charge: [0.0; 2], ..CONTACT };
