@@ -30,11 +30,11 @@ const FLAGS: [&str; 10] = [
     "-DLAMMPS_SMALLBIG",
     "-pthread",
 ];
-/// What the plugin takes from LAMMPS and MPI, as patterns of names. It is made weak: a plugin that does not
-/// fit loads nevertheless, and says why it does not.
+/// Patterns of the names that the plugin takes from LAMMPS and MPI. They are made weak: a plugin that does
+/// not fit loads nevertheless, and says why it does not.
 const HOST: [&str; 4] = ["_Z*N*9LAMMPS_NS*", "lammps_*", "MPI_*", "ompi_*"];
-/// Flags of the linker, behind the C library. The plugin stays in memory once it is loaded, for the threads in
-/// it, and shows nothing of the C library in it.
+/// Flags of the linker, behind the C library. The plugin stays in memory once it is loaded, for the threads
+/// in it, and shows nothing of the C library in it.
 const LINK: [&str; 10] = [
     "-shared",
     "-pthread",
@@ -53,10 +53,21 @@ const OBJECT: &str = "amberfieldplugin.o";
 /// Name of the plugin's file.
 const PLUGIN: &str = "amberfieldplugin.so";
 
+/// Builds the C library and the plugin for users, and returns the plugin's path.
+pub(crate) fn for_users(root: &Path) -> Result<PathBuf> {
+    provide_library(root)?;
+    build(root, Profile::Release)
+}
+
+/// Makes the environment with LAMMPS and builds the C library for users.
+fn provide_library(root: &Path) -> Result<()> {
+    provide(root)?;
+    execute(&mut cargo(root, &["build", "--release", "-p", "amberfield-capi"]))
+}
+
 /// Builds the C library and the plugin for users and runs the tests.
 pub(crate) fn run(root: &Path) -> Result<()> {
-    provide(root)?;
-    execute(&mut cargo(root, &["build", "--release", "-p", "amberfield-capi"]))?;
+    provide_library(root)?;
     execute(&mut cargo(root, &["build", "--workspace", "--all-targets"]))?;
     test(root, Profile::Release, None)
 }
