@@ -10,6 +10,7 @@
 
 #include "amberfield.h"
 
+#include <algorithm>
 #include <cstdlib>
 
 using amberfield::ChargeWords;
@@ -94,13 +95,15 @@ void ChargeWords::read_wall(Words &words)
     const std::string work = words.next("work");
     if (work != "work") words.refuse(work, "work, then the wall's work function [eV]");
     wall.work = words.above("the wall's work function [eV]", 0.0);
-    const std::string kind = words.next("grounded");
-    if (kind == "insulating") {
-        words.refuse("wall " + wall.region + ": insulating walls, which keep charge at its place, are not "
-                     "possible in LAMMPS yet; allowed is grounded. In amberfield's own runs they are");
-    }
-    if (kind != "grounded") words.refuse(kind, "grounded");
+    const std::string kind = words.next("grounded or insulating");
+    if (kind != "grounded" && kind != "insulating") words.refuse(kind, "grounded, insulating");
+    wall.keeps = kind == "insulating";
     walls.push_back(wall);
+}
+
+bool ChargeWords::any_keeps() const
+{
+    return std::any_of(walls.begin(), walls.end(), [](const ChargingWall &wall) { return wall.keeps; });
 }
 
 void ChargeWords::check(Words &words) const

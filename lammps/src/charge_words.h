@@ -17,7 +17,8 @@ namespace amberfield {
 // A wall that takes charge: a region, which a fix wall/gran/region makes a wall of.
 struct ChargingWall {
     std::string region;
-    double work;    // work function [eV]
+    double work;           // work function [eV]
+    bool keeps = false;    // an insulator, which keeps charge where grains left it
 };
 
 // What the words of "fix amberfield/charge" ask for, in SI. Arrays are by atom type, from 1.
@@ -30,6 +31,8 @@ struct ChargeWords {
     std::vector<ChargingWall> walls;
 
     static ChargeWords read(Words words, const Units &units, LAMMPS_NS::LAMMPS *lmp);
+
+    bool any_keeps() const;
 
     // Factor of the contact area of two types. A wall is as a grain of the same type.
     double area_factor(int a, int b) const;

@@ -19,7 +19,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <cstring>
 
 using namespace LAMMPS_NS;
 using namespace FixConst;
@@ -47,6 +46,14 @@ FixAmberfieldCharge::FixAmberfieldCharge(LAMMPS *lmp, int narg, char **arg) :
     comm_forward = 4;
     comm_reverse = 1;
     dynamic_group_allow = 1;
+    if (words_.any_keeps()) {
+        kept_ = std::make_shared<amberfield::KeptCharges>(lmp, words_.walls.size());
+        array_flag = 1;
+        extarray = 0;
+        size_array_rows = 0;
+        size_array_rows_variable = 1;
+        size_array_cols = amberfield::KeptCharges::COLUMNS;
+    }
 }
 
 int FixAmberfieldCharge::setmask()
@@ -62,6 +69,7 @@ void FixAmberfieldCharge::init()
         refuse("atoms have no charge or no radius; use atom_style hybrid sphere charge");
     }
     if (!comm->ghost_velocity) refuse("ghost atoms have no velocity; use comm_modify vel yes");
+    if (lmp->kokkos) refuse("package kokkos keeps atoms elsewhere, which is not possible; run without it");
     if (domain->triclinic) refuse("a triclinic box is not possible; use an orthogonal one");
     if (std::string(update->integrate_style).find("respa") == 0) {
         refuse("run_style " + std::string(update->integrate_style) + " is not possible; use verlet");
@@ -87,6 +95,11 @@ void FixAmberfieldCharge::init()
                    + ", whose patches LAMMPS does not know");
         }
     }
+    const bool any_periodic = domain->xperiodic || domain->yperiodic || domain->zperiodic;
+    if (field_ && field_->thermo_virial && kept_ && any_periodic) {
+        refuse("the virial of a periodic box with charge on walls is not known; use fix_modify "
+               + std::string(field_->id) + " virial no");
+    }
     coulomb_ = amberfield_coulomb(permittivity_) * units_.charge
         / (units_.length * units_.length * units_.field);
     regions_.clear();
@@ -96,6 +109,7 @@ void FixAmberfieldCharge::init()
         regions_.back()->init();
     }
     make_table();
+    if (field_) field_->use_kept_charges(kept_);
     // Each pair once, whatever newton says.
     neighbor->add_request(this, NeighConst::REQ_SIZE | NeighConst::REQ_NEWTON_ON);
 }
@@ -120,6 +134,15 @@ void FixAmberfieldCharge::setup(int)
     double largest = 0.0, all;
     for (int i = 0; i < atom->nlocal; ++i) largest = std::max(largest, atom->radius[i]);
     MPI_Allreduce(&largest, &all, 1, MPI_DOUBLE, MPI_MAX, world);
+    if (kept_) {
+        // Positions of the walls at the beginning, from which their velocities follow.
+        for (Region *region : regions_) {
+            region->prematch();
+            if (region->dynamic_check()) region->set_velocity();
+        }
+        kept_->begin(all, coulomb_);
+        size_array_rows = kept_->size();
+    }
     if (comm->get_comm_cutoff() < 2.0 * all) {
         error->all(FLERR, "fix " + std::string(id) + " amberfield/charge: ghost atoms reach "
                               + std::to_string(comm->get_comm_cutoff())
@@ -142,6 +165,10 @@ void FixAmberfieldCharge::post_force(int)
     for (int i = 0; i < atom->nlocal; ++i) atom->q[i] += gained_[i];
     forwarded_ = CHARGE;
     comm->forward_comm(this, 1);
+    if (kept_) {
+        kept_->settle();
+        size_array_rows = kept_->size();
+    }
 }
 
 // Gives ghosts what a contact sees of the field.
@@ -234,6 +261,17 @@ void FixAmberfieldCharge::trade_pair(int i, int j)
 
 void FixAmberfieldCharge::check_relaxation()
 {
+    if (!std::isfinite(moved_)) {
+        const auto bad = [this](int i) {
+            return !std::isfinite(atom->q[i]) || !std::isfinite(atom->x[i][0] + atom->x[i][1] + atom->x[i][2])
+                || !std::isfinite(atom->v[i][0] + atom->v[i][1] + atom->v[i][2]);
+        };
+        int i = 0;
+        while (i < atom->nlocal + atom->nghost - 1 && !bad(i)) ++i;
+        const std::string me = "fix " + std::string(id) + " amberfield/charge: ";
+        error->one(FLERR, me + "atom " + std::to_string(atom->tag[i])
+                              + " has no finite charge, place or velocity");
+    }
     const double most = relaxed_.empty() ? 0.0 : *std::max_element(relaxed_.begin(), relaxed_.end());
     if (most > MOST_RELAXATION) {
         error->one(FLERR, "fix " + std::string(id) + " amberfield/charge: contacts of a grain relax by "
@@ -259,10 +297,28 @@ double FixAmberfieldCharge::compute_vector(int n)
     return all;
 }
 
+// Charge on insulating walls: place, charge, scale and wall of each spot.
+double FixAmberfieldCharge::compute_array(int row, int column)
+{
+    return kept_->number(row, column);
+}
+
 double FixAmberfieldCharge::memory_usage()
 {
     return static_cast<double>(gained_.capacity() + relaxed_.capacity()) * sizeof(double)
         + static_cast<double>(seen_.capacity()) * sizeof(Seen);
+}
+
+double FixAmberfieldCharge::walls() const
+{
+    return words_.walls.size();
+}
+
+double FixAmberfieldCharge::insulators() const
+{
+    double count = 0.0;
+    for (const amberfield::ChargingWall &wall : words_.walls) count += wall.keeps;
+    return count;
 }
 
 void FixAmberfieldCharge::write_restart(FILE *file)
@@ -270,6 +326,12 @@ void FixAmberfieldCharge::write_restart(FILE *file)
     std::vector<double> sums(1 + of_walls_.size());
     for (size_t n = 0; n < sums.size(); ++n) sums[n] = compute_vector(n);
     if (comm->me != 0) return;
+    // How many walls, and how many of them keep charge: a run that goes on must have as many.
+    sums.insert(sums.begin(), {walls(), insulators()});
+    if (kept_) {
+        const std::vector<double> kept = kept_->pack();
+        sums.insert(sums.end(), kept.begin(), kept.end());
+    }
     const int size = sums.size() * sizeof(double);
     fwrite(&size, sizeof(int), 1, file);
     fwrite(sums.data(), sizeof(double), sums.size(), file);
@@ -277,9 +339,20 @@ void FixAmberfieldCharge::write_restart(FILE *file)
 
 void FixAmberfieldCharge::restart(char *buffer)
 {
-    if (comm->me != 0) return;
-    std::memcpy(&moved_, buffer, sizeof(double));
-    std::memcpy(of_walls_.data(), buffer + sizeof(double), of_walls_.size() * sizeof(double));
+    const auto *numbers = reinterpret_cast<const double *>(buffer);
+    if (numbers[0] != walls() || numbers[1] != insulators()) {
+        error->all(FLERR, "fix " + std::string(id) + " amberfield/charge: the restart file has "
+                              + std::to_string(static_cast<int>(numbers[0])) + " walls, "
+                              + std::to_string(static_cast<int>(numbers[1]))
+                              + " of them insulating; give the same ones, or the fix another id");
+    }
+    numbers += 2;
+    const size_t count = of_walls_.size();
+    if (comm->me == 0) {
+        moved_ = numbers[0];
+        std::copy_n(numbers + 1, count, of_walls_.begin());
+    }
+    if (kept_) kept_->unpack(numbers + 1 + count);
 }
 
 int FixAmberfieldCharge::pack_forward_comm(int count, int *list, double *buffer, int, int *)

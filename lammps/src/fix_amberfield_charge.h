@@ -5,16 +5,18 @@
 #define LMP_FIX_AMBERFIELD_CHARGE_H
 
 #include "charge_words.h"
+#include "kept_charges.h"
 #include "units.h"
 
 #include "amberfield.h"
 #include "fix.h"
 
+#include <memory>
 #include <vector>
 
 namespace LAMMPS_NS {
 
-// fix ID group amberfield/charge: moves charge through contacts of grains, and of grains with grounded walls,
+// fix ID group amberfield/charge: moves charge through contacts of grains, and of grains with walls,
 // while their areas grow. What moves is the law's of the C library, for each contact with the charges at the
 // beginning of the step: so the order of contacts, and of ranks, does not matter.
 //
@@ -32,6 +34,7 @@ class FixAmberfieldCharge : public Fix {
 
     double compute_scalar() override;
     double compute_vector(int n) override;
+    double compute_array(int row, int column) override;
     double memory_usage() override;
     void write_restart(FILE *file) override;
     void restart(char *buffer) override;
@@ -47,9 +50,12 @@ class FixAmberfieldCharge : public Fix {
     void trade_pairs();
     void trade_pair(int i, int j);
     void trade_walls();
-    double trade_wall(int i, const amberfield::ChargingWall &wall, class Region *region, int contact);
-    double field_at_wall(int i, const double *normal, double distance) const;
+    double trade_wall(int i, int wall, class Region *region, int contact);
+    double image_at(int i, const double *normal, double distance) const;
+    double field_at_wall(int i, const amberfield::KeptCharges::Contact &contact, double image) const;
     void check_relaxation();
+    double walls() const;
+    double insulators() const;
     AmberfieldContact contact(int type) const;
 
     const amberfield::Units units_;
@@ -61,6 +67,8 @@ class FixAmberfieldCharge : public Fix {
     double coulomb_ = 0.0;                   // in LAMMPS' units
     std::vector<double> area_factors_;       // of two types, by row
     std::vector<class Region *> regions_;    // of the walls
+    // Charge on insulating walls, which the field has too; none without such walls
+    std::shared_ptr<amberfield::KeptCharges> kept_;
 
     // Of own atoms and ghosts: charge gained in the step, and what neighbours see of the field
     std::vector<double> gained_;

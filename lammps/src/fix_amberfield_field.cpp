@@ -8,6 +8,7 @@
 #include "domain.h"
 #include "error.h"
 #include "memory.h"
+#include "modify.h"
 #include "update.h"
 
 #include <mpi.h>
@@ -73,6 +74,8 @@ int FixAmberfieldField::setmask()
 
 void FixAmberfieldField::init()
 {
+    // The charge transfer gives what walls keep, where there are such walls.
+    if (modify->get_fix_by_style("amberfield/charge").empty()) kept_ = nullptr;
     check_setting();
 }
 
@@ -125,6 +128,9 @@ void FixAmberfieldField::post_force(int vflag)
         interval_.age += update->ntimestep - last_step_;
         last_step_ = update->ntimestep;
     }
+    // The line through two evaluations counts in steps.
+    if (update->dt != last_dt_ && last_dt_ > 0.0) is_fresh_due_ = true;
+    last_dt_ = update->dt;
     energy_step_ = -1;
     const Census now = census();
     if (is_due(now)) evaluate(now);
@@ -159,10 +165,12 @@ FixAmberfieldField::Census FixAmberfieldField::census() const
 bool FixAmberfieldField::is_due(const Census &now)
 {
     const bool box_changed = source_.follow_box();
-    const bool others = now.count != evaluated_count_ || now.known != now.count;
-    const bool charges_changed = words_.every == 0
-        && now.changed > words_.tolerance * words_.tolerance * now.squares;
-    if (box_changed || is_fresh_due_) interval_.restart();
+    const bool others = now.known != now.count || now.known != evaluated_count_;
+    // What is no number is found where places and charges are looked at.
+    const bool charges_changed = !std::isfinite(now.changed)
+        || (words_.every == 0 && now.changed > words_.tolerance * words_.tolerance * now.squares);
+    // Where atoms came or went, E has jumped, and no line goes through the jump.
+    if (box_changed || is_fresh_due_ || others) interval_.restart();
     const bool due = is_fresh_due_ || box_changed || others || charges_changed || interval_.is_due();
     is_fresh_due_ = false;
     return due;
@@ -177,10 +185,13 @@ void FixAmberfieldField::evaluate(const Census &now)
     for (int i = 0; i < atoms; ++i) rows_[i] = &fresh_[3 * i];
     const double count = interval_.evaluations;
     const bool recheck = count == RECHECK[0] || (count > 0.0 && std::fmod(count, RECHECK[1]) == 0.0);
+    give_kept_charges();
     source_.evaluate(rows_.data(), recheck);
+    for (int i = 0; kept_ && i < atoms; ++i) {
+        if (atom->mask[i] & groupbit) kept_->soften(atom->x[i], rows_[i]);
+    }
 
     const double age = interval_.age;
-    const bool others = now.known != evaluated_count_;
     // Sums of q^2 |change|^2, |change|^2, q^2 |E|^2, atoms; and the largest |change|^2
     double sums[4] = {0.0, 0.0, 0.0, 0.0}, largest = 0.0;
     for (int i = 0; i < atoms; ++i) {
@@ -219,7 +230,7 @@ void FixAmberfieldField::evaluate(const Census &now)
         check.drift_of_all = std::sqrt(all[1] / all[3]) / size;
         check.largest = std::sqrt(most) / size;
     }
-    const bool checked = all[3] > 0.0 && !others;
+    const bool checked = all[3] > 0.0;
     interval_.evaluated(checked ? &check : nullptr, words_.every, words_.tolerance, longest());
     evaluated_count_ = now.count;
 }
@@ -251,9 +262,19 @@ double FixAmberfieldField::longest() const
     return all;
 }
 
+// Lets the field have the charges on walls as they are.
+void FixAmberfieldField::give_kept_charges()
+{
+    std::vector<double> places, charges;
+    if (kept_) kept_->sources(places, charges);
+    source_.set_charges_of_walls(places, charges);
+}
+
 amberfield::SharedField::Energy FixAmberfieldField::energy()
 {
     if (energy_step_ != update->ntimestep) {
+        if (source_.follow_box()) is_fresh_due_ = true;
+        give_kept_charges();
         energy_ = source_.energy();
         energy_step_ = update->ntimestep;
     }

@@ -7,11 +7,16 @@
 #include "field_words.h"
 #include "forecast.h"
 #include "interval.h"
+#include "kept_charges.h"
 #include "shared_field.h"
 #include "units.h"
 
 #include "fix.h"
 
+#include <functional>
+#include <memory>
+#include <string>
+#include <utility>
 #include <vector>
 
 namespace LAMMPS_NS {
@@ -51,6 +56,8 @@ class FixAmberfieldField : public Fix {
     const amberfield::FieldWords &words() const { return words_; }
     double **field() const { return array_atom; }
     const double *charges_of_field() const { return forecast_.charge; }
+    // Charge on insulating walls, which takes part in the field
+    void use_kept_charges(std::shared_ptr<const amberfield::KeptCharges> kept) { kept_ = std::move(kept); }
     // 1/(4 pi epsilon) in LAMMPS' units
     double coulomb() const { return source_.coulomb(); }
 
@@ -64,6 +71,8 @@ class FixAmberfieldField : public Fix {
     };
 
     void check_setting();
+    std::string coulomb_style() const;
+    void check_computes(const std::function<void(const std::string &)> &refuse) const;
     bool virial_is_known() const;
     void start(int vflag);
     Census census() const;
@@ -72,6 +81,7 @@ class FixAmberfieldField : public Fix {
     double scale(const double *sums, const Census &census) const;
     double longest() const;
     void add_virial();
+    void give_kept_charges();
     amberfield::SharedField::Energy energy();
     // Sums that change where an atom was moved or charged by another command
     std::vector<double> fingerprint() const;
@@ -80,6 +90,7 @@ class FixAmberfieldField : public Fix {
     const amberfield::FieldWords words_;
     amberfield::SharedField source_;
     amberfield::Forecast forecast_;
+    std::shared_ptr<const amberfield::KeptCharges> kept_;
     amberfield::Interval interval_;
 
     std::vector<double> fresh_;    // room for E as it comes, in rows
@@ -88,6 +99,7 @@ class FixAmberfieldField : public Fix {
     bool is_restarted_ = false;
     double evaluated_count_ = 0.0;
     bigint last_step_ = -1;
+    double last_dt_ = 0.0;
     bigint energy_step_ = -1;
     amberfield::SharedField::Energy energy_ = {0.0, 0.0};
     std::vector<double> left_at_;    // fingerprint at the end of the last run

@@ -11,12 +11,16 @@
 #include <link.h>
 #include <mpi.h>
 
+#include <cstdio>
+#include <cstdlib>
 #include <string>
 #include <vector>
 
 // Mark by which two copies of the plugin find each other.
 extern "C" __attribute__((visibility("default"))) const int amberfield_lammps_plugin = 1;
 
+// What the plugin takes from LAMMPS and MPI is weak, see the build: so it loads beside others too, and can
+// say what is wrong.
 namespace {
 
 // LAMMPS' version that the headers belong to; the build gives it.
@@ -50,13 +54,17 @@ std::string wrong_mpi()
         + "; build it against the mpi.h of LAMMPS' own MPI";
 }
 
-std::string wrong_build(LAMMPS_NS::LAMMPS *lmp)
+std::string wrong_version(int version)
 {
-    const int version = lammps_version(lmp);
     if (version != COMPILED_FOR) {
         return "it was built for LAMMPS " + std::to_string(COMPILED_FOR) + ", but this is LAMMPS "
             + std::to_string(version) + "; build it against this one's headers";
     }
+    return "";
+}
+
+std::string wrong_widths(LAMMPS_NS::LAMMPS *lmp)
+{
     struct Width {
         const char *name;
         size_t here;
@@ -107,17 +115,34 @@ std::string other_copy()
     return "";
 }
 
+// Ends a LAMMPS whose classes are not those of the headers, through its C library.
+[[noreturn]] void end_other_version(LAMMPS_NS::LAMMPS *lmp, const std::string &message)
+{
+    using End = void (*)(void *, int, const char *);
+    auto end = reinterpret_cast<End>(dlsym(RTLD_DEFAULT, "lammps_error"));
+    if (end) end(lmp, LMP_ERROR_ALL, message.c_str());
+    // That does not come back but from a LAMMPS which has no such function.
+    std::fprintf(stderr, "ERROR: %s\n", message.c_str());
+    std::_Exit(EXIT_FAILURE);
+}
+
 }    // namespace
 
 void amberfield::check_program(LAMMPS_NS::LAMMPS *lmp)
 {
-    std::string wrong = wrong_mpi();
-    if (wrong.empty()) wrong = wrong_build(lmp);
+    const std::string cannot = "the plugin amberfield cannot be used: ";
+    using Version = int (*)(void *);
+    auto version = reinterpret_cast<Version>(dlsym(RTLD_DEFAULT, "lammps_version"));
+    std::string wrong = version ? wrong_version(version(lmp))
+                                : "LAMMPS does not show its functions; link its program with -rdynamic";
+    if (!wrong.empty()) end_other_version(lmp, cannot + wrong);
+    wrong = wrong_mpi();
+    if (wrong.empty()) wrong = wrong_widths(lmp);
     if (wrong.empty()) {
         const std::string copy = other_copy();
         if (!copy.empty()) {
             wrong = "the process has a second copy of amberfield, " + copy + "; load one of them only";
         }
     }
-    if (!wrong.empty()) lmp->error->all(FLERR, "the plugin amberfield cannot be used: " + wrong);
+    if (!wrong.empty()) lmp->error->all(FLERR, cannot + wrong);
 }

@@ -14,7 +14,9 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstdio>
 #include <cstdlib>
+#include <numeric>
 
 using namespace LAMMPS_NS;
 using amberfield::SharedField;
@@ -179,8 +181,28 @@ void SharedField::collect()
         for (int axis = 0; axis < 3; ++axis) places_.push_back(atom->x[i][axis] * units_.length);
         charges_.push_back(atom->q[i] * units_.charge);
     }
+    collect_charges_of_walls();
     fit_open_faces();
     if (host_ == nullptr) open();
+}
+
+void SharedField::set_charges_of_walls(const std::vector<double> &places, const std::vector<double> &charges)
+{
+    wall_places_ = places;
+    wall_charges_ = charges;
+}
+
+// Adds the charges on walls that lie in this rank's piece of the box.
+void SharedField::collect_charges_of_walls()
+{
+    for (size_t k = 0; k < wall_charges_.size(); ++k) {
+        double place[3];
+        std::copy_n(&wall_places_[3 * k], 3, place);
+        int at[3];
+        if (comm->coord2proc(place, at[0], at[1], at[2]) != comm->me) continue;
+        for (const double coordinate : place) places_.push_back(coordinate * units_.length);
+        charges_.push_back(wall_charges_[k] * units_.charge);
+    }
 }
 
 bool SharedField::has_charges() const
@@ -218,10 +240,37 @@ SharedField::Energy SharedField::energy()
     return {of_charges / units_.energy, of_faces / units_.energy};
 }
 
+// Ids of what this rank has given to the library, in its order, and of all ranks on rank 0 for an OpenFOAM
+// case, which has them there.
+std::vector<tagint> SharedField::ids() const
+{
+    std::vector<tagint> own;
+    for (const int i : own_) own.push_back(atom->tag_enable ? atom->tag[i] : 0);
+    own.resize(charges_.size(), OF_WALL);
+    if (words_.openfoam_case.empty()) return own;
+    const int count = own.size();
+    std::vector<int> counts(comm->nprocs), starts(comm->nprocs);
+    MPI_Allgather(&count, 1, MPI_INT, counts.data(), 1, MPI_INT, world);
+    std::partial_sum(counts.begin(), counts.end() - 1, starts.begin() + 1);
+    std::vector<tagint> all(starts.back() + counts.back());
+    MPI_Allgatherv(own.data(), count, MPI_LMP_TAGINT, all.data(), counts.data(), starts.data(),
+                   MPI_LMP_TAGINT, world);
+    return all;
+}
+
 void SharedField::check(AmberfieldStatus status)
 {
     if (status == AmberfieldStatus_Ok) return;
-    error->all(FLERR, "fix " + fix_ + " amberfield/field: " + amberfield_host_error(host_));
+    // An index is that of the rank that the message names.
+    std::string message = amberfield_host_error(host_);
+    int rank = 0, read = 0;
+    if (std::sscanf(message.c_str(), "rank %d: %n", &rank, &read) == 1 && read > 0) message.erase(0, read);
+    message = message_of_library(message, ids());
+    int length = message.size();
+    MPI_Bcast(&length, 1, MPI_INT, rank, world);
+    message.resize(length);
+    MPI_Bcast(&message[0], length, MPI_CHAR, rank, world);
+    error->all(FLERR, "fix " + fix_ + " amberfield/field: " + message);
 }
 
 std::string SharedField::parameters() const

@@ -35,6 +35,9 @@ class SharedField : protected LAMMPS_NS::Pointers {
     // measured first, and parameters are chosen anew where it has left the tolerance.
     void evaluate(double **e, bool recheck);
 
+    // Charges at places that are no atoms', the same on all ranks. Evaluations have them among their sources.
+    void set_charges_of_walls(const std::vector<double> &places, const std::vector<double> &charges);
+
     // Energy of the charges, whose change with their places is the force.
     struct Energy {
         double of_charges;    // among themselves, with images
@@ -58,6 +61,8 @@ class SharedField : protected LAMMPS_NS::Pointers {
     void collect();
     void check_place(int i) const;
     bool has_charges() const;
+    void collect_charges_of_walls();
+    std::vector<LAMMPS_NS::tagint> ids() const;
     // Ends the run where a call failed; it has failed on all ranks.
     void check(AmberfieldStatus status);
     void fit_open_faces();
@@ -82,6 +87,8 @@ class SharedField : protected LAMMPS_NS::Pointers {
     // Atoms of the group on this rank, their places and charges in SI, and E there
     std::vector<int> own_;
     std::vector<double> places_, charges_, e_;
+    // Charges on walls, in SI
+    std::vector<double> wall_places_, wall_charges_;
 };
 
 }    // namespace amberfield

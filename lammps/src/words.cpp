@@ -49,6 +49,29 @@ bool Words::yes(const std::string &what)
     return word == "yes";
 }
 
+std::string amberfield::message_of_library(std::string message,
+                                           const std::vector<LAMMPS_NS::tagint> &ids)
+{
+    const std::string grain = "grain at index ";
+    const size_t place = message.find(grain);
+    if (place != std::string::npos) {
+        const size_t from = place + grain.size(), to = message.find_first_not_of("0123456789", from);
+        const size_t index = std::strtoul(message.c_str() + from, nullptr, 10);
+        const bool is_atom = index < ids.size() && ids[index] != OF_WALL;
+        const std::string name = is_atom ? "atom " + std::to_string(ids[index]) : "charge on a wall";
+        message.replace(place, (to == std::string::npos ? message.size() : to) - place, name);
+    }
+    const char *const settings[][2] = {
+        {"set electric_field.neutralising_background = true", "give background yes"},
+        {"electric_field.tolerance", "tolerance"},
+    };
+    for (const auto &setting : settings) {
+        const size_t found = message.find(setting[0]);
+        if (found != std::string::npos) message.replace(found, std::string(setting[0]).size(), setting[1]);
+    }
+    return message;
+}
+
 void Words::refuse(const std::string &reason) const
 {
     lmp_->error->all(FLERR, "fix " + std::string(arg_[0]) + " " + arg_[2] + ": " + reason);

@@ -5,8 +5,10 @@
 #define AMBERFIELD_WORDS_H
 
 #include "lammps.h"
+#include "lmptype.h"
 
 #include <string>
+#include <vector>
 
 namespace amberfield {
 
@@ -38,6 +40,13 @@ class Words {
     char **arg_;
     int place_;
 };
+
+// Id of a charge that is no atom's but a wall's.
+constexpr LAMMPS_NS::tagint OF_WALL = -1;
+
+// A message of the library in the words of the fix: atoms by their ids, of which there is one for each index,
+// and settings as the fix names them.
+std::string message_of_library(std::string message, const std::vector<LAMMPS_NS::tagint> &ids);
 
 }    // namespace amberfield
 

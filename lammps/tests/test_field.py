@@ -216,6 +216,58 @@ def test_atoms_that_are_lost_are_felt_no_more(tmp_path):
     assert error(state["e"], exact) < 3e-3
 
 
+BALANCE = """
+comm_style tiled
+balance 1.0 rcb
+fix B all balance 5 1.0 rcb
+"""
+
+
+@pytest.mark.parametrize(
+    ("head", "more"),
+    [
+        ("newton off", ""),
+        ("package omp 2\nsuffix omp", ""),
+        ("", BALANCE),
+        ("", "neigh_modify every 1000 delay 0 check no\n"),
+        ("", "neigh_modify exclude group all all\n"),
+    ],
+)
+def test_settings_of_lammps_that_do_not_matter(tmp_path, head, more):
+    x, q = grains(64, seed=5)
+    data_file(tmp_path / "data.grains", x, q, BOX, v=np.full(x.shape, 0.3))
+    commands = start().replace("units si", f"units si\n{head}") + more
+    commands += "fix N all nve/sphere\nfix E all amberfield/field tolerance 1e-3 boundary p p p\n"
+    commands += "timestep 1e-5\nrun 300"
+    state = run(tmp_path, [[commands, "end"]], ranks=2, fixes=["E"], globals=[("stated", "E", 1)])["end"]
+    exact = exact_field(tmp_path, state["x"] % 0.01, state["q"][:, 0], BOX, ["p"] * 6)
+    assert error(state["e"], exact) < 3e-3
+    assert 0 < state["stated"] < 1.2e-3
+
+
+def test_atoms_that_come_and_go_and_another_timestep_start_the_line_anew(tmp_path):
+    x, q = grains(64, seed=5)
+    data_file(tmp_path / "data.grains", x, 5 * q, BOX, v=np.random.default_rng(1).normal(0, 0.05, x.shape))
+    goes = "region whole block INF INF INF INF INF INF\nfix V all evaporate 7 1 whole 123\n"
+    comes = "region top block 0.001 0.009 0.001 0.009 0.001 0.009\n"
+    comes += "fix D all deposit 4 1 5 123 region top near 1e-3\n"
+    field = "fix N all nve/sphere\nfix E all amberfield/field tolerance 1e-2 boundary p p g\ntimestep 1e-5\n"
+    wanted = [("stated", "E", 1), ("every", "E", 2), ("evaluations", "E", 3)]
+    renumbered = "unfix V\nunfix D\nreset_atoms id\nrun 60"
+    parts = [
+        [start("p p f") + field + goes + comes + "run 40\n" + renumbered, "quiet"],
+        ["timestep 3e-5\nrun 0", "longer"],
+    ]
+    states = run(tmp_path, parts, fixes=["E"], globals=wanted)
+    for state in states.values():
+        assert state["stated"] < 1.2e-2
+        exact = exact_field(tmp_path, state["x"] % [0.01, 0.01, 1], state["q"][:, 0], BOX, list("ppppgg"))
+        assert error(state["e"], exact) < 2e-2
+    assert states["quiet"]["every"] > 3
+    assert states["longer"]["every"] == 1
+    assert states["longer"]["evaluations"] == states["quiet"]["evaluations"] + 1
+
+
 def test_pressure_of_charges_is_a_third_of_their_energy_density(tmp_path):
     x, q = grains(125, seed=9)
     data_file(tmp_path / "data.grains", x, q, BOX)

@@ -597,6 +597,34 @@ double amberfield_charge_between_grains(const struct AmberfieldContact *contact)
 // `contact` may be read.
 double amberfield_charge_to_grounded_wall(const struct AmberfieldContact *contact);
 
+// Returns the charge [C] that moves from a grain, the first body, to an insulating wall, which keeps it.
+//
+// `kept_field` is the field at the contact of the charge that the wall keeps around it, positive from the
+// wall to the grain [V/m]; `per_charge` the growth of epsilon times that field per charge that this contact
+// leaves [1/m^2], which is 1/(4 pi r^2) where the radius is r. Both are sums over
+// `amberfield_kept_charge_field`.
+//
+// # Safety
+// `contact` may be read.
+double amberfield_charge_to_insulating_wall(const struct AmberfieldContact *contact,
+                                            double kept_field,
+                                            double per_charge);
+
+// Writes the field of a charge that an insulator keeps around a place, over Coulomb's constant times the
+// charge [1/m^2], at an offset from the place.
+//
+// `scale` is the larger of the radii of the grains that left the charge and of the one that feels it [m],
+// `normal` the surface's unit normal on the side of the charge, and the sign of `side` that of the height
+// before the surface, where the height itself is round-off.
+//
+// # Safety
+// `normal` and `offset` have three numbers, and `e` takes three.
+void amberfield_kept_charge_field(double scale,
+                                  const double *normal,
+                                  const double *offset,
+                                  double side,
+                                  double *e);
+
 // Returns the area of a Hertz contact [m^2], for an effective radius and an overlap [m].
 double amberfield_contact_area(double effective_radius, double overlap);
 

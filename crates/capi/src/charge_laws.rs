@@ -1,7 +1,11 @@
 //! Laws of charge transfer at contacts, for host programs that trade charge themselves.
 
-use amberfield_core::Permittivity;
-use amberfield_laws::charge_transfer::{ChargedSphere, Drive, between_grains, with_grounded_wall, work_term};
+use amberfield_core::{Permittivity, Vector3};
+use amberfield_laws::charge_transfer::{
+    ChargeOfInsulator, ChargedSphere, Drive, between_grains, with_grounded_wall, with_insulating_wall,
+    work_term,
+};
+use amberfield_laws::kept_charge::KeptCharge;
 use amberfield_laws::{contact_area, dielectric_breakdown, hertz_mindlin};
 
 /// Contact whose area grows, of two grains or of a grain with a wall.
@@ -74,6 +78,53 @@ pub unsafe extern "C" fn amberfield_charge_to_grounded_wall(contact: *const Ambe
     let contact = unsafe { &*contact };
     let (permittivity, work) = (contact.permittivity(), contact.work());
     contact.moved(with_grounded_wall(permittivity, work, contact.sphere(0), contact.normal_field))
+}
+
+/// Returns the charge [C] that moves from a grain, the first body, to an insulating wall, which keeps it.
+///
+/// `kept_field` is the field at the contact of the charge that the wall keeps around it, positive from the
+/// wall to the grain [V/m]; `per_charge` the growth of epsilon times that field per charge that this contact
+/// leaves [1/m^2], which is 1/(4 pi r^2) where the radius is r. Both are sums over
+/// `amberfield_kept_charge_field`.
+///
+/// # Safety
+/// `contact` may be read.
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn amberfield_charge_to_insulating_wall(
+    contact: *const AmberfieldContact,
+    kept_field: f64,
+    per_charge: f64,
+) -> f64 {
+    // SAFETY: the caller's promise.
+    let contact = unsafe { &*contact };
+    let kept = ChargeOfInsulator { normal_field: kept_field, per_charge };
+    let (permittivity, work) = (contact.permittivity(), contact.work());
+    contact.moved(with_insulating_wall(permittivity, work, contact.sphere(0), kept, contact.normal_field))
+}
+
+/// Writes the field of a charge that an insulator keeps around a place, over Coulomb's constant times the
+/// charge [1/m^2], at an offset from the place.
+///
+/// `scale` is the larger of the radii of the grains that left the charge and of the one that feels it [m],
+/// `normal` the surface's unit normal on the side of the charge, and the sign of `side` that of the height
+/// before the surface, where the height itself is round-off.
+///
+/// # Safety
+/// `normal` and `offset` have three numbers, and `e` takes three.
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn amberfield_kept_charge_field(
+    scale: f64,
+    normal: *const f64,
+    offset: *const f64,
+    side: f64,
+    e: *mut f64,
+) {
+    // SAFETY: the caller's promise.
+    let [normal, offset] =
+        [normal, offset].map(|vector| Vector3::from(unsafe { *vector.cast::<[f64; 3]>() }));
+    let field = KeptCharge { scale, normal }.field(offset, side);
+    // SAFETY: the caller's promise.
+    unsafe { e.cast::<[f64; 3]>().write(field.into()) };
 }
 
 /// Returns the area of a Hertz contact [m^2], for an effective radius and an overlap [m].
@@ -164,6 +215,37 @@ mod tests {
         let driven = AmberfieldContact { growth: 1e-3, ..CONTACT };
         let bounded = grains(AmberfieldContact { breakdown: 1e5, ..driven });
         assert!(bounded.abs() < grains(driven).abs(), "{bounded}");
+    }
+
+    #[test]
+    fn bare_insulator_takes_what_a_grounded_wall_takes_and_kept_charge_repels() {
+        let (normal, offset, mut e) = ([0.0, 0.0, 1.0], [0.0; 3], [0.0; 3]);
+        // SAFETY: arrays of this frame.
+        unsafe {
+            amberfield_kept_charge_field(1e-4, normal.as_ptr(), offset.as_ptr(), 1.0, e.as_mut_ptr());
+        }
+        assert!((e[2] * 1e-8 - 1.0).abs() < 1e-12 && e[0] == 0.0, "{e:?}");
+        let per_charge = e[2] / (4.0 * std::f64::consts::PI);
+        let contact = CONTACT;
+        // SAFETY: a contact of this frame.
+        let [grounded, bare, charged] = unsafe {
+            [
+                amberfield_charge_to_grounded_wall(&raw const contact),
+                amberfield_charge_to_insulating_wall(&raw const contact, 0.0, per_charge),
+                amberfield_charge_to_insulating_wall(&raw const contact, 1e6, per_charge),
+            ]
+        };
+        let neutral = AmberfieldContact { charge: [0.0; 2], ..CONTACT };
+        // SAFETY: a contact of this frame.
+        let [to_ground, to_bare] = unsafe {
+            [
+                amberfield_charge_to_grounded_wall(&raw const neutral),
+                amberfield_charge_to_insulating_wall(&raw const neutral, 0.0, per_charge),
+            ]
+        };
+        assert!((to_bare / to_ground - 1.0).abs() < 1e-12);
+        // The image of a charged grain drives it on into a conductor.
+        assert!(bare < grounded && charged < bare, "{charged:e} {bare:e} {grounded:e}");
     }
 
     #[test]

@@ -18,7 +18,8 @@ mod status;
 
 pub use charge_laws::{
     AmberfieldContact, amberfield_area_correction, amberfield_charge_between_grains,
-    amberfield_charge_to_grounded_wall, amberfield_contact_area, amberfield_coulomb, amberfield_relaxation,
+    amberfield_charge_to_grounded_wall, amberfield_charge_to_insulating_wall, amberfield_contact_area,
+    amberfield_coulomb, amberfield_kept_charge_field, amberfield_relaxation,
 };
 pub use field_flow::{
     AmberfieldFlow, amberfield_field_grains, amberfield_field_reply_flow, amberfield_field_reply_state,

@@ -44,9 +44,9 @@ pub enum FieldError {
         /// Index of the grain.
         index: usize,
     },
-    /// Another rank that shares the field failed.
-    #[error("{reason}")]
-    OfAnotherRank {
+    /// One of the ranks that share the field failed. Numbers of grains are those of that rank.
+    #[error("rank {rank}: {reason}")]
+    OfRank {
         /// Number of that rank.
         rank: usize,
         /// Reason that it gave.

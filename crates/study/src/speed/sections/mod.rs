@@ -6,6 +6,7 @@ pub(crate) mod dem;
 pub(crate) mod field;
 pub(crate) mod gas;
 pub(crate) mod kernel;
+pub(crate) mod lammps;
 pub(crate) mod open;
 mod peak;
 pub(crate) mod rates;
