@@ -17,7 +17,8 @@ HERE = Path(__file__).parent
 EXAMPLES = HERE.parent / "examples"
 SECONDS = 300
 
-# Reads commands and a list of what is wanted, runs LAMMPS, and writes what it found as JSON on rank 0.
+# Reads commands and a list of what is wanted, runs LAMMPS, and writes what it found as JSON on rank 0. MPI is
+# finalized: mpiexec kills the others when a rank ends without.
 DRIVER = """
 import json, sys
 import numpy as np
@@ -48,7 +49,7 @@ for commands, name in job["parts"]:
     found[name] = state
 if lmp.extract_setting("world_rank") == 0:
     json.dump(found, open(sys.argv[2], "w"))
-lmp.close()
+lmp.finalize()
 """
 
 
