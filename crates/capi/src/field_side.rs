@@ -2,7 +2,8 @@
 
 use crate::foreign::{close, guarded, slice, slice_mut};
 use crate::status::AmberfieldStatus;
-use amberfield_coupling::{FieldSide, MeshPart, Question, Reply};
+use amberfield_coupling::{CouplingError, FieldSide, MeshPart, Question, Reply};
+use amberfield_wire::Letter;
 use amberfield_wire::payloads::{BoundaryFace, FarQuestion, FlowQuestion, MeshOutline, SourceCloud};
 use std::ffi::{CStr, CString, c_char};
 
@@ -10,7 +11,27 @@ use std::ffi::{CStr, CString, c_char};
 #[derive(Debug)]
 pub struct AmberfieldField {
     side: Option<FieldSide>,
+    /// Name of the run.
+    pub(crate) run: CString,
+    /// Letter that was handed out last.
+    pub(crate) letter: Option<Letter>,
     error: CString,
+}
+
+impl AmberfieldField {
+    /// A handle of a side, or of the reason why there is none.
+    pub(crate) fn opened(open: impl FnOnce() -> Result<FieldSide, CouplingError>) -> *mut Self {
+        let empty = CString::default();
+        let mut field = Box::new(Self { side: None, run: empty.clone(), letter: None, error: empty });
+        let Self { side, run, error, .. } = &mut *field;
+        guarded(error, || {
+            let opened = open().map_err(|error| error.to_string())?;
+            *run = CString::new(opened.run()).unwrap_or_default();
+            *side = Some(opened);
+            Ok(AmberfieldStatus::Ok)
+        });
+        Box::into_raw(field)
+    }
 }
 
 /// Mesh of one rank of a field process. Vectors are three doubles each; lengths in m.
@@ -160,15 +181,9 @@ pub unsafe extern "C" fn amberfield_field_open(
     rank: u32,
     ranks: u32,
 ) -> *mut AmberfieldField {
-    let mut field = Box::new(AmberfieldField { side: None, error: CString::default() });
     // SAFETY: the caller's promise.
     let run = unsafe { CStr::from_ptr(run) }.to_string_lossy();
-    let AmberfieldField { side, error } = &mut *field;
-    guarded(error, || {
-        *side = Some(FieldSide::open(&run, rank, ranks).map_err(|error| error.to_string())?);
-        Ok(AmberfieldStatus::Ok)
-    });
-    Box::into_raw(field)
+    AmberfieldField::opened(|| FieldSide::open(&run, rank, ranks))
 }
 
 /// Returns the reason why the last call on a handle failed; empty if it did not. The text is valid until the
@@ -385,10 +400,10 @@ pub unsafe extern "C" fn amberfield_field_close(field: *mut AmberfieldField) {
 /// `field` comes from amberfield_field_open and is not closed.
 pub(crate) unsafe fn with(
     field: *mut AmberfieldField,
-    call: impl FnOnce(&mut FieldSide) -> Result<AmberfieldStatus, amberfield_coupling::CouplingError>,
+    call: impl FnOnce(&mut FieldSide) -> Result<AmberfieldStatus, CouplingError>,
 ) -> AmberfieldStatus {
     // SAFETY: the caller's promise.
-    let AmberfieldField { side, error } = unsafe { &mut *field };
+    let AmberfieldField { side, error, .. } = unsafe { &mut *field };
     guarded(error, || match side {
         None => Err("the run is not open".to_owned()),
         Some(side) => call(side).map_err(|error| error.to_string()),

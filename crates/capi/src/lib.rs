@@ -5,6 +5,7 @@
 
 mod charge_laws;
 mod field_flow;
+mod field_letters;
 mod field_potentials;
 mod field_side;
 mod foreign;
@@ -19,6 +20,11 @@ pub use charge_laws::{
 pub use field_flow::{
     AmberfieldFlow, amberfield_field_grains, amberfield_field_reply_flow, amberfield_field_reply_state,
     amberfield_field_state,
+};
+pub use field_letters::{
+    AmberfieldLetter, AmberfieldProxy, amberfield_field_deliver, amberfield_field_letter,
+    amberfield_field_open_distant, amberfield_field_run, amberfield_proxy_close, amberfield_proxy_error,
+    amberfield_proxy_open, amberfield_proxy_send, amberfield_proxy_wait, amberfield_run_is_here,
 };
 pub use field_potentials::{amberfield_field_reply_potentials, amberfield_field_times};
 pub use field_side::{

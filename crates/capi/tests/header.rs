@@ -1,8 +1,8 @@
 //! The C header is what the library's source says, and a compiler finds all that it names.
 
 use amberfield_capi::{
-    AmberfieldContact, AmberfieldFar, AmberfieldFlow, AmberfieldHostSettings, AmberfieldMesh,
-    AmberfieldRequest,
+    AmberfieldContact, AmberfieldFar, AmberfieldFlow, AmberfieldHostSettings, AmberfieldLetter,
+    AmberfieldMesh, AmberfieldRequest,
 };
 use amberfield_wire::payloads::{
     BoundaryFace, FarQuestion, FlowAnswer, FlowQuestion, MeshOutline, SourceCloud,
@@ -13,10 +13,11 @@ use std::path::{Path, PathBuf};
 /// The variable that makes this test write the header instead: `cargo xtask header` sets it.
 const WRITE: &str = "AMBERFIELD_WRITE_HEADER";
 /// Sources of the header, the shared structures of other crates among them.
-const SOURCES: [&str; 12] = [
+const SOURCES: [&str; 13] = [
     "src/status.rs",
     "src/field_side.rs",
     "src/field_flow.rs",
+    "src/field_letters.rs",
     "src/field_potentials.rs",
     "src/host_side.rs",
     "src/host_parameters.rs",
@@ -28,7 +29,7 @@ const SOURCES: [&str; 12] = [
     "../wire/src/payloads/mesh_outline.rs",
 ];
 /// Size of every structure here, by its name there [bytes].
-const SIZES: [(&str, usize); 12] = [
+const SIZES: [(&str, usize); 13] = [
     ("AmberfieldBoundaryFace", size_of::<BoundaryFace>()),
     ("AmberfieldContact", size_of::<AmberfieldContact>()),
     ("AmberfieldFar", size_of::<AmberfieldFar>()),
@@ -37,6 +38,7 @@ const SIZES: [(&str, usize); 12] = [
     ("AmberfieldFlowAnswer", size_of::<FlowAnswer>()),
     ("AmberfieldFlowQuestion", size_of::<FlowQuestion>()),
     ("AmberfieldHostSettings", size_of::<AmberfieldHostSettings>()),
+    ("AmberfieldLetter", size_of::<AmberfieldLetter>()),
     ("AmberfieldMesh", size_of::<AmberfieldMesh>()),
     ("AmberfieldMeshOutline", size_of::<MeshOutline>()),
     ("AmberfieldRequest", size_of::<AmberfieldRequest>()),
