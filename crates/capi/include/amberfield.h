@@ -269,7 +269,7 @@ typedef struct AmberfieldFlow {
 typedef struct AmberfieldLetter {
   // The bytes.
   const uint8_t *bytes;
-  // Their number; 0: no message.
+  // Number of bytes; 0: no message.
   uint64_t count;
 } AmberfieldLetter;
 
@@ -457,8 +457,8 @@ enum AmberfieldStatus amberfield_field_state(struct AmberfieldField *field, doub
 // `run` is a C string.
 uint32_t amberfield_run_is_here(const char *run);
 
-// Returns the name of the run that a handle has open; empty if none is, or on another machine than the run's.
-// The text is valid as long as the handle.
+// Returns the name of the run that a handle has open; empty if none is, or the machine is another than the
+// run's. The text is valid as long as the handle.
 //
 // # Safety
 // `field` comes from amberfield_field_open and is not closed.

@@ -14,7 +14,7 @@ use std::ffi::{CStr, CString, c_char};
 pub struct AmberfieldLetter {
     /// The bytes.
     pub bytes: *const u8,
-    /// Their number; 0: no message.
+    /// Number of bytes; 0: no message.
     pub count: u64,
 }
 
@@ -47,8 +47,8 @@ pub unsafe extern "C" fn amberfield_run_is_here(run: *const c_char) -> u32 {
     u32::from(RunRoot::is_here(&run))
 }
 
-/// Returns the name of the run that a handle has open; empty if none is, or on another machine than the run's.
-/// The text is valid as long as the handle.
+/// Returns the name of the run that a handle has open; empty if none is, or the machine is another than the
+/// run's. The text is valid as long as the handle.
 ///
 /// # Safety
 /// `field` comes from amberfield_field_open and is not closed.

@@ -7,6 +7,7 @@ mod charge_laws;
 mod field_flow;
 mod field_letters;
 mod field_potentials;
+mod field_question;
 mod field_side;
 mod foreign;
 mod host_parameters;
@@ -27,11 +28,12 @@ pub use field_letters::{
     amberfield_proxy_open, amberfield_proxy_send, amberfield_proxy_wait, amberfield_run_is_here,
 };
 pub use field_potentials::{amberfield_field_reply_potentials, amberfield_field_times};
+pub use field_question::{AmberfieldQuestion, AmberfieldRequest};
 pub use field_side::{
-    AmberfieldFar, AmberfieldField, AmberfieldMesh, AmberfieldQuestion, AmberfieldRequest,
-    amberfield_field_boundary, amberfield_field_close, amberfield_field_density, amberfield_field_error,
-    amberfield_field_fail, amberfield_field_guess, amberfield_field_open, amberfield_field_refuse,
-    amberfield_field_reply, amberfield_field_send_mesh, amberfield_field_wait,
+    AmberfieldFar, AmberfieldField, AmberfieldMesh, amberfield_field_boundary, amberfield_field_close,
+    amberfield_field_density, amberfield_field_error, amberfield_field_fail, amberfield_field_guess,
+    amberfield_field_open, amberfield_field_refuse, amberfield_field_reply, amberfield_field_send_mesh,
+    amberfield_field_wait,
 };
 pub use host_parameters::{
     amberfield_host_measured_error, amberfield_host_parameters, amberfield_host_recheck,

@@ -13,8 +13,9 @@ use std::path::{Path, PathBuf};
 /// The variable that makes this test write the header instead: `cargo xtask header` sets it.
 const WRITE: &str = "AMBERFIELD_WRITE_HEADER";
 /// Sources of the header, the shared structures of other crates among them.
-const SOURCES: [&str; 13] = [
+const SOURCES: [&str; 14] = [
     "src/status.rs",
+    "src/field_question.rs",
     "src/field_side.rs",
     "src/field_flow.rs",
     "src/field_letters.rs",

@@ -8,7 +8,8 @@ use std::mem::{MaybeUninit, align_of, size_of};
 /// Blocks that a header takes.
 const HEADER_BLOCKS: usize = size_of::<Header>().div_ceil(size_of::<Block64>());
 
-/// A message on its way to another machine of the same kind: its header, on blocks of its own, then its payload.
+/// A message on its way to another machine of the same kind: its header, on blocks of its own, then its
+/// payload.
 #[derive(Clone, Debug)]
 pub struct Letter {
     blocks: Vec<Block64>,
@@ -64,20 +65,20 @@ impl Letter {
         unsafe { std::slice::from_raw_parts(self.blocks.as_ptr().cast::<u8>(), count) }
     }
 
-    /// Its header.
+    /// Header of the message.
     #[must_use]
     pub fn header(&self) -> &Header {
         // SAFETY: the first blocks were written as a header, or are bytes, of which any are one.
         unsafe { &*self.blocks.as_ptr().cast::<Header>() }
     }
 
-    /// Its payload.
+    /// Payload of the message.
     #[must_use]
     pub fn payload(&self) -> &[Block64] {
         &self.blocks[HEADER_BLOCKS..]
     }
 
-    /// Its sections.
+    /// Sections of the message.
     #[must_use]
     pub fn sections(&self) -> Sections<'_> {
         Sections::new(self.header(), self.payload())

@@ -64,7 +64,7 @@ pub(super) fn hide_launcher(command: &mut Command) {
     let inherited = open_descriptors();
     let close = move || {
         for &descriptor in &inherited {
-            // SAFETY: any number may be asked for; one that is not open gives an error, which does not matter.
+            // SAFETY: any number may be asked about; that of nothing open gives an error.
             let descriptor = unsafe { BorrowedFd::borrow_raw(descriptor) };
             let _ = fcntl_setfd(descriptor, FdFlags::CLOEXEC);
         }

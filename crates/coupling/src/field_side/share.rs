@@ -163,3 +163,83 @@ impl Share {
         })
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use amberfield_core::Boundary;
+    use amberfield_wire::MessageKind;
+
+    /// Share of a rank that has the cells 2 and 3 of four in a row along x, each a metre long.
+    fn share() -> Share {
+        let faces = [[Boundary::Periodic; 2], [Boundary::Open; 2], [Boundary::Open; 2]];
+        let whole = Domain::new(Vector3::zeros(), Vector3::new(4.0, 1.0, 1.0), faces).unwrap();
+        let corners = [Vector3::new(2.0, 0.0, 0.0), Vector3::new(4.0, 1.0, 1.0)];
+        Share { rank: 1, cells: 2..4, whole, corners, reach: None }
+    }
+
+    fn letter(kind: MessageKind, arrays: &[(Section, &[f64])]) -> Letter {
+        let mut layout = Layout::new(Header::new(kind, 7, 3));
+        for (section, values) in arrays {
+            layout = layout.with::<f64>(*section, values.len());
+        }
+        let written = Letter::write(&layout, |payload| {
+            for (section, values) in arrays {
+                layout.section_mut::<f64>(payload, *section)?.copy_from_slice(values);
+            }
+            Ok(())
+        });
+        written.unwrap()
+    }
+
+    #[test]
+    fn charges_are_those_whose_clouds_reach_the_cells_and_what_is_no_number() {
+        let places: Vec<[f64; 3]> = [0.1, 1.0, 1.9, 3.0, f64::NAN].iter().map(|&x| [x, 0.5, 0.5]).collect();
+        let charges = [1.0, 2.0, 3.0, 4.0, 5.0];
+        let layout = Layout::new(Header::new(MessageKind::Charges, 7, 3))
+            .with::<[f64; 3]>(Section::Positions, places.len())
+            .with::<f64>(Section::Charges, charges.len());
+        let message = Letter::write(&layout, |payload| {
+            layout.section_mut::<[f64; 3]>(payload, Section::Positions)?.copy_from_slice(&places);
+            layout.section_mut::<f64>(payload, Section::Charges)?.copy_from_slice(&charges);
+            Ok(())
+        });
+        let message = message.unwrap();
+        let felt = |cloud| {
+            let found = share().felt(cloud, &message.sections(), [Section::Positions, Section::Charges]);
+            found.unwrap().1
+        };
+        // The first across the period, the second from nowhere.
+        assert_eq!(felt(SourceCloud { radius_m: 0.2, shape: 8.0 }), [1.0, 3.0, 4.0, 5.0]);
+        assert_eq!(felt(SourceCloud { radius_m: 1.5, shape: 8.0 }), charges);
+        assert_eq!(felt(SourceCloud::nearest_cell()), charges);
+    }
+
+    #[test]
+    fn a_state_is_the_ranks_own_and_one_that_is_too_short_is_refused() {
+        let state = |sizes: &[u64], state: &[f64]| {
+            let layout = Layout::new(Header::new(MessageKind::Restore, 7, 3))
+                .with::<u64>(Section::FlowStateSizes, sizes.len())
+                .with::<f64>(Section::FlowState, state.len());
+            let message = Letter::write(&layout, |payload| {
+                layout.section_mut::<u64>(payload, Section::FlowStateSizes)?.copy_from_slice(sizes);
+                layout.section_mut::<f64>(payload, Section::FlowState)?.copy_from_slice(state);
+                Ok(())
+            });
+            let own = share().of(&Question::Restore, &Message::Letter(message.unwrap()))?;
+            let sections = own.sections();
+            let sizes = sections.get::<u64>(Section::FlowStateSizes)?.to_vec();
+            Ok::<_, WireError>((sizes, sections.get::<f64>(Section::FlowState)?.to_vec()))
+        };
+        assert_eq!(state(&[1, 2, 1], &[1.0, 2.0, 3.0, 4.0]), Ok((vec![0, 2, 0], vec![2.0, 3.0])));
+        assert!(state(&[1, 2, 1], &[1.0, 2.0]).is_err());
+        assert!(state(&[4], &[1.0; 4]).is_err());
+    }
+
+    #[test]
+    fn what_concerns_no_cells_goes_on_as_it_is() {
+        let times = letter(MessageKind::Times, &[(Section::Times, &[1.0, 2.0])]);
+        let own = share().of(&Question::Potentials, &Message::Letter(times.clone())).unwrap();
+        assert_eq!(own.bytes(), times.bytes());
+    }
+}

@@ -13,9 +13,9 @@ const PEER: &str = "DEM process";
 /// Way of a rank's messages.
 #[derive(Debug)]
 pub(crate) enum Line {
-    /// Through the run's memory, which the rank's machine has.
+    /// The run's memory, which the rank's machine has.
     Memory(Box<Place>),
-    /// By letters, to and from a rank on the DEM process's machine.
+    /// Letters, to and from a rank on the DEM process's machine.
     Letters(Mailbox),
 }
 

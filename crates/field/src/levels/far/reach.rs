@@ -19,7 +19,7 @@ pub struct CloudReach {
 }
 
 impl CloudReach {
-    /// Reach of clouds of a radius [m] into the part from `low` to `high` [m] of a domain, whose periodic axes
+    /// Reach of clouds of a radius [m] into the part of a domain from `low` to `high` [m]; its periodic axes
     /// count.
     #[must_use]
     pub fn new(whole: &Domain, low: Vector3<f64>, high: Vector3<f64>, radius_m: f64) -> Self {
