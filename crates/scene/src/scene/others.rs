@@ -53,6 +53,11 @@ pub(super) fn read_solver(
     }
     let ranks = table.integer("ranks")?.unwrap_or(1);
     let hosts = table.text("hosts")?.map(|name| source.path(name));
+    if hosts.is_some() && ranks == 1 {
+        return Err(
+            table.bad("hosts", "a solver of one rank is on this machine; give ranks, or remove hosts")
+        );
+    }
     if hosts.as_ref().is_some_and(|file| !file.is_file()) {
         return Err(
             table.bad("hosts", "no such file; name one with a machine in each line, as mpirun takes it")
