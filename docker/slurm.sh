@@ -14,7 +14,8 @@
 scene=$1
 out=$2
 
-# Both processes talk through /dev/shm: they must be on one machine, and in one container or on none.
+# Both processes talk through /dev/shm: a rank of the solver must be on the run's machine, in one container
+# with it or in none. With this image's MPI all are (docs/openfoam.md, "Over several machines").
 set -- run "$scene" --out "$out" --no-progress --set solver.ranks=2
 last=$(ls "$out"/checkpoints/*.amber 2>/dev/null | tail -n 1)
 [ -z "$last" ] || set -- run "$scene" --resume "$last" --no-progress --set solver.ranks=2

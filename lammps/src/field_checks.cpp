@@ -34,10 +34,6 @@ void FixAmberfieldField::check_setting()
     const auto refuse = [&](const std::string &reason) { error->all(FLERR, me + reason); };
 
     if (!atom->q_flag) refuse("atoms have no charge; use atom_style hybrid sphere charge");
-    if (!words_.openfoam_case.empty() && comm->nprocs > 1) {
-        refuse("an OpenFOAM case takes one rank as yet, since mpiexec may end the others beside a field "
-               "solver; run LAMMPS without mpiexec");
-    }
     if (lmp->kokkos) refuse("package kokkos keeps atoms elsewhere, which is not possible; run without it");
     if (domain->triclinic) refuse("a triclinic box is not possible; use an orthogonal one");
     if (domain->dimension != 3) refuse("the field has three dimensions; use dimension 3");

@@ -3,10 +3,11 @@
 
 import os
 import shutil
+import subprocess
 
 import numpy as np
 import pytest
-from support import HERE, data_file, error, exact_field, grains, message, run, start
+from support import BIN, HERE, SECONDS, command, data_file, error, exact_field, grains, message, run, start
 
 BOX = ([0.0, 0.0, 0.0], [0.01, 0.01, 0.01])
 # The field meets its tolerance with room to spare; sums in other orders differ in the last digits of single
@@ -299,25 +300,37 @@ needs_solver = pytest.mark.skipif(
 )
 
 
-@needs_solver
-def test_walls_of_an_openfoam_case(tmp_path):
-    # Plates across z, periodic along x and y: the same box as g and p.
-    shutil.copytree(HERE.parent.parent / "cases/coupled-settling-bed/foam", tmp_path / "foam")
-    box = ([0.0] * 3, [0.006, 0.006, 0.01])
+def plates_of_a_case(folder):
+    """Grains between the plates of an OpenFOAM case, periodic along x and y: the same box as g and p."""
+    shutil.copytree(HERE.parent.parent / "cases/coupled-settling-bed/foam", folder / "foam")
     x, q = grains(512, seed=6, box=0.006)
-    data_file(tmp_path / "data.grains", x, q, box)
-    field = "fix E all amberfield/field tolerance 1e-2 "
-    on_grid = run(tmp_path, [[start("p p f") + field + "boundary p p g\nrun 0", "now"]], fixes=["E"])["now"]
-    parts = [[start("p p f") + field + "case foam\nrun 0", "now"], ["fix N all nve/sphere\nrun 3", "later"]]
-    on_mesh = run(tmp_path, parts, fixes=["E"], globals=[("energy", "E", 0)])["now"]
+    data_file(folder / "data.grains", x, q, ([0.0] * 3, [0.006, 0.006, 0.01]))
+    return start("p p f") + "fix E all amberfield/field tolerance 1e-2 "
+
+
+@needs_solver
+@pytest.mark.parametrize("ranks", [1, 2])
+def test_walls_of_an_openfoam_case(tmp_path, ranks):
+    field = plates_of_a_case(tmp_path)
+    on_grid = run(tmp_path, [[field + "boundary p p g\nrun 0", "now"]], fixes=["E"])["now"]
+    parts = [[field + "case foam\nrun 0", "now"], ["fix N all nve/sphere\nrun 3", "later"]]
+    on_mesh = run(tmp_path, parts, ranks=ranks, fixes=["E"], globals=[("energy", "E", 0)])["now"]
     assert error(on_mesh["e"], on_grid["e"]) < 2e-2
 
 
-def test_openfoam_case_on_several_ranks_is_refused(tmp_path):
-    x, q = grains(27, seed=1)
-    data_file(tmp_path / "data.grains", x, q, BOX)
-    said = message(tmp_path, start("p p f") + "fix E all amberfield/field case foam\nrun 0", ranks=2)
-    assert "takes one rank" in said and "without mpiexec" in said
+@needs_solver
+def test_case_on_two_ranks_ends_well_each_time(tmp_path):
+    commands = plates_of_a_case(tmp_path) + "case foam\nrun 0"
+    (tmp_path / "in.case").write_text(commands)
+    fields = []
+    for _ in range(6):
+        # A rank that is killed writes no field, or no last line.
+        fields.append(run(tmp_path, [[commands, "now"]], ranks=2, fixes=["E"])["now"]["e"])
+        program = command(2, BIN / "lmp", "-in", "in.case", "-log", "none")
+        done = subprocess.run(program, cwd=tmp_path, capture_output=True, text=True, timeout=SECONDS)
+        assert done.returncode == 0, done.stdout[-2000:] + done.stderr[-2000:]
+        assert "Total wall time" in done.stdout and "KILLED" not in done.stdout + done.stderr
+    assert all(np.array_equal(field, fields[0]) for field in fields)
 
 
 @needs_solver

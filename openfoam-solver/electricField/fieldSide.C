@@ -6,6 +6,7 @@
 #include "fieldSide.H"
 #include "changingPotentials.H"
 #include "PstreamReduceOps.H"
+#include "stringList.H"
 #include "error.H"
 #include "foamVersion.H"
 #include "OSspecific.H"
@@ -83,15 +84,8 @@ Foam::fieldSide::fieldSide(const string& run)
 {
     {
         noTraps quiet;
-        field_ = amberfield_field_open
-        (
-            run.c_str(),
-            uint32_t(Pstream::parRun() ? Pstream::myProcNo() : 0),
-            uint32_t(Pstream::parRun() ? Pstream::nProcs() : 1)
-        );
+        open(run);
     }
-    const bool failed = amberfield_field_error(field_)[0] != '\0';
-    check(failed ? AmberfieldStatus_Failed : AmberfieldStatus_Ok);
     opened = this;
     std::atexit(leave);
     checkVersion();
@@ -102,7 +96,45 @@ Foam::fieldSide::~fieldSide()
 {
     opened = nullptr;
     noTraps quiet;
+    post_.close();
     amberfield_field_close(field_);
+}
+
+
+void Foam::fieldSide::open(const string& run)
+{
+    const uint32_t rank = Pstream::parRun() ? uint32_t(Pstream::myProcNo()) : 0;
+    const uint32_t ranks = Pstream::parRun() ? uint32_t(Pstream::nProcs()) : 1;
+    const auto outcome = [&]
+    {
+        const bool failed = field_ && amberfield_field_error(field_)[0] != '\0';
+        return failed ? AmberfieldStatus_Failed : AmberfieldStatus_Ok;
+    };
+    string name(run);
+    if (Pstream::parRun())
+    {
+        if (run.empty())
+        {
+            // Another machine may have a run that waits too: the first rank's
+            // is meant
+            if (Pstream::master())
+            {
+                field_ = amberfield_field_open(run.c_str(), rank, ranks);
+            }
+            check(outcome());
+            name = Pstream::master() ? amberfield_field_run(field_) : "";
+            Pstream::scatter(name);
+        }
+        post_.find(name);
+    }
+    if (!field_)
+    {
+        field_ = post_.isHere()
+          ? amberfield_field_open(name.c_str(), rank, ranks)
+          : amberfield_field_open_distant(name.c_str(), rank, ranks);
+    }
+    check(outcome());
+    check(post_.open(name));
 }
 
 
@@ -168,6 +200,7 @@ void Foam::fieldSide::tell(const string& reason, const bool isInput)
     {
         amberfield_field_fail(field_, reason.c_str());
     }
+    post_.close();
     amberfield_field_close(field_);
     field_ = nullptr;
 }
@@ -220,14 +253,41 @@ void Foam::fieldSide::leave()
 void Foam::fieldSide::check(const AmberfieldStatus status)
 {
     const bool failed = status == AmberfieldStatus_Failed;
-    const string reason(failed ? amberfield_field_error(field_) : "");
-    if (returnReduce(failed, orOp<bool>()))
+    if (!returnReduce(failed, orOp<bool>()))
     {
-        // No destructor runs on the way out
-        tell(failed ? reason : string("another rank failed"), false);
-        FatalErrorInFunction
-            << (failed ? reason : string("another rank failed"))
-            << exit(FatalError);
+        return;
+    }
+    // All know the reason: ranks on other machines cannot tell it
+    stringList reasons(Pstream::nProcs());
+    if (failed)
+    {
+        string& own = reasons[Pstream::myProcNo()];
+        own = post_.reason().empty() ? string(amberfield_field_error(field_)) : post_.reason();
+        own += post_.isFound() ? "" : "; no rank is on the machine of the DEM process";
+    }
+    Pstream::gatherList(reasons);
+    Pstream::scatterList(reasons);
+    string reason("another rank failed");
+    for (const string& known : reasons)
+    {
+        if (!known.empty())
+        {
+            reason = known;
+            break;
+        }
+    }
+    // No destructor runs on the way out
+    tell(reason, false);
+    FatalErrorInFunction << reason << exit(FatalError);
+}
+
+
+void Foam::fieldSide::sent(const AmberfieldStatus status)
+{
+    check(status);
+    if (post_.isNeeded())
+    {
+        check(post_.carry(field_));
     }
 }
 
@@ -241,7 +301,7 @@ void Foam::fieldSide::sendMesh
     potentials_ = potentials;
     noTraps quiet;
     const AmberfieldMesh view(mesh.view());
-    check(amberfield_field_send_mesh(field_, &view));
+    sent(amberfield_field_send_mesh(field_, &view));
 }
 
 
@@ -251,7 +311,7 @@ bool Foam::fieldSide::wait()
     do
     {
         noTraps quiet;
-        status = amberfield_field_wait(field_, &request_);
+        status = post_.wait(field_, request_);
         check(status);
     }
     while (status == AmberfieldStatus_Ok && replyPotentials());
@@ -273,7 +333,7 @@ bool Foam::fieldSide::replyPotentials()
     const scalarField values(potentials_ ? potentials_->at(times) : scalarField());
     {
         noTraps quiet;
-        check(amberfield_field_reply_potentials(field_, values.cdata(), uint64_t(values.size())));
+        sent(amberfield_field_reply_potentials(field_, values.cdata(), uint64_t(values.size())));
     }
     return true;
 }
@@ -340,14 +400,14 @@ void Foam::fieldSide::grains
 void Foam::fieldSide::reply(const AmberfieldFlow& flow)
 {
     noTraps quiet;
-    check(amberfield_field_reply_flow(field_, &flow));
+    sent(amberfield_field_reply_flow(field_, &flow));
 }
 
 
 void Foam::fieldSide::replyState(const scalarField& state)
 {
     noTraps quiet;
-    check(amberfield_field_reply_state(field_, state.cdata(), uint64_t(state.size())));
+    sent(amberfield_field_reply_state(field_, state.cdata(), uint64_t(state.size())));
 }
 
 
@@ -375,7 +435,7 @@ void Foam::fieldSide::reply
     far.iterations = uint64_t(iterations);
     far.residual = residual;
     far.seconds = seconds;
-    check(amberfield_field_reply(field_, &far));
+    sent(amberfield_field_reply(field_, &far));
 }
 
 

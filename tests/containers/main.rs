@@ -1,6 +1,9 @@
-//! Run in two containers, as described in docker/compose.yaml; `cargo xtask images` builds the images.
+//! Runs in containers, as described in docker/compose.yaml, and over two machines; `cargo xtask images`
+//! builds the images.
 
 #![expect(clippy::unwrap_used, reason = "helpers of tests fail as tests do")]
+
+mod hosts;
 
 use amberfield_tests::{CsvTable, DEADLINE, FoamBox};
 use std::process::{Command, Output};

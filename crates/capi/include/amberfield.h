@@ -54,6 +54,9 @@ typedef struct AmberfieldField AmberfieldField;
 // start. Call it every so many steps and keep E in between.
 typedef struct AmberfieldHost AmberfieldHost;
 
+// Stands in the run's memory for a rank on another machine.
+typedef struct AmberfieldProxy AmberfieldProxy;
+
 // Box and periodic axes of the mesh of all ranks, and where the cells of one rank are among them.
 typedef struct AmberfieldMeshOutline {
   // Lower corner of the cells of all ranks [m].
@@ -261,6 +264,14 @@ typedef struct AmberfieldFlow {
   const char *advice;
 } AmberfieldFlow;
 
+// Message as bytes, which are valid until the next call on the handle that they come from.
+typedef struct AmberfieldLetter {
+  // The bytes.
+  const uint8_t *bytes;
+  // Number of bytes; 0: no message.
+  uint64_t count;
+} AmberfieldLetter;
+
 // Face of the box, with the condition there.
 typedef struct AmberfieldFace {
   // Condition, a value of AmberfieldBoundary.
@@ -466,6 +477,77 @@ enum AmberfieldStatus amberfield_field_reply_state(struct AmberfieldField *field
 // # Safety
 // `field` comes from amberfield_field_open and is not closed; `state` has room for `count` numbers.
 enum AmberfieldStatus amberfield_field_state(struct AmberfieldField *field, double *state, uint64_t count);
+
+// Returns 1 if this machine has the memory of a run of this name, else 0.
+//
+// # Safety
+// `run` is a C string.
+uint32_t amberfield_run_is_here(const char *run);
+
+// Returns the name of the run that a handle has open; empty if none is, or the machine is another than the
+// run's. The text is valid as long as the handle.
+//
+// # Safety
+// `field` comes from amberfield_field_open and is not closed.
+const char *amberfield_field_run(const struct AmberfieldField *field);
+
+// Opens one rank of so many on a machine that has not the memory of the run. All calls are as on any other
+// rank, but for two: what amberfield_field_letter gives after a call goes to the rank's proxy, and what the
+// proxy gives is delivered before amberfield_field_wait, which then does not wait. The result is never NULL;
+// amberfield_field_error is empty when it worked.
+//
+// # Safety
+// `run` is a C string.
+struct AmberfieldField *amberfield_field_open_distant(const char *run, uint32_t rank, uint32_t ranks);
+
+// Gives the letter that the last call has left for the rank's proxy; none on a rank that needs no proxy.
+//
+// # Safety
+// `field` comes from amberfield_field_open_distant and is not closed; `letter` may be written.
+enum AmberfieldStatus amberfield_field_letter(struct AmberfieldField *field, struct AmberfieldLetter *letter);
+
+// Takes in a letter of the rank's proxy, before amberfield_field_wait.
+//
+// # Safety
+// `field` comes from amberfield_field_open_distant and is not closed; `bytes` has `count` of them.
+enum AmberfieldStatus amberfield_field_deliver(struct AmberfieldField *field,
+                                               const uint8_t *bytes,
+                                               uint64_t count);
+
+// Opens the proxy of a rank on another machine, on one that has the run's memory. The result is never NULL;
+// amberfield_proxy_error is empty when it worked.
+//
+// # Safety
+// `run` is a C string.
+struct AmberfieldProxy *amberfield_proxy_open(const char *run, uint32_t rank, uint32_t ranks);
+
+// Returns the reason why the last call on a proxy failed; empty if it did not. The text is valid until the
+// next call.
+//
+// # Safety
+// `proxy` comes from amberfield_proxy_open and is not closed.
+const char *amberfield_proxy_error(const struct AmberfieldProxy *proxy);
+
+// Sends a letter of the rank's to the DEM process.
+//
+// # Safety
+// `proxy` comes from amberfield_proxy_open and is not closed; `bytes` has `count` of them.
+enum AmberfieldStatus amberfield_proxy_send(struct AmberfieldProxy *proxy,
+                                            const uint8_t *bytes,
+                                            uint64_t count);
+
+// Waits for the next question of the DEM process and gives the rank's share of it, for
+// amberfield_field_deliver there; AmberfieldStatus_Over when there will be none.
+//
+// # Safety
+// `proxy` comes from amberfield_proxy_open and is not closed; `letter` may be written.
+enum AmberfieldStatus amberfield_proxy_wait(struct AmberfieldProxy *proxy, struct AmberfieldLetter *letter);
+
+// Closes a proxy. NULL is allowed.
+//
+// # Safety
+// `proxy` comes from amberfield_proxy_open and is not closed; the handle is gone afterwards.
+void amberfield_proxy_close(struct AmberfieldProxy *proxy);
 
 // Copies the times [s] at which the potentials of the patches that change are asked for: as many as the
 // request says.

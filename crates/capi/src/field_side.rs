@@ -1,16 +1,38 @@
 //! The field side: open the run, send the mesh, wait, take density and boundary data, answer, close.
 
+use crate::field_question::AmberfieldRequest;
 use crate::foreign::{close, guarded, slice, slice_mut};
 use crate::status::AmberfieldStatus;
-use amberfield_coupling::{FieldSide, MeshPart, Question, Reply};
-use amberfield_wire::payloads::{BoundaryFace, FarQuestion, FlowQuestion, MeshOutline, SourceCloud};
+use amberfield_coupling::{CouplingError, FieldSide, MeshPart, Question, Reply};
+use amberfield_wire::Letter;
+use amberfield_wire::payloads::{BoundaryFace, MeshOutline};
 use std::ffi::{CStr, CString, c_char};
 
 /// One rank of a field process.
 #[derive(Debug)]
 pub struct AmberfieldField {
     side: Option<FieldSide>,
+    /// Name of the run.
+    pub(crate) run: CString,
+    /// Letter that was handed out last.
+    pub(crate) letter: Option<Letter>,
     error: CString,
+}
+
+impl AmberfieldField {
+    /// A handle of a side, or of the reason why there is none.
+    pub(crate) fn opened(open: impl FnOnce() -> Result<FieldSide, CouplingError>) -> *mut Self {
+        let empty = CString::default();
+        let mut field = Box::new(Self { side: None, run: empty.clone(), letter: None, error: empty });
+        let Self { side, run, error, .. } = &mut *field;
+        guarded(error, || {
+            let opened = open().map_err(|error| error.to_string())?;
+            *run = CString::new(opened.run()).unwrap_or_default();
+            *side = Some(opened);
+            Ok(AmberfieldStatus::Ok)
+        });
+        Box::into_raw(field)
+    }
 }
 
 /// Mesh of one rank of a field process. Vectors are three doubles each; lengths in m.
@@ -85,70 +107,6 @@ pub struct AmberfieldFar {
     pub seconds: f64,
 }
 
-/// Kind of question of the DEM process.
-#[repr(C)]
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum AmberfieldQuestion {
-    /// The far field: call density, boundary, guess, then reply.
-    Field = 0,
-    /// The flow at the end of an interval: call grains, then reply_flow.
-    Flow = 1,
-    /// The state of the flow: call reply_state.
-    State = 2,
-    /// A state of the flow to take in: call state, then reply_state with no number.
-    Restore = 3,
-    /// The potentials of patches that change, at some times: call times, then reply_potentials.
-    Potentials = 4,
-}
-
-/// Question of the DEM process, with the scalars that belong to it.
-#[repr(C)]
-#[derive(Clone, Copy, Debug)]
-pub struct AmberfieldRequest {
-    /// Kind of question.
-    pub question: AmberfieldQuestion,
-    /// Number of the solve.
-    pub solve: u64,
-    /// Number of times of the question for potentials that change; 0 for other questions.
-    pub times: u64,
-    /// The question for the far field; all 0 unless that is what is asked.
-    pub far: FarQuestion,
-    /// The question for the flow; all 0 unless that is what is asked.
-    pub flow: FlowQuestion,
-}
-
-const NO_FAR_QUESTION: FarQuestion = FarQuestion {
-    cloud: SourceCloud::nearest_cell(),
-    permittivity_f_m: 0.0,
-    neutralising_background: 0,
-    time_s: 0.0,
-    tolerance: 0.0,
-    wants_e: 0,
-};
-
-const NO_FLOW_QUESTION: FlowQuestion = FlowQuestion {
-    interval_s: 0.0,
-    time_s: 0.0,
-    density_kg_m3: 0.0,
-    viscosity_pa_s: 0.0,
-    model_b: 0,
-    viscous_force: 0,
-    vorticity: 0,
-};
-
-impl AmberfieldRequest {
-    fn of(question: Question, solve: u64, times: u64) -> Self {
-        let only = |question| Self { question, solve, times, far: NO_FAR_QUESTION, flow: NO_FLOW_QUESTION };
-        match question {
-            Question::Far(far) => Self { far, ..only(AmberfieldQuestion::Field) },
-            Question::Flow(flow) => Self { flow, ..only(AmberfieldQuestion::Flow) },
-            Question::State => only(AmberfieldQuestion::State),
-            Question::Restore => only(AmberfieldQuestion::Restore),
-            Question::Potentials => only(AmberfieldQuestion::Potentials),
-        }
-    }
-}
-
 /// Opens a run by its name, for one rank of so many; an empty name is the one run of this user that waits for
 /// a solver. The result is never NULL; amberfield_field_error is empty when it worked.
 ///
@@ -160,15 +118,9 @@ pub unsafe extern "C" fn amberfield_field_open(
     rank: u32,
     ranks: u32,
 ) -> *mut AmberfieldField {
-    let mut field = Box::new(AmberfieldField { side: None, error: CString::default() });
     // SAFETY: the caller's promise.
     let run = unsafe { CStr::from_ptr(run) }.to_string_lossy();
-    let AmberfieldField { side, error } = &mut *field;
-    guarded(error, || {
-        *side = Some(FieldSide::open(&run, rank, ranks).map_err(|error| error.to_string())?);
-        Ok(AmberfieldStatus::Ok)
-    });
-    Box::into_raw(field)
+    AmberfieldField::opened(|| FieldSide::open(&run, rank, ranks))
 }
 
 /// Returns the reason why the last call on a handle failed; empty if it did not. The text is valid until the
@@ -385,10 +337,10 @@ pub unsafe extern "C" fn amberfield_field_close(field: *mut AmberfieldField) {
 /// `field` comes from amberfield_field_open and is not closed.
 pub(crate) unsafe fn with(
     field: *mut AmberfieldField,
-    call: impl FnOnce(&mut FieldSide) -> Result<AmberfieldStatus, amberfield_coupling::CouplingError>,
+    call: impl FnOnce(&mut FieldSide) -> Result<AmberfieldStatus, CouplingError>,
 ) -> AmberfieldStatus {
     // SAFETY: the caller's promise.
-    let AmberfieldField { side, error } = unsafe { &mut *field };
+    let AmberfieldField { side, error, .. } = unsafe { &mut *field };
     guarded(error, || match side {
         None => Err("the run is not open".to_owned()),
         Some(side) => call(side).map_err(|error| error.to_string()),

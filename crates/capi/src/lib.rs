@@ -5,7 +5,9 @@
 
 mod charge_laws;
 mod field_flow;
+mod field_letters;
 mod field_potentials;
+mod field_question;
 mod field_side;
 mod foreign;
 mod host;
@@ -25,12 +27,18 @@ pub use field_flow::{
     AmberfieldFlow, amberfield_field_grains, amberfield_field_reply_flow, amberfield_field_reply_state,
     amberfield_field_state,
 };
+pub use field_letters::{
+    AmberfieldLetter, AmberfieldProxy, amberfield_field_deliver, amberfield_field_letter,
+    amberfield_field_open_distant, amberfield_field_run, amberfield_proxy_close, amberfield_proxy_error,
+    amberfield_proxy_open, amberfield_proxy_send, amberfield_proxy_wait, amberfield_run_is_here,
+};
 pub use field_potentials::{amberfield_field_reply_potentials, amberfield_field_times};
+pub use field_question::{AmberfieldQuestion, AmberfieldRequest};
 pub use field_side::{
-    AmberfieldFar, AmberfieldField, AmberfieldMesh, AmberfieldQuestion, AmberfieldRequest,
-    amberfield_field_boundary, amberfield_field_close, amberfield_field_density, amberfield_field_error,
-    amberfield_field_fail, amberfield_field_guess, amberfield_field_open, amberfield_field_refuse,
-    amberfield_field_reply, amberfield_field_send_mesh, amberfield_field_wait,
+    AmberfieldFar, AmberfieldField, AmberfieldMesh, amberfield_field_boundary, amberfield_field_close,
+    amberfield_field_density, amberfield_field_error, amberfield_field_fail, amberfield_field_guess,
+    amberfield_field_open, amberfield_field_refuse, amberfield_field_reply, amberfield_field_send_mesh,
+    amberfield_field_wait,
 };
 pub use host::AmberfieldHost;
 pub use host_parameters::{

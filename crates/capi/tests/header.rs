@@ -1,8 +1,8 @@
 //! The C header is what the library's source says, and a compiler finds all that it names.
 
 use amberfield_capi::{
-    AmberfieldContact, AmberfieldFar, AmberfieldFlow, AmberfieldHostSettings, AmberfieldMesh,
-    AmberfieldRanks, AmberfieldRequest,
+    AmberfieldContact, AmberfieldFar, AmberfieldFlow, AmberfieldHostSettings, AmberfieldLetter,
+    AmberfieldMesh, AmberfieldRanks, AmberfieldRequest,
 };
 use amberfield_wire::payloads::{
     BoundaryFace, FarQuestion, FlowAnswer, FlowQuestion, MeshOutline, SourceCloud,
@@ -13,10 +13,12 @@ use std::path::{Path, PathBuf};
 /// The variable that makes this test write the header instead: `cargo xtask header` sets it.
 const WRITE: &str = "AMBERFIELD_WRITE_HEADER";
 /// Sources of the header, the shared structures of other crates among them.
-const SOURCES: [&str; 15] = [
+const SOURCES: [&str; 17] = [
     "src/status.rs",
+    "src/field_question.rs",
     "src/field_side.rs",
     "src/field_flow.rs",
+    "src/field_letters.rs",
     "src/field_potentials.rs",
     "src/host_settings.rs",
     "src/host_ranks.rs",
@@ -31,8 +33,7 @@ const SOURCES: [&str; 15] = [
     "../wire/src/payloads/mesh_outline.rs",
 ];
 /// Size of every structure here, by its name there [bytes].
-const SIZES: [(&str, usize); 13] = [
-    ("AmberfieldRanks", size_of::<AmberfieldRanks>()),
+const SIZES: [(&str, usize); 14] = [
     ("AmberfieldBoundaryFace", size_of::<BoundaryFace>()),
     ("AmberfieldContact", size_of::<AmberfieldContact>()),
     ("AmberfieldFar", size_of::<AmberfieldFar>()),
@@ -41,8 +42,10 @@ const SIZES: [(&str, usize); 13] = [
     ("AmberfieldFlowAnswer", size_of::<FlowAnswer>()),
     ("AmberfieldFlowQuestion", size_of::<FlowQuestion>()),
     ("AmberfieldHostSettings", size_of::<AmberfieldHostSettings>()),
+    ("AmberfieldLetter", size_of::<AmberfieldLetter>()),
     ("AmberfieldMesh", size_of::<AmberfieldMesh>()),
     ("AmberfieldMeshOutline", size_of::<MeshOutline>()),
+    ("AmberfieldRanks", size_of::<AmberfieldRanks>()),
     ("AmberfieldRequest", size_of::<AmberfieldRequest>()),
     ("AmberfieldSourceCloud", size_of::<SourceCloud>()),
 ];

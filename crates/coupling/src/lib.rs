@@ -18,7 +18,7 @@ pub use dem_side::{
     solver_program,
 };
 pub use error::CouplingError;
-pub use field_side::{FieldSide, FlowReply, GrainsInCells, Question, Reply};
+pub use field_side::{FieldSide, FlowReply, GrainsInCells, Proxy, Question, Reply};
 pub use meeting::{RunRoot, stale_runs};
 pub use mesh::{MeshArrays, MeshPart, assemble};
 pub use stand_in::BoxSolver;

@@ -110,4 +110,7 @@ pub enum WireError {
         /// Count that it must be below.
         count: usize,
     },
+    /// Bytes that hold no message.
+    #[error("{0} bytes arrived, which are no message")]
+    Letter(usize),
 }

@@ -8,10 +8,12 @@
 mod error;
 mod header;
 mod layout;
+mod letter;
 pub mod payloads;
 mod section;
 
 pub use error::WireError;
 pub use header::{Block64, Header, MessageKind, PROTOCOL_VERSION, SectionEntry, check_version};
 pub use layout::{Element, Layout, Sections};
+pub use letter::Letter;
 pub use section::Section;

@@ -1,4 +1,4 @@
-//! The two container images, and an engine that builds and runs them.
+//! The container images, and an engine that builds and runs them.
 
 use crate::openfoam::PROGRAM;
 use crate::profile::Profile;
@@ -19,12 +19,12 @@ const STOCK: &str = "debian:bookworm-slim";
 const ENGINE: &str = "docker.io";
 /// Package of the program that drives two containers at once.
 const COMPOSE: &str = "docker-compose";
-/// Stage of the field solver's image that has OpenFOAM's package and nothing of ours.
-const PACKAGE_STAGE: &str = "package";
+/// Images with a stage that has Debian's packages and nothing of ours, and that stage.
+const PACKAGE_STAGES: [(&str, &str); 2] = [("openfoam", "package"), ("host", "server")];
 /// Longest time that an engine may take to start.
 const START: Duration = Duration::from_secs(60);
 
-/// Builds both images.
+/// Builds all images.
 pub(crate) fn run(root: &Path) -> Result<()> {
     openfoam::run(root)?;
     execute(&mut cargo(root, &["build", "--release", "-p", "amberfield-cli"]))?;
@@ -38,22 +38,27 @@ pub(crate) fn provide(root: &Path) -> Result<()> {
     provide_engine(&place)?;
     provide_base(&place)?;
     // OpenFOAM's package is most of an image: made now, it is taken from the engine's cache later.
-    let context = place.join(PACKAGE_STAGE);
-    std::fs::create_dir_all(&context)?;
-    let mut stage = Command::new("docker");
-    stage.args(["build", "-q", "--target", PACKAGE_STAGE, "--build-arg", &format!("BASE={BASE}"), "-f"]);
-    execute(stage.arg(recipe(root, "openfoam")).arg(context))
+    for (name, stage) in PACKAGE_STAGES {
+        let context = place.join(stage);
+        std::fs::create_dir_all(&context)?;
+        let mut build = Command::new("docker");
+        build.args(["build", "-q", "--target", stage, "--build-arg", &format!("BASE={BASE}"), "-f"]);
+        execute(build.arg(recipe(root, name)).arg(context))?;
+    }
+    Ok(())
 }
 
-/// Builds both images around programs that are built already.
+/// Builds all images around programs that are built already.
 pub(crate) fn build(root: &Path, profile: Profile) -> Result<()> {
     let place = place(root)?;
     let solver = root.join("openfoam-solver").join(profile.solver_folder());
     let [field, gas, library, test] =
         [PROGRAM, "amberPimpleFoam", "libelectricField.so", "selfTest"].map(|name| solver.join(name));
     let script = root.join("docker/solve.sh");
-    image(root, &place, "dem", &[&profile.folder(root).join("amberfield")])?;
-    image(root, &place, "openfoam", &[&script, &field, &gas, &library, &test])
+    let dem = profile.folder(root).join("amberfield");
+    image(root, &place, "dem", &[&dem])?;
+    image(root, &place, "openfoam", &[&script, &field, &gas, &library, &test])?;
+    image(root, &place, "host", &[&dem, &field, &gas, &library, &test])
 }
 
 /// Folder in which images are made.

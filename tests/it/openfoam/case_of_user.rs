@@ -301,16 +301,20 @@ fn resume_takes_other_technical_settings_and_names_what_is_physics() {
 #[test]
 fn solver_that_somebody_else_starts_is_waited_for_and_what_to_type_is_said() {
     let bench = bench(SCENE);
-    for (ranks, expected) in [
-        ("solver.ranks=1", "`electricFieldFoam -case /"),
-        ("solver.ranks=3", "`mpirun -np 3 electricFieldFoam -parallel -case /"),
+    bench.write("hosts.txt", "here slots=3\n");
+    let hosts = ["--set", "solver.hosts=hosts.txt"];
+    for (ranks, hosts, expected) in [
+        ("solver.ranks=1", &[][..], ["`electricFieldFoam -case /", ""]),
+        ("solver.ranks=3", &[], ["`mpirun -np 3 electricFieldFoam -parallel -case /", ""]),
+        ("solver.ranks=3", &hosts, ["`mpirun -np 3 --hostfile /", "hosts.txt electricFieldFoam -parallel"]),
     ] {
         let options = ["--set", "solver.start=false", "--set", "solver.wait_s=0.3", "--set", ranks];
-        let answer = field(&bench, &options);
+        let answer = field(&bench, &[&options[..], hosts].concat());
         assert_eq!(answer.code, Some(3), "{}", answer.stderr);
         let error = answer.stderr.lines().last().unwrap();
         assert!(
-            error.contains("nobody started a field solver within 3") && error.contains(expected),
+            error.contains("nobody started a field solver within 3")
+                && expected.iter().all(|words| error.contains(words)),
             "{error}"
         );
     }

@@ -1,67 +1,10 @@
 //! Runs in a gas whose flow OpenFOAM computes, started as a user starts them.
 
 use super::good;
-use amberfield_tests::foam_case::{
-    brick, foam_program, perturb, write_file, write_gas_case, write_potential,
-};
-use amberfield_tests::{Answer, CsvTable, DEADLINE, Workbench};
+use amberfield_tests::foam_case::{foam_program, perturb, write_file};
+use amberfield_tests::{Answer, CsvTable, DEADLINE, GAS_SCENE, Workbench, gas_box};
 use std::process::Stdio;
 use std::time::{Duration, Instant};
-
-const SCENE: &str = "[domain]\nmin_m = [0, 0, 0]\nmax_m = [0.01, 0.01, 0.03]\n\
-    boundary = { x = 'grounded', y = 'grounded', z = 'insulating' }\n\
-    [[materials]]\nname = 'glass'\ndensity_kg_m3 = 1000.0\nyoung_Pa = 5e5\npoisson = 0.22\n\
-    restitution = 0.6\nfriction = 0.3\n\
-    [[walls]]\nplane = { point_m = [0, 0, 0], normal = [0, 0, 1] }\nmaterial = 'glass'\n\
-    [particles]\non_exit = 'delete'\ngenerate = { material = 'glass', count = 700, radius_m = 5e-4, \
-    seed = 3, region = { box = { min_m = [0, 0, 0], max_m = [0.01, 0.01, 0.012] } }, \
-    charge_C = { bipolar = 2e-12 } }\n\
-    [electric_field]\ntuning = 'model'\ntolerance = 2e-2\n\
-    [gas]\nflow = 'solver'\ndrag = 'di_felice'\ninterval_s = 2e-4\ndensity_kg_m3 = 1.2\n\
-    viscosity_Pa_s = 1.8e-5\n\
-    [time]\nstep_s = 'auto'\nend_s = 8e-3\ngravity_m_s2 = [0, 0, -9.81]\n\
-    [solver]\nopenfoam_case = 'foam'\ntimeout_s = 20.0\n[output]\nformats = ['csv']\n";
-
-/// Side of the box.
-#[derive(Clone, Copy)]
-struct Side {
-    kind: &'static str,
-    velocity: &'static str,
-    pressure: &'static str,
-    potential: &'static str,
-}
-
-/// Box that air enters from below, with its case.
-fn bed(scene: &str) -> Workbench {
-    let bench = Workbench::new(scene);
-    let wall = Side {
-        kind: "wall",
-        velocity: "type slip;",
-        pressure: "type zeroGradient;",
-        potential: "type fixedValue; value uniform 0;",
-    };
-    let below = Side {
-        kind: "patch",
-        velocity: "type interstitialInletVelocity; inletVelocity uniform (0 0 0.6); alpha alpha; \
-                   value uniform (0 0 0.6);",
-        pressure: "type fixedFluxPressure; value uniform 0;",
-        potential: "type zeroGradient;",
-    };
-    let above = Side {
-        kind: "patch",
-        velocity: "type pressureInletOutletVelocity; value uniform (0 0 0);",
-        pressure: "type fixedValue; value uniform 0;",
-        potential: "type zeroGradient;",
-    };
-    let sides = [wall, wall, wall, wall, below, above];
-    let (edges, cells) = ([10.0, 10.0, 30.0], [4, 4, 12]);
-    let velocity = brick(edges, cells, &sides.map(|side| (side.kind, side.velocity)));
-    let pressure = brick(edges, cells, &sides.map(|side| (side.kind, side.pressure)));
-    let potential = brick(edges, cells, &sides.map(|side| (side.kind, side.potential)));
-    write_gas_case(&bench, &velocity.mesh, &velocity.conditions, &pressure.conditions, 1.5e-5);
-    write_potential(&bench, &potential.conditions);
-    bench
-}
 
 /// Adds turbulence by OpenFOAM's model with k and ε.
 fn add_turbulence(bench: &Workbench) {
@@ -98,7 +41,7 @@ fn a_run_in_a_gas_goes_on_bit_for_bit_from_its_checkpoint() {
         let set = format!("electric_field.overlap={overlap}");
         let gas = format!("gas.overlap={overlap}");
         let sets = ["--set", &set, "--set", &gas];
-        let bench = bed(SCENE);
+        let bench = gas_box(GAS_SCENE);
         if stirred {
             add_turbulence(&bench);
         }
@@ -117,7 +60,7 @@ fn a_run_in_a_gas_goes_on_bit_for_bit_from_its_checkpoint() {
 
 #[test]
 fn a_run_in_a_gas_that_was_killed_ends_as_if_it_had_not_been() {
-    let bench = bed(SCENE);
+    let bench = gas_box(GAS_SCENE);
     let often = ["--set", "output.checkpoint_every_s=1e-3"];
     good(&run(&bench, "whole", &often));
     let begin = [&["run", "scene.toml", "--out", "killed", "--no-progress"], &often[..]].concat();
@@ -138,7 +81,7 @@ fn a_run_in_a_gas_that_was_killed_ends_as_if_it_had_not_been() {
 
 #[test]
 fn a_gas_starts_from_the_time_that_the_case_names_at_a_resume_too() {
-    let bench = bed(SCENE);
+    let bench = gas_box(GAS_SCENE);
     let controls = bench.read("foam/system/controlDict");
     let latest = controls.replace("startFrom startTime", "startFrom latestTime");
     let latest = latest
@@ -163,9 +106,9 @@ fn a_gas_starts_from_the_time_that_the_case_names_at_a_resume_too() {
 
 #[test]
 fn a_run_in_a_gas_needs_no_charge_and_is_the_same_with_two_ranks() {
-    let scene = SCENE.replace("charge_C = { bipolar = 2e-12 }", "charge_C = { constant = 0.0 }");
+    let scene = GAS_SCENE.replace("charge_C = { bipolar = 2e-12 }", "charge_C = { constant = 0.0 }");
     let scene = scene.replace("[electric_field]\ntuning = 'model'\ntolerance = 2e-2\n", "");
-    let bench = bed(&scene);
+    let bench = gas_box(&scene);
     std::fs::remove_file(bench.path("foam/0/phiE")).expect("it is there");
     good(&run(&bench, "one", &[]));
     good(&run(&bench, "two", &["--set", "solver.ranks=2"]));
@@ -189,7 +132,7 @@ fn a_run_in_a_gas_needs_no_charge_and_is_the_same_with_two_ranks() {
 
 #[test]
 fn the_log_says_what_a_mesh_and_its_patches_ask_for() {
-    let bench = bed(&SCENE.replace("end_s = 8e-3", "end_s = 1e-3"));
+    let bench = gas_box(&GAS_SCENE.replace("end_s = 8e-3", "end_s = 1e-3"));
     let quiet = run(&bench, "quiet", &[]);
     good(&quiet);
     assert!(!quiet.stderr.contains("leastSquares"), "{}", quiet.stderr);
@@ -215,7 +158,7 @@ fn a_gas_that_cannot_be_is_refused_by_name() {
         assert_eq!(answer.code, Some(code), "{}", answer.stderr);
         assert!(answer.stderr.contains(expected), "{expected}: {}", answer.stderr);
     };
-    let bench = bed(SCENE);
+    let bench = gas_box(GAS_SCENE);
     refused(&bench, &["gas.velocity_m_s=[0, 0, 1]"], 2, "gas.velocity_m_s");
     refused(&bench, &["gas.flow=\"uniform\""], 2, "needs a flow that is computed");
     refused(&bench, &["gas.model=\"C\""], 2, "gas.model");
@@ -225,7 +168,7 @@ fn a_gas_that_cannot_be_is_refused_by_name() {
     refused(&bench, &["gas.interval_s=1.0"], 2, "gas.interval_s is");
     refused(&bench, &["gas.viscosity_Pa_s=1e-3"], 2, "constant/transportProperties");
     refused(&bench, &["gas.smoothing_length_m=-1.0"], 2, "gas.smoothing_length_m");
-    let alone = bed(&SCENE[..SCENE.find("[solver]").expect("it has one")]);
+    let alone = gas_box(&GAS_SCENE[..GAS_SCENE.find("[solver]").expect("it has one")]);
     refused(&alone, &[], 2, "a solver must compute the flow; add [solver]");
     let potential = bench.read("foam/0/phiE");
     std::fs::remove_file(bench.path("foam/0/phiE")).expect("it is there");
@@ -245,7 +188,7 @@ fn a_fluidised_bed_to_start_from_runs() {
 
 /// Scene whose grains come by a feed into the gas, without gravity.
 fn fed() -> String {
-    let (before, rest) = SCENE.split_once("[particles]").unwrap();
+    let (before, rest) = GAS_SCENE.split_once("[particles]").unwrap();
     let (_, after) = rest.split_once("[electric_field]").unwrap();
     let (_, after) = after.split_once("[gas]").unwrap();
     let feed = "[particles]\non_exit = 'delete'\n[[feeds]]\nname = 'rain'\nmaterial = 'glass'\n\
@@ -258,7 +201,7 @@ fn fed() -> String {
 
 #[test]
 fn grains_of_a_feed_take_from_the_gas_what_it_says_that_it_gave() {
-    let bench = bed(&fed());
+    let bench = gas_box(&fed());
     let answer = run(&bench, "whole", &[]);
     good(&answer);
     let all = grains(&bench, "whole");

@@ -2,7 +2,7 @@
 
 use amberfield_tests::{CsvTable, FoamBox};
 use rustix::process::{Pid, Signal, kill_process};
-use std::process::Stdio;
+use std::process::{Command, Stdio};
 use std::time::Duration;
 
 /// Growth of a process's memory that counts as none [bytes].
@@ -56,6 +56,19 @@ fn what_a_run_shares_is_its_users_alone() {
     }
     kill_process(Pid::from_child(&run), Signal::INT).unwrap();
     run.wait().unwrap();
+}
+
+#[test]
+fn a_run_that_is_a_rank_itself_starts_a_solver_of_several() {
+    // Open MPI's launcher starts nothing from within a rank of its own.
+    let scene = FoamBox::grounded();
+    assert_eq!(scene.field("alone.csv", &["--set", "solver.ranks=2"]).code, Some(0));
+    let field = scene.bench.command(&["field", "scene.toml", "--out", "rank.csv", "--set", "solver.ranks=2"]);
+    let mut launcher = Command::new("mpirun");
+    launcher.args(["--allow-run-as-root", "-np", "1"]).arg(field.get_program()).args(field.get_args());
+    let output = launcher.current_dir(scene.bench.path("")).output().unwrap();
+    assert!(output.status.success(), "{}", String::from_utf8_lossy(&output.stderr));
+    assert_eq!(scene.e("alone.csv"), scene.e("rank.csv"));
 }
 
 /// Inode numbers of a process's sockets.

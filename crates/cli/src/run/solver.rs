@@ -144,6 +144,7 @@ fn settings_of(
         application: solver.application.clone(),
         flow: flows,
         ranks: solver.ranks,
+        hosts: solver.hosts.clone(),
         timeout: Duration::from_secs_f64(solver.timeout_s),
         wait: solver.wait_s.map(Duration::from_secs_f64),
         far_tolerance: field.map_or(FAR_TOLERANCE, far_tolerance),

@@ -7,6 +7,7 @@
 mod alias;
 mod contents;
 mod dictionary;
+mod launcher;
 mod mesh;
 mod parts;
 mod start_time;

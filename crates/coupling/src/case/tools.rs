@@ -1,5 +1,6 @@
 //! OpenFOAM's own programs, run on a case.
 
+use super::launcher::hide_launcher;
 use crate::CouplingError;
 use std::ffi::{OsStr, OsString};
 use std::fs::File;
@@ -19,10 +20,12 @@ const LAST_LINES: usize = 3;
 /// Question whether the user asked to stop.
 pub type Stop = fn() -> bool;
 
-/// A program linked to OpenFOAM, with what its libraries want to know.
+/// A program linked to OpenFOAM, with what its libraries want to know, and nothing of a launcher that started
+/// this program.
 #[must_use]
 pub fn foam_command(program: impl AsRef<OsStr>) -> Command {
     let mut command = Command::new(program);
+    hide_launcher(&mut command);
     if std::env::var_os(PROJECT.0).is_none() {
         command.env(PROJECT.0, PROJECT.1);
     }

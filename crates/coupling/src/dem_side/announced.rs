@@ -113,11 +113,15 @@ impl Announced {
 
 /// Command that starts the solver of a run by hand.
 fn to_type(settings: &SolverSettings, run: &str) -> String {
-    let SolverSettings { case, application, ranks, flow, .. } = settings;
+    let SolverSettings { case, application, ranks, hosts, flow, .. } = settings;
     let case = std::path::absolute(case).unwrap_or_else(|_| case.clone());
     let case = shell(&case.to_string_lossy());
     let parallel = *ranks > 1;
-    let mpi = if parallel { format!("mpirun -np {ranks} ") } else { String::new() };
+    let hosts = hosts.as_ref().map_or_else(String::new, |file| {
+        let file = std::path::absolute(file).unwrap_or_else(|_| file.clone());
+        format!("--hostfile {} ", shell(&file.to_string_lossy()))
+    });
+    let mpi = if parallel { format!("mpirun -np {ranks} {hosts}") } else { String::new() };
     let flag = if parallel { " -parallel" } else { "" };
     match application {
         None => format!("`{mpi}{}{flag} -case {case} -run {run}`", program_name(*flow)),

@@ -4,11 +4,12 @@ use super::settings::SolverSettings;
 use super::surroundings::existing;
 use crate::CouplingError;
 use crate::case::{Workplace, foam_command, last_words};
+use std::collections::BTreeSet;
 use std::ffi::OsString;
 use std::fs::File;
 use std::os::unix::process::CommandExt as _;
 use std::path::{Path, PathBuf};
-use std::process::{Child, ExitStatus, Stdio};
+use std::process::{Child, Command, ExitStatus, Stdio};
 use std::time::{Duration, Instant};
 
 /// Names of the field solver, and of the one that computes the flow of a gas too.
@@ -21,6 +22,9 @@ const VARIABLE: &str = "AMBERFIELD_SOLVER";
 pub(super) const RUN: &str = "AMBERFIELD_RUN";
 /// Variable with the folders of libraries, and the library with our function object.
 const LIBRARIES: (&str, &str) = ("LD_LIBRARY_PATH", "libelectricField.so");
+
+/// Beginnings of the variables that OpenFOAM's programs read.
+const OF_OPENFOAM: [&str; 4] = ["FOAM_", "LD_LIBRARY_PATH", "MPI_BUFFER_SIZE", "WM_"];
 
 /// Field process that this program has started.
 #[derive(Debug)]
@@ -49,9 +53,7 @@ impl Process {
         let mut command = foam_command(&program);
         if settings.ranks > 1 {
             let dictionary = place.provide_parts(settings.ranks, settings.stop)?;
-            let mpirun = existing(Path::new(MPI)).ok_or_else(|| missing(Path::new(MPI)))?;
-            command = foam_command(mpirun);
-            command.args(["--oversubscribe", "--allow-run-as-root", "-np"]).arg(settings.ranks.to_string());
+            command = mpi_command(settings).ok_or_else(|| missing(Path::new(MPI)))?;
             command.arg(&program).arg("-parallel");
             if let Some(dictionary) = dictionary {
                 command.arg("-decomposeParDict").arg(dictionary);
@@ -106,6 +108,29 @@ impl Drop for Process {
     fn drop(&mut self) {
         self.end(false);
     }
+}
+
+/// The command that starts the ranks of a solver, up to the program; `None` where there is none.
+fn mpi_command(settings: &SolverSettings) -> Option<Command> {
+    let mut command = foam_command(existing(Path::new(MPI))?);
+    command.args(["--oversubscribe", "--allow-run-as-root", "-np"]).arg(settings.ranks.to_string());
+    if let Some(hosts) = &settings.hosts {
+        command.arg("--hostfile").arg(std::path::absolute(hosts).unwrap_or_else(|_| hosts.clone()));
+        for name in needed_elsewhere(&command, settings) {
+            command.args(["-x", &name]);
+        }
+    }
+    Some(command)
+}
+
+/// Variables that a solver's ranks need on machines where no login shell has set them.
+fn needed_elsewhere(command: &Command, settings: &SolverSettings) -> BTreeSet<String> {
+    let inherited = std::env::vars_os().map(|(name, _)| name);
+    let set = command.get_envs().filter(|(_, value)| value.is_some()).map(|(name, _)| name.to_owned());
+    let named = inherited.chain(set).filter_map(|name| name.into_string().ok());
+    let is_needed = |name: &String| OF_OPENFOAM.iter().any(|beginning| name.starts_with(beginning));
+    let by_name = settings.application.is_some().then_some([RUN, LIBRARIES.0].map(str::to_owned));
+    named.filter(is_needed).chain(by_name.into_iter().flatten()).collect()
 }
 
 /// Name of the solver's program, with or without the flow of a gas.

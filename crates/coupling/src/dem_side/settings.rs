@@ -21,6 +21,8 @@ pub struct SolverSettings {
     pub flow: bool,
     /// Number of processes of the solver.
     pub ranks: u32,
+    /// File with their machines, as `mpirun` takes it; `None`: this machine, or those of a job of Slurm's.
+    pub hosts: Option<PathBuf>,
     /// Time that a solver which lives may be silent.
     pub timeout: Duration,
     /// Time that a solver which somebody else starts may take to come; `None`: any.
@@ -53,6 +55,7 @@ impl SolverSettings {
             application: None,
             flow: false,
             ranks: 1,
+            hosts: None,
             timeout: Duration::from_secs(30),
             wait: None,
             far_tolerance: 1e-6,

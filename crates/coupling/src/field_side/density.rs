@@ -26,12 +26,7 @@ impl FieldSide {
         let own = self.cells_of_rank.as_ref().ok_or_else(no_mesh)?;
         let OwnCells { whole, centres, .. } = own;
         if self.density.as_ref().is_none_or(|(known, _)| *known != cloud) {
-            let first = centres.first().copied().unwrap_or_default();
-            let low = centres.iter().fold(first, |low, centre| low.inf(centre));
-            let high = centres.iter().fold(first, |high, centre| high.sup(centre));
-            // The box of a rank that has all cells along an axis is the mesh's, whose period counts.
-            let reach = Vector3::repeat(0.5 * own.largest());
-            let (low, high) = ((low - reach).sup(&whole.min()), (high + reach).inf(&whole.max()));
+            let [low, high] = own.corners();
             self.density = Some((cloud, SmoothDensity::new(whole, low, high, cloud.radius_m, cloud.shape)));
         }
         let message = self.asked.as_ref().ok_or_else(no_request)?;

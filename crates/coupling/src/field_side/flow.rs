@@ -63,7 +63,7 @@ impl<'a> GrainsInCells<'a> {
 }
 
 /// Gives a section by cell of all ranks at some of the cells.
-fn of_cells<'a, T: Element>(
+pub(super) fn of_cells<'a, T: Element>(
     sections: &Sections<'a>,
     section: Section,
     cells: &Range<usize>,
@@ -72,13 +72,25 @@ fn of_cells<'a, T: Element>(
     all.get(cells.clone()).ok_or(WireError::Count { section, theirs: all.len(), ours: cells.end })
 }
 
+/// Places of a rank's numbers in the state of all ranks, which have these sizes.
+pub(super) fn state_of_rank(sizes: &[u64], rank: usize, count: usize) -> Result<Range<usize>, WireError> {
+    let wrong = |theirs, ours| WireError::Count { section: Section::FlowState, theirs, ours };
+    let &size = sizes.get(rank).ok_or_else(|| wrong(sizes.len(), rank + 1))?;
+    let before: u64 = sizes[..rank].iter().fold(0, |sum, &size| sum.saturating_add(size));
+    let end = before.saturating_add(size);
+    if end > count as u64 {
+        return Err(wrong(count, end as usize));
+    }
+    Ok(before as usize..end as usize)
+}
+
 impl FieldSide {
     /// Gives what the grains do to the gas in this rank's cells.
     ///
     /// # Errors
     /// Fewer numbers than cells, or such that cannot be used.
     pub fn grains(&self) -> Result<GrainsInCells<'_>, CouplingError> {
-        GrainsInCells::read(&self.sections()?, self.own_cells()).map_err(of_dem)
+        GrainsInCells::read(&self.sections()?, self.places_of_cells()).map_err(of_dem)
     }
 
     /// Answers the question for the flow.
@@ -116,15 +128,8 @@ impl FieldSide {
     pub fn flow_state(&self) -> Result<&[f64], CouplingError> {
         let all = self.section::<f64>(Section::FlowState)?;
         let sizes = self.section::<u64>(Section::FlowStateSizes)?;
-        let rank = self.rank() as usize;
-        let wrong = |theirs, ours| of_dem(WireError::Count { section: Section::FlowState, theirs, ours });
-        let &size = sizes.get(rank).ok_or_else(|| wrong(sizes.len(), rank + 1))?;
-        let before: u64 = sizes[..rank].iter().fold(0, |sum, &size| sum.saturating_add(size));
-        let end = before.saturating_add(size);
-        if end > all.len() as u64 {
-            return Err(wrong(all.len(), end as usize));
-        }
-        Ok(&all[before as usize..end as usize])
+        let of_rank = state_of_rank(sizes, self.rank() as usize, all.len()).map_err(of_dem)?;
+        Ok(&all[of_rank])
     }
 
     /// Answers a checkpoint with this rank's state, or a state taken in with nothing.

@@ -2,8 +2,7 @@
 
 use super::question::Question;
 use crate::CouplingError;
-use crate::meeting::RunRoot;
-use crate::meeting::{Link, Message, SideOf};
+use crate::meeting::{Line, Mailbox, Message, Place, RunRoot};
 use crate::mesh::{MeshPart, OwnCells, mesh_header};
 use amberfield_core::Vector3;
 use amberfield_field::far::SmoothDensity;
@@ -14,7 +13,7 @@ use std::ops::Range;
 use std::time::{Duration, Instant};
 
 /// Time that a field process waits for the run's services.
-const OPENING: Duration = Duration::from_secs(30);
+pub(super) const OPENING: Duration = Duration::from_secs(30);
 
 /// Time for which the last message stays where the DEM process can read it: with its sender it is gone.
 const FAREWELL: Duration = Duration::from_millis(500);
@@ -37,7 +36,7 @@ pub struct Reply<'a> {
 /// One rank of the field process.
 #[derive(Debug)]
 pub struct FieldSide {
-    link: Link,
+    pub(super) line: Line,
     rank: u32,
     pub(super) ranks: u32,
     /// The rank's cells, once they were sent.
@@ -50,8 +49,6 @@ pub struct FieldSide {
     pub(super) charge: f64,
     pub(super) outside: u64,
     pub(super) positions: Vec<Vector3<f64>>,
-    // Dropped after the link.
-    root: RunRoot,
 }
 
 impl FieldSide {
@@ -62,10 +59,22 @@ impl FieldSide {
     pub fn open(run: &str, rank: u32, ranks: u32) -> Result<Self, CouplingError> {
         let deadline = Instant::now() + OPENING;
         let root = if run.is_empty() { RunRoot::open_waiting(deadline)? } else { RunRoot::open(run)? };
-        root.check_version().map_err(of_dem)?;
-        let link = Link::new(&root, SideOf::Field { rank }, ranks, deadline)?;
-        Ok(Self {
-            link,
+        let place = Place::open(root, rank, ranks, deadline)?;
+        Ok(Self::new(Line::Memory(Box::new(place)), rank, ranks))
+    }
+
+    /// A rank on a machine that has not the run's memory: the program carries letters between it and a
+    /// [`Proxy`](super::Proxy).
+    ///
+    /// # Errors
+    /// A name that is none of a run.
+    pub fn open_distant(run: &str, rank: u32, ranks: u32) -> Result<Self, CouplingError> {
+        Ok(Self::new(Line::letters(run)?, rank, ranks))
+    }
+
+    fn new(line: Line, rank: u32, ranks: u32) -> Self {
+        Self {
+            line,
             rank,
             ranks,
             cells_of_rank: None,
@@ -77,8 +86,24 @@ impl FieldSide {
             charge: 0.0,
             outside: 0,
             positions: Vec::new(),
-            root,
-        })
+        }
+    }
+
+    /// Name of the run; empty for a rank on another machine.
+    #[must_use]
+    pub fn run(&self) -> &str {
+        match &self.line {
+            Line::Memory(place) => place.name(),
+            Line::Letters(_) => "",
+        }
+    }
+
+    /// Letters of a rank on another machine; `None` for one that sees the run's memory.
+    pub(super) fn mailbox(&mut self) -> Option<&mut Mailbox> {
+        match &mut self.line {
+            Line::Memory(_) => None,
+            Line::Letters(mailbox) => Some(mailbox),
+        }
     }
 
     /// Sends this rank's part of the mesh; `first_boundary` boundary faces belong to lower ranks.
@@ -89,8 +114,8 @@ impl FieldSide {
         self.cells_of_rank = Some(OwnCells::new(part)?);
         self.first_cell = part.outline.first_cell as usize;
         self.first_boundary = first_boundary;
-        let layout = part.layout(mesh_header(self.link.run(), self.rank, self.ranks));
-        self.link.send(&layout, 1, |payload| part.write(&layout, payload))
+        let layout = part.layout(mesh_header(self.line.run(), self.rank, self.ranks));
+        self.line.send(&layout, |payload| part.write(&layout, payload))
     }
 
     /// Waits for the next request; `None` when the run is over.
@@ -99,15 +124,10 @@ impl FieldSide {
     /// A DEM process that is gone, a message that makes no sense.
     pub fn wait(&mut self) -> Result<Option<Question>, CouplingError> {
         self.asked = None;
-        let message = match self.link.receive(0, Duration::MAX, || self.link.dem_is_alive()) {
+        let message = match self.line.receive() {
             Ok(message) => message,
             Err(CouplingError::Ended { .. }) => return Ok(None),
-            Err(error) => {
-                if matches!(error, CouplingError::Lost { .. }) {
-                    self.root.inherit();
-                }
-                return Err(error);
-            }
+            Err(error) => return Err(error),
         };
         let question = Question::read(message.header(), &message.sections()).map_err(of_dem)?;
         self.asked = Some(message);
@@ -134,11 +154,10 @@ impl FieldSide {
         self.of_own_cells(Section::Guess)
     }
 
-    /// Numbers by cell that are this rank's, of a section with those of all ranks; `None` where the message
-    /// has none.
+    /// Numbers by cell that are this rank's; `None` where the message has none.
     pub(super) fn of_own_cells(&self, section: Section) -> Result<Option<&[f64]>, CouplingError> {
         let Ok(all) = self.section::<f64>(section) else { return Ok(None) };
-        let cells = self.own_cells();
+        let cells = self.places_of_cells();
         let ours = cells.end;
         let error = || of_dem(WireError::Count { section, theirs: all.len(), ours });
         all.get(cells).map(Some).ok_or_else(error)
@@ -178,7 +197,7 @@ impl FieldSide {
     /// The header of an answer to what was asked.
     pub(super) fn header_of_answer(&self, kind: MessageKind) -> Result<Header, CouplingError> {
         let solve = self.asked.as_ref().ok_or_else(no_request)?.header().solve;
-        let header = Header::new(kind, self.link.run(), solve);
+        let header = Header::new(kind, self.line.run(), solve);
         Ok(Header { rank: self.rank, ranks: self.ranks, ..header })
     }
 
@@ -188,7 +207,7 @@ impl FieldSide {
         layout: &Layout,
         write: impl FnOnce(&mut [MaybeUninit<Block64>]) -> Result<(), WireError>,
     ) -> Result<(), CouplingError> {
-        self.link.send(layout, 1, write)?;
+        self.line.send(layout, write)?;
         self.asked = None;
         Ok(())
     }
@@ -210,6 +229,12 @@ impl FieldSide {
         self.first_cell..self.first_cell + count
     }
 
+    /// Places of this rank's cells in arrays by cell: a letter has its own alone.
+    pub(super) fn places_of_cells(&self) -> Range<usize> {
+        let cells = self.own_cells();
+        if self.line.has_all_ranks() { cells } else { 0..cells.len() }
+    }
+
     /// Tells the DEM process why this one ends.
     pub fn fail(&mut self, reason: &str) {
         self.leave(MessageKind::End, reason);
@@ -221,10 +246,10 @@ impl FieldSide {
     }
 
     fn leave(&mut self, kind: MessageKind, reason: &str) {
-        let header = Header::new(kind, self.link.run(), 0);
+        let header = Header::new(kind, self.line.run(), 0);
         let header = Header { rank: self.rank, ranks: self.ranks, ..header };
         // Whoever is not there to hear it needs no reason.
-        if self.link.end(header, 1, reason).is_ok() {
+        if self.line.end(header, reason) {
             std::thread::sleep(FAREWELL);
         }
     }

@@ -6,7 +6,7 @@
 
 use super::run_root::{RunRoot, check_room, no_room};
 use crate::CouplingError;
-use amberfield_wire::{Block64, Header, Layout, MessageKind, Section, Sections, WireError};
+use amberfield_wire::{Block64, Header, Layout, Letter, MessageKind, Section, Sections, WireError};
 use iceoryx2::node::NodeView as _;
 use iceoryx2::port::listener::{Listener, ListenerWaitError};
 use iceoryx2::port::notifier::Notifier;
@@ -56,19 +56,45 @@ impl SideOf {
     }
 }
 
-/// A message received, in place.
+/// A message received: in place in the run's memory, or as a letter.
 #[derive(Debug)]
-pub(crate) struct Message {
-    sample: Sample,
+pub(crate) enum Message {
+    Here(Sample),
+    Letter(Letter),
 }
 
 impl Message {
     pub(crate) fn header(&self) -> &Header {
-        self.sample.user_header()
+        match self {
+            Self::Here(sample) => sample.user_header(),
+            Self::Letter(letter) => letter.header(),
+        }
     }
 
     pub(crate) fn sections(&self) -> Sections<'_> {
-        Sections::new(self.sample.user_header(), self.sample.payload())
+        match self {
+            Self::Here(sample) => Sections::new(sample.user_header(), sample.payload()),
+            Self::Letter(letter) => letter.sections(),
+        }
+    }
+
+    /// A copy of it that can travel.
+    pub(crate) fn to_letter(&self) -> Letter {
+        match self {
+            Self::Here(sample) => Letter::new(sample.user_header(), sample.payload()),
+            Self::Letter(letter) => letter.clone(),
+        }
+    }
+
+    /// The message, if it is of the run and not the last: the last one is an error with its reason.
+    pub(super) fn unless_last(self, peer: &'static str, run: u64) -> Result<Self, CouplingError> {
+        let kind = self.header().check(run);
+        let reason = || self.sections().text();
+        match kind.map_err(|error| CouplingError::Wire { peer, error })? {
+            MessageKind::End => Err(CouplingError::Ended { peer, reason: reason() }),
+            MessageKind::Refusal => Err(CouplingError::Refused(reason())),
+            _ => Ok(self),
+        }
     }
 }
 
@@ -167,7 +193,25 @@ impl Link {
         receivers: usize,
         write: impl FnOnce(&mut [MaybeUninit<Block64>]) -> Result<(), WireError>,
     ) -> Result<(), CouplingError> {
-        let blocks = layout.blocks();
+        self.publish(layout.header(), layout.blocks(), receivers, write)
+    }
+
+    /// Sends a message that came as a letter to one receiver.
+    pub(crate) fn send_letter(&mut self, letter: &Letter) -> Result<(), CouplingError> {
+        let payload = letter.payload();
+        self.publish(letter.header(), payload.len(), 1, |blocks| {
+            blocks.write_copy_of_slice(payload);
+            Ok(())
+        })
+    }
+
+    fn publish(
+        &mut self,
+        header: &Header,
+        blocks: usize,
+        receivers: usize,
+        write: impl FnOnce(&mut [MaybeUninit<Block64>]) -> Result<(), WireError>,
+    ) -> Result<(), CouplingError> {
         if self.publisher.as_ref().is_none_or(|(_, most)| *most < blocks) {
             self.publisher = None;
             let most = (HEADROOM * blocks as f64).ceil() as usize;
@@ -176,7 +220,7 @@ impl Link {
         let (publisher, _) = self.publisher.as_ref().expect("just made");
         let mut sample = said(publisher.loan_slice_uninit(blocks))?;
         populate(sample.payload_mut())?;
-        *sample.user_header_mut() = *layout.header();
+        *sample.user_header_mut() = *header;
         write(sample.payload_mut()).map_err(|error| CouplingError::Wire { peer: "own side", error })?;
         // SAFETY: every section was written by `write`, or set to zero when it was asked for; what no section
         // covers is memory that `populate` has made, where any bit pattern is a block.
@@ -186,7 +230,7 @@ impl Link {
             return Err(CouplingError::Lost {
                 peer: self.side.peer(),
                 how: format!("a message reached {reached} of {receivers}"),
-                solve: layout.header().solve,
+                solve: header.solve,
             });
         }
         said(self.notifier.notify())?;
@@ -226,15 +270,7 @@ impl Link {
         let peer = self.side.peer();
         loop {
             if let Some(sample) = said(self.subscriber.receive())? {
-                let kind = sample.user_header().check(self.run);
-                let kind = kind.map_err(|error| CouplingError::Wire { peer, error })?;
-                let message = Message { sample };
-                let reason = || message.sections().text();
-                return match kind {
-                    MessageKind::End => Err(CouplingError::Ended { peer, reason: reason() }),
-                    MessageKind::Refusal => Err(CouplingError::Refused(reason())),
-                    _ => Ok(message),
-                };
+                return Message::Here(sample).unless_last(peer, self.run);
             }
             let waited = start.elapsed();
             if waited >= timeout {

@@ -49,12 +49,7 @@ impl RunRoot {
     /// # Errors
     /// A name that is none of a run, a place that is not there.
     pub fn open(name: &str) -> Result<Self, CouplingError> {
-        let run = name.rsplit('-').next().and_then(|number| u64::from_str_radix(number, 16).ok());
-        let known = name.starts_with("amberfield-") && !name.contains('/');
-        let (Some(run), true) = (run, known) else {
-            return Err(CouplingError::SharedMemory(format!("'{name}' is not the name of a run")));
-        };
-        let root = Self { name: name.to_owned(), run, owned: false };
+        let root = Self { name: name.to_owned(), run: Self::number_of(name)?, owned: false };
         let cannot = |why: &dyn std::fmt::Display| {
             Err(CouplingError::SharedMemory(format!("cannot open run {name}: {why}")))
         };
@@ -66,6 +61,25 @@ impl RunRoot {
             Ok(place) if place.st_uid == rustix::process::getuid().as_raw() => Ok(root),
             Ok(place) => cannot(&format_args!("it belongs to user {}", place.st_uid)),
             Err(error) => cannot(&error),
+        }
+    }
+
+    /// Whether this machine has the place of a run, by the run's name, which no other machine has a run of.
+    #[must_use]
+    pub fn is_here(name: &str) -> bool {
+        Self::number_of(name).is_ok() && Path::new(SHARED).join(name).is_dir()
+    }
+
+    /// A run's number, from its name.
+    ///
+    /// # Errors
+    /// A name that is none of a run.
+    pub(super) fn number_of(name: &str) -> Result<u64, CouplingError> {
+        let run = name.rsplit('-').next().and_then(|number| u64::from_str_radix(number, 16).ok());
+        let known = name.starts_with("amberfield-") && !name.contains('/');
+        match (run, known) {
+            (Some(run), true) => Ok(run),
+            _ => Err(CouplingError::SharedMemory(format!("'{name}' is not the name of a run"))),
         }
     }
 

@@ -270,8 +270,18 @@ impl OwnCells {
         })
     }
 
+    /// Lower and upper corner of a box around the cells [m]. That of a rank which has all cells along an axis
+    /// is the mesh's there, whose period counts.
+    pub(crate) fn corners(&self) -> [Vector3<f64>; 2] {
+        let first = self.centres.first().copied().unwrap_or_default();
+        let low = self.centres.iter().fold(first, |low, centre| low.inf(centre));
+        let high = self.centres.iter().fold(first, |high, centre| high.sup(centre));
+        let half = Vector3::repeat(0.5 * self.largest());
+        [(low - half).sup(&self.whole.min()), (high + half).inf(&self.whole.max())]
+    }
+
     /// Largest cell size, the cube root of the volume [m].
-    pub(crate) fn largest(&self) -> f64 {
+    fn largest(&self) -> f64 {
         self.volumes.iter().fold(0.0, |largest: f64, volume| largest.max(volume.cbrt()))
     }
 }

@@ -23,6 +23,10 @@ pub(super) static KEYS: &[Key] = &[
         .default("1")
         .example("2")
         .also(&["processes", "np", "cores", "numberOfSubdomains", "processors", "n"]),
+    Key::new("hosts", Form::Text, "File with the machines of the ranks, as mpirun's --hostfile takes it.")
+        .without("this machine")
+        .example("\"hosts.txt\"")
+        .also(&["hostfile", "machinefile", "machines", "nodes"]),
     Key::new("timeout_s", Form::Number(TIME), "Silence of the program after which it counts as lost.")
         .unit("s")
         .default("30.0")

@@ -194,6 +194,8 @@ pub struct OpenFoamSettings {
     pub start: bool,
     /// Number of MPI ranks.
     pub ranks: u32,
+    /// File with the machines of the ranks; `None`: this one.
+    pub hosts: Option<PathBuf>,
     /// Longest silence of a solver that lives [s].
     pub timeout_s: f64,
     /// Longest wait for a solver that somebody else starts [s]; `None`: for ever.

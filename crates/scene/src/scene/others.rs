@@ -52,12 +52,24 @@ pub(super) fn read_solver(
         );
     }
     let ranks = table.integer("ranks")?.unwrap_or(1);
+    let hosts = table.text("hosts")?.map(|name| source.path(name));
+    if hosts.is_some() && ranks == 1 {
+        return Err(
+            table.bad("hosts", "a solver of one rank is on this machine; give ranks, or remove hosts")
+        );
+    }
+    if hosts.as_ref().is_some_and(|file| !file.is_file()) {
+        return Err(
+            table.bad("hosts", "no such file; name one with a machine in each line, as mpirun takes it")
+        );
+    }
     let losses = [("stop", SolverLoss::Stop), ("fallback", SolverLoss::Fallback), ("wait", SolverLoss::Wait)];
     Ok(Some(OpenFoamSettings {
         openfoam_case: folder,
         application: table.text("application")?.map(str::to_owned),
         start: table.boolean("start")?.unwrap_or(true),
         ranks: u32::try_from(ranks).expect("the range ends at 65536"),
+        hosts,
         timeout_s: table.number("timeout_s")?.unwrap_or(30.0),
         wait_s: table.number("wait_s")?,
         on_solver_loss: table.word("on_solver_loss", &losses)?.unwrap_or_default(),

@@ -7,13 +7,14 @@ use std::collections::BTreeMap;
 
 /// Keys that decide nothing of the physics: outputs, the end of a run, how a solver is run, what chooses
 /// parameters that a checkpoint has.
-const TECHNICAL: [&str; 12] = [
+const TECHNICAL: [&str; 13] = [
     "output",
     "time.end_s",
     "time.allow_unstable",
     "electric_field.tuning",
     "electric_field.far_tolerance",
     "solver.application",
+    "solver.hosts",
     "solver.on_solver_loss",
     "solver.ranks",
     "solver.start",

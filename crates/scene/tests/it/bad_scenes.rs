@@ -85,6 +85,8 @@ const SCENE_CHANGES: &[(&str, &str)] = &[
     ("[output]", "[contacts]\ncohesion = \"jrk\"\n[output]"),
     ("density_kg_m3 = 7800", "density_kg_m3 = 7800\nsurface_energy_J_m2 = -1"),
     ("[output]", "[solver]\nopenfoam_case = \"nowhere\"\n[output]"),
+    ("[output]", "[solver]\nopenfoam_case = \".\"\nhosts = \"nowhere\"\n[output]"),
+    ("[output]", "[solver]\nopenfoam_case = \".\"\nhosts = \"nowhere\"\nranks = 2\n[output]"),
     ("[domain]", "[domain"),
     ("[domain]", "= 1\n[domain]"),
     ("[time]", "[time]\nstep_s = 1e-5"),

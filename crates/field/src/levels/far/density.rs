@@ -1,28 +1,22 @@
 //! The smooth density of charges' clouds at any places of a box, by the grid's own code: spread with the
 //! window, multiply by the clouds' spectrum, gather.
 
-use super::copies::shifts;
+use super::reach::CloudReach;
 use crate::levels::grid::level::{GridLevel, GridParameters};
 use crate::levels::grid::shapes;
-use amberfield_core::{Axis, Boundary, Domain};
+use amberfield_core::Domain;
 use amberfield_laws::kaiser_bessel_cloud::Cloud;
 use nalgebra::Vector3;
 
 /// Order of the window and node spacings per cloud radius: an error near 1e-4 of a cloud's largest density.
 const ORDER: usize = 4;
 const NODES_PER_RADIUS: f64 = 7.0;
-/// Extents that differ by less, relatively, are one period.
-const SAME: f64 = 1e-9;
 
 /// Density of clouds in a box.
 #[derive(Debug)]
 pub struct SmoothDensity {
-    /// Whole domain, which says what is periodic.
-    whole: Domain,
-    /// Box of the grid, the reach of the clouds included.
-    padded: Domain,
-    /// Shifts to the copies that are put into the box, none included [m].
-    shifts: Vec<Vector3<f64>>,
+    reach: CloudReach,
+    /// Grid of the box with the reach of the clouds.
     grid: GridLevel,
     positions: Vec<Vector3<f64>>,
     charges: Vec<f64>,
@@ -33,31 +27,15 @@ impl SmoothDensity {
     /// clouds of a radius [m] and shape.
     #[must_use]
     pub fn new(whole: &Domain, low: Vector3<f64>, high: Vector3<f64>, radius_m: f64, shape: f64) -> Self {
-        let spans = |axis: Axis| {
-            let length = whole.extent()[axis.index()];
-            whole.is_periodic(axis) && high[axis.index()] - low[axis.index()] >= length * (1.0 - SAME)
-        };
-        let spans = Axis::ALL.map(spans);
-        let end = |axis: usize, given: f64, margin: f64, whole: f64| {
-            if spans[axis] { whole } else { given + margin }
-        };
-        let min = Vector3::from_fn(|axis, _| end(axis, low[axis], -radius_m, whole.min()[axis]));
-        let max = Vector3::from_fn(|axis, _| end(axis, high[axis], radius_m, whole.max()[axis]));
-        let padded = Domain::new(min, max, [[Boundary::Periodic; 2]; 3]).expect("a radius is positive");
+        let reach = CloudReach::new(whole, low, high, radius_m);
         let parameters = GridParameters {
             spacing_m: radius_m / NODES_PER_RADIUS,
             order: ORDER,
             window_shape: shapes::best(ORDER, NODES_PER_RADIUS).window,
             cloud: Cloud { radius: radius_m, shape },
         };
-        Self {
-            shifts: shifts(whole, Axis::ALL.map(|axis| whole.is_periodic(axis) && !spans[axis.index()])),
-            whole: whole.clone(),
-            grid: GridLevel::density(&padded, parameters),
-            padded,
-            positions: Vec::new(),
-            charges: Vec::new(),
-        }
+        let grid = GridLevel::density(reach.padded(), parameters);
+        Self { reach, grid, positions: Vec::new(), charges: Vec::new() }
     }
 
     /// Forgets all charges.
@@ -69,12 +47,9 @@ impl SmoothDensity {
     /// Adds charges [C] at positions [m]; those whose clouds do not reach the box count for nothing.
     pub fn add(&mut self, positions: &[Vector3<f64>], charges: &[f64]) {
         for (position, &charge) in positions.iter().zip(charges).filter(|(_, charge)| **charge != 0.0) {
-            let position = self.whole.wrap(*position);
-            for moved in self.shifts.iter().map(|by| position + by) {
-                if self.padded.contains(&moved) {
-                    self.positions.push(moved);
-                    self.charges.push(charge);
-                }
+            for moved in self.reach.copies(*position) {
+                self.positions.push(moved);
+                self.charges.push(charge);
             }
         }
     }
@@ -89,6 +64,7 @@ impl SmoothDensity {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use amberfield_core::Boundary;
 
     /// Density of a unit charge's cloud: its field's divergence over 4π.
     fn cloud_density(cloud: Cloud, r: f64) -> f64 {

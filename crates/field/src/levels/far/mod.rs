@@ -14,6 +14,7 @@ mod mesh;
 mod polygon;
 mod potentials;
 mod radii;
+mod reach;
 mod reentrant;
 mod search;
 mod solver;
@@ -27,6 +28,7 @@ pub(crate) use level::{FarLevel, Medium};
 pub use mesh::{BoundaryFace, CellFace, Condition, FarMesh, FarMeshParts, Neighbour};
 pub use potentials::Look;
 pub use radii::FarRadii;
+pub use reach::CloudReach;
 pub use solver::{FarSolver, FarState};
 
 use crate::error::FieldError;
