@@ -27,6 +27,8 @@ const RANKS_GOAL: f64 = 1.7;
 const CHARGE: f64 = 1e-13;
 /// Tolerance of the field that errors are measured against.
 const REFERENCE_TOLERANCE: f64 = 1e-7;
+/// Cut-offs around known ones.
+const AROUND: [f64; 3] = [0.85, 1.0, 1.2];
 /// Numbers of a grain in a state: place, charge, E.
 const NUMBERS: usize = 7;
 
@@ -48,6 +50,23 @@ struct Row {
     settings: String,
 }
 
+/// Settings of pppm: cut-off [m], order, force that is asked for [N], 1 for analytic differentiation.
+struct Pppm {
+    cutoff_m: f64,
+    order: f64,
+    force_n: f64,
+    analytic: f64,
+}
+
+impl Pppm {
+    /// Words of the script.
+    fn words(&self) -> Vec<String> {
+        let numbers =
+            [self.cutoff_m, self.order, self.force_n, self.analytic].map(|number| number.to_string());
+        [&["pppm".to_owned()][..], &numbers].concat()
+    }
+}
+
 /// A bed with charges, as the script reads it.
 struct Bed<'a> {
     peers: &'a Peers,
@@ -62,19 +81,24 @@ pub(crate) fn measure(context: &Context) -> Result<()> {
     };
     let counts: &[usize] = if context.quick { &[1000] } else { &[10_000, 100_000] };
     let mut rows = Vec::new();
+    let mut settings: Vec<Option<Pppm>> = Vec::new();
     for &grains in counts {
-        let steps = if context.quick { 40 } else { (8_000_000 / grains).min(800) };
+        let steps = if context.quick { 40 } else { (20_000_000 / grains).min(800) };
         let bed = Bed::new(peers, grains)?;
         let tolerances: &[f64] = if context.quick { &[1e-2] } else { &[1e-2, 1e-3] };
-        let settings = tolerances.iter().map(|&tolerance| bed.pppm(tolerance)).collect::<Result<Vec<_>>>()?;
+        // Many grains: only around what was best for fewer of them.
+        let fewer = std::mem::take(&mut settings);
+        for (n, &tolerance) in tolerances.iter().enumerate() {
+            settings.push(bed.pppm(tolerance, fewer.get(n).and_then(Option::as_ref))?);
+        }
         for ranks in [1, 2] {
             for (&tolerance, pppm) in tolerances.iter().zip(&settings) {
                 // Each program's turn comes between two of the bed without charges.
                 let first = bed.run(ranks, steps, &["none"])?;
                 if let Some(pppm) = pppm {
                     // A step costs as much as a hundred others: fewer of them.
-                    let words: Vec<&str> =
-                        ["pppm"].into_iter().chain(pppm.iter().map(String::as_str)).collect();
+                    let words = pppm.words();
+                    let words: Vec<&str> = words.iter().map(String::as_str).collect();
                     let row = bed.run(ranks, steps.div_ceil(10), &words)?;
                     rows.push(Row { program: PPPM.to_owned(), tolerance, ..row });
                 }
@@ -111,17 +135,27 @@ impl<'a> Bed<'a> {
         Ok(Self { peers, cloud, file })
     }
 
-    /// Cut-off, order, force and way of differentiation with which pppm is fastest at a tolerance.
-    fn pppm(&self, tolerance: f64) -> Result<Option<Vec<String>>> {
+    /// Settings with which pppm is fastest at a tolerance, of a sweep or around known ones.
+    fn pppm(&self, tolerance: f64, known: Option<&Pppm>) -> Result<Option<Pppm>> {
         let exact = reference(&self.cloud)?;
         let file = self.peers.file("charged-cloud.bin", self.cloud.numbers(&exact))?;
-        let (cutoffs, orders) = pppm_sweep(tolerance);
-        let arguments = [file.as_str(), &tolerance.to_string(), cutoffs, orders, SHARES, "pppm"];
+        let (cutoffs, orders) = match known {
+            None => {
+                let (cutoffs, orders) = pppm_sweep(tolerance);
+                (cutoffs.to_owned(), orders.to_owned())
+            }
+            Some(known) => {
+                let diameters = known.cutoff_m / (2.0 * beds::RADIUS);
+                let around = AROUND.map(|factor| (factor * diameters).to_string());
+                (around.join(","), known.order.to_string())
+            }
+        };
+        let arguments = [file.as_str(), &tolerance.to_string(), &cutoffs, &orders, SHARES, "pppm"];
         let lines = self.peers.run(Script::LammpsField, 1, &arguments)?;
         let Some(best) = fastest(Script::LammpsField, &lines, tolerance) else { return Ok(None) };
         let forces: Vec<Vector3<f64>> = self.cloud.charge.iter().zip(&exact).map(|(&q, e)| e * q).collect();
-        let force = best[2] * tolerance * rms(&forces);
-        Ok(Some(vec![best[0].to_string(), best[1].to_string(), force.to_string(), best[3].to_string()]))
+        let force_n = best[2] * tolerance * rms(&forces);
+        Ok(Some(Pppm { cutoff_m: best[0], order: best[1], force_n, analytic: best[3] }))
     }
 
     /// Runs the bed; the best of its skins.
