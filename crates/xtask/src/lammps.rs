@@ -59,6 +59,15 @@ pub(crate) fn for_users(root: &Path) -> Result<PathBuf> {
     build(root, Profile::Release)
 }
 
+/// Draws the examples, for the docs.
+pub(crate) fn pictures(root: &Path) -> Result<()> {
+    let plugin = for_users(root)?;
+    let environment = root.join(ENVIRONMENT);
+    let mut script = Command::new(environment.join("bin/python"));
+    script.arg(root.join(SOURCE).join("examples/pictures.py")).arg(plugin).arg(root.join("docs/pictures"));
+    execute(with_mpi(&mut script, &environment))
+}
+
 /// Makes the environment with LAMMPS and builds the C library for users.
 fn provide_library(root: &Path) -> Result<()> {
     provide(root)?;

