@@ -134,27 +134,42 @@ void FixAmberfieldField::post_force(int vflag)
     energy_step_ = -1;
     const Census now = census();
     if (is_due(now)) evaluate(now);
-    for (int i = 0; i < atom->nlocal; ++i) {
-        for (int axis = 0; axis < 3; ++axis) {
-            const double e = atom->mask[i] & groupbit ? forecast_.at(i, axis, interval_.age) : 0.0;
-            array_atom[i][axis] = e;
-            atom->f[i][axis] += atom->q[i] * e;
-        }
-    }
+    add_forces();
     v_init(vflag);
     if (vflag_global) add_virial();
+}
+
+// Adds qE as it is by now. Every step has this loop: it goes through rows as LAMMPS keeps them, one after
+// another.
+void FixAmberfieldField::add_forces()
+{
+    const int atoms = atom->nlocal;
+    if (atoms == 0) return;
+    const int *mask = atom->mask;
+    const double age = interval_.age;
+    const double *q = atom->q, *known = forecast_.e[0], *slope = forecast_.slope[0];
+    double *e = array_atom[0], *f = atom->f[0];
+    for (int i = 0; i < atoms; ++i) {
+        const double member = mask[i] & groupbit ? 1.0 : 0.0;
+        for (int k = 3 * i; k < 3 * i + 3; ++k) {
+            e[k] = member * (known[k] + age * slope[k]);
+            f[k] += q[i] * e[k];
+        }
+    }
 }
 
 FixAmberfieldField::Census FixAmberfieldField::census() const
 {
     double sums[4] = {0.0, 0.0, 0.0, 0.0};
-    for (int i = 0; i < atom->nlocal; ++i) {
-        if (!(atom->mask[i] & groupbit)) continue;
-        const double change = atom->q[i] - forecast_.charge[i];
+    const int *mask = atom->mask;
+    const double *q = atom->q, *charge = forecast_.charge, *known = forecast_.known;
+    for (int i = 0, atoms = atom->nlocal; i < atoms; ++i) {
+        if (!(mask[i] & groupbit)) continue;
+        const double change = q[i] - charge[i];
         sums[0] += change * change;
-        sums[1] += atom->q[i] * atom->q[i];
+        sums[1] += q[i] * q[i];
         sums[2] += 1.0;
-        sums[3] += forecast_.known[i];
+        sums[3] += known[i];
     }
     double all[4];
     MPI_Allreduce(sums, all, 4, MPI_DOUBLE, MPI_SUM, world);

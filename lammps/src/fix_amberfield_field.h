@@ -80,6 +80,7 @@ class FixAmberfieldField : public Fix {
     void evaluate(const Census &census);
     double scale(const double *sums, const Census &census) const;
     double longest() const;
+    void add_forces();
     void add_virial();
     void give_kept_charges();
     amberfield::SharedField::Energy energy();
