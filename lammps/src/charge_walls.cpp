@@ -86,6 +86,7 @@ double FixAmberfieldCharge::trade_wall(int i, int number_of_wall, Region *region
     if (field_) pair.normal_field = field_at_wall(i, place, image) * units_.field;
     double moved;
     if (wall.keeps) {
+        kept_->cover(place.radius);
         const amberfield::KeptCharges::Felt felt = kept_->felt(place);
         moved = amberfield_charge_to_insulating_wall(&pair, felt.normal_field * units_.field,
                                                      felt.per_charge / (units_.length * units_.length))

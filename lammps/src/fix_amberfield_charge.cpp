@@ -109,6 +109,10 @@ void FixAmberfieldCharge::init()
         regions_.back()->init();
     }
     make_table();
+    if (kept_) {
+        kept_->begin(largest_radius(), coulomb_);
+        size_array_rows = kept_->size();
+    }
     if (field_) field_->use_kept_charges(kept_);
     // Each pair once, whatever newton says.
     neighbor->add_request(this, NeighConst::REQ_SIZE | NeighConst::REQ_NEWTON_ON);
@@ -129,21 +133,24 @@ void FixAmberfieldCharge::make_table()
 }
 
 // Checks that ghosts reach as far as contacts. Nothing has grown before the first step.
+double FixAmberfieldCharge::largest_radius() const
+{
+    double largest = 0.0;
+    for (int i = 0; i < atom->nlocal; ++i) largest = std::max(largest, atom->radius[i]);
+    MPI_Allreduce(MPI_IN_PLACE, &largest, 1, MPI_DOUBLE, MPI_MAX, world);
+    return largest;
+}
+
 void FixAmberfieldCharge::setup(int)
 {
-    double largest = 0.0, all;
-    for (int i = 0; i < atom->nlocal; ++i) largest = std::max(largest, atom->radius[i]);
-    MPI_Allreduce(&largest, &all, 1, MPI_DOUBLE, MPI_MAX, world);
     if (kept_) {
         // Positions of the walls at the beginning, from which their velocities follow.
         for (Region *region : regions_) {
             region->prematch();
             if (region->dynamic_check()) region->set_velocity();
         }
-        kept_->begin(all, coulomb_);
-        size_array_rows = kept_->size();
     }
-    if (comm->get_comm_cutoff() < 2.0 * all) {
+    if (comm->get_comm_cutoff() < 2.0 * largest_radius()) {
         error->all(FLERR, "fix " + std::string(id) + " amberfield/charge: ghost atoms reach "
                               + std::to_string(comm->get_comm_cutoff())
                               + ", less than the largest diameter; use a granular pair style");

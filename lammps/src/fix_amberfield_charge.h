@@ -46,6 +46,7 @@ class FixAmberfieldCharge : public Fix {
 
   private:
     void make_table();
+    double largest_radius() const;
     void see_ghosts();
     void trade_pairs();
     void trade_pair(int i, int j);

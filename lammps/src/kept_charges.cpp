@@ -64,9 +64,15 @@ void KeptCharges::begin(double largest_radius, double coulomb)
 {
     coulomb_ = coulomb;
     for (const Spot &spot : spots_) largest_radius = std::max(largest_radius, spot.scale);
-    cell_ = (NEAR + SHARED) * largest_radius;
+    largest_ = largest_radius;
+    cell_ = (NEAR + SHARED) * largest_;
     for (auto &cells : cells_) cells.clear();
     for (int spot = 0; spot < size(); ++spot) list(spot);
+}
+
+void KeptCharges::cover(double radius)
+{
+    if (radius > largest_) begin(radius, coulomb_);
 }
 
 void KeptCharges::follow(int wall, Region *region)
@@ -247,6 +253,7 @@ void KeptCharges::add(const Contact &contact, double charge)
     double place[3], inward[3];
     wall.home(contact.place, place);
     wall.turn_home(contact.inward, inward);
+    cover(contact.radius);
     int number = shared_spot(contact);
     if (number < 0) {
         Spot spot = {contact.wall, contact.bounds_field, {}, {}, {}, contact.radius, 0.0, 0.0};

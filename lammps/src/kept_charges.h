@@ -46,6 +46,9 @@ class KeptCharges : protected LAMMPS_NS::Pointers {
     // Begins a run: largest radius of the atoms, Coulomb's constant, and the box as it is.
     void begin(double largest_radius, double coulomb);
 
+    // Makes sure that spots around an atom of a radius are found: one that came in the run may be the largest.
+    void cover(double radius);
+
     // Takes the spots of a wall along with its region, once in a step.
     void follow(int wall, LAMMPS_NS::Region *region);
 
@@ -99,7 +102,7 @@ class KeptCharges : protected LAMMPS_NS::Pointers {
     uint64_t cell_of(const double *place, int dx, int dy, int dz) const;
     void source(const Spot &spot, double *place) const;
 
-    double cell_ = 0.0, coulomb_ = 0.0;
+    double largest_ = 0.0, cell_ = 0.0, coulomb_ = 0.0;
     std::vector<WallPlace> walls_;
     std::vector<Spot> spots_;
     // Spots of each wall in each cell and in those around it

@@ -4,13 +4,18 @@
 #include "rank_table.h"
 
 #include <climits>
+#include <cstdio>
 
 using amberfield::RankTable;
 
 namespace {
 
-// What the functions return for numbers that are more than MPI counts.
-constexpr int32_t TOO_MANY = -1;
+// Ends all ranks where numbers are more than MPI counts: others wait for this one.
+void end_for_too_many(MPI_Comm ranks)
+{
+    std::fprintf(stderr, "amberfield: a rank exchanges more than 2^31 numbers; use more ranks\n");
+    MPI_Abort(ranks, 1);
+}
 
 }    // namespace
 
@@ -51,8 +56,10 @@ int32_t RankTable::exchange(void *self, const double *sent, const uint64_t *sent
                             const uint64_t *received_counts)
 {
     RankTable &ranks = *static_cast<RankTable *>(self);
-    if (!ranks.lay_out(sent_counts, ranks.sent_, ranks.sent_starts_)) return TOO_MANY;
-    if (!ranks.lay_out(received_counts, ranks.received_, ranks.received_starts_)) return TOO_MANY;
+    if (!ranks.lay_out(sent_counts, ranks.sent_, ranks.sent_starts_)
+        || !ranks.lay_out(received_counts, ranks.received_, ranks.received_starts_)) {
+        end_for_too_many(ranks.ranks_);
+    }
     return MPI_Alltoallv(sent, ranks.sent_.data(), ranks.sent_starts_.data(), MPI_DOUBLE, received,
                          ranks.received_.data(), ranks.received_starts_.data(), MPI_DOUBLE, ranks.ranks_);
 }

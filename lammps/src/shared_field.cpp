@@ -110,7 +110,12 @@ void SharedField::open()
     // One rank alone may sum a few charges in open space one by one.
     host_ = comm->nprocs > 1 ? amberfield_host_open_over_ranks(&settings, ranks_.table())
                              : amberfield_host_open(&settings);
-    if (amberfield_host_error(host_)[0] != '\0') check(AmberfieldStatus_Failed);
+    const std::string reason = amberfield_host_error(host_);
+    int failed = !reason.empty(), any;
+    MPI_Allreduce(&failed, &any, 1, MPI_INT, MPI_MAX, world);
+    if (failed) error->one(FLERR, "fix " + fix_ + " amberfield/field: " + reason);
+    // The rank that failed ends all.
+    if (any) MPI_Barrier(world);
     if (!given_parameters_.empty()) {
         check(amberfield_host_use_parameters(host_, given_parameters_.c_str()));
     }
@@ -250,11 +255,11 @@ std::vector<tagint> SharedField::ids() const
     if (words_.openfoam_case.empty()) return own;
     const int count = own.size();
     std::vector<int> counts(comm->nprocs), starts(comm->nprocs);
-    MPI_Allgather(&count, 1, MPI_INT, counts.data(), 1, MPI_INT, world);
+    MPI_Gather(&count, 1, MPI_INT, counts.data(), 1, MPI_INT, 0, world);
     std::partial_sum(counts.begin(), counts.end() - 1, starts.begin() + 1);
     std::vector<tagint> all(starts.back() + counts.back());
-    MPI_Allgatherv(own.data(), count, MPI_LMP_TAGINT, all.data(), counts.data(), starts.data(),
-                   MPI_LMP_TAGINT, world);
+    MPI_Gatherv(own.data(), count, MPI_LMP_TAGINT, all.data(), counts.data(), starts.data(), MPI_LMP_TAGINT,
+                0, world);
     return all;
 }
 
@@ -263,6 +268,9 @@ void SharedField::check(AmberfieldStatus status)
     if (status == AmberfieldStatus_Ok) return;
     // An index is that of the rank that the message names.
     std::string message = amberfield_host_error(host_);
+    if (status == AmberfieldStatus_Broken) {
+        error->one(FLERR, "fix " + fix_ + " amberfield/field: " + message);
+    }
     int rank = 0, read = 0;
     if (std::sscanf(message.c_str(), "rank %d: %n", &rank, &read) == 1 && read > 0) message.erase(0, read);
     message = message_of_library(message, ids());

@@ -399,3 +399,27 @@ fix W all wall/gran/region granular hertz 1e6 0 tangential linear_nohistory 0 0 
         (spot,), (same,) = states[name]["spots"], resumed[name]["spots"]
         assert abs(np.array(spot) - same).max() < 1e-12
         assert resumed[name]["wall"] == states[name]["wall"]
+
+
+def test_grain_that_is_the_largest_only_later_feels_what_others_left(tmp_path):
+    # A small grain lands first. The second one is as small when the run is set up, or large at once.
+    floor = """
+region floor plane 0 0 0 0 0 1
+fix W all wall/gran/region granular hertz 1e6 0 tangential linear_nohistory 0 0 region floor
+neigh_modify exclude group all all
+"""
+    small, apart = 0.2 * RADIUS, 2.5 * RADIUS
+    x = np.array([[0.001, 0.001, small + 5e-7], [0.001 + apart, 0.001, RADIUS + 1e-4]])
+    grows = "group two id 2\nvariable wide equal 2e-4\nfix G two adapt 0 atom diameter v_wide\n"
+    found = []
+    for name, radii, more in (("at-once", [small, RADIUS], ""), ("later", [small, small], grows)):
+        folder = tmp_path / name
+        folder.mkdir()
+        data_file(
+            folder / "data.grains", x, np.zeros(2), BOX, radius=radii, v=np.array([[0.0, 0.0, -0.1]] * 2)
+        )
+        head = input_of().replace("hybrid sphere charge", "hybrid sphere 1 charge")
+        state = run(folder, [[head + floor + more + INSULATING + "\nrun 8500", "both"]])["both"]
+        found.append(state["q"][:, 0])
+    assert found[0][0] < 0 and found[0][1] < 0
+    assert np.array_equal(found[0], found[1])

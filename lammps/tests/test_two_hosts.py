@@ -126,7 +126,7 @@ def test_field_over_two_machines_is_that_of_one(machines):
     one, rows = (np.array([line.split() for line in end], float) for end in ends)
     assert error(rows[:, 5:], one[:, 5:]) < ROUND_OFF
     exact = exact_field(machines.folder, rows[:, 1:4] % [0.01, 0.01, 1], rows[:, 4], BOX, list("ppppgg"))
-    assert error(rows[:, 5:], exact) < 3e-3
+    assert error(rows[:, 5:], exact) < 1e-3
 
 
 def test_openfoam_case_over_two_machines_is_that_of_one(machines):

@@ -227,8 +227,8 @@ AmberfieldStatus Foam::rankPost::carry(AmberfieldField* field)
     AmberfieldStatus status = AmberfieldStatus_Ok;
     forAll(clients_, i)
     {
-        receive(clients_[i], false);
-        if (status == AmberfieldStatus_Ok)
+        const heading came = receive(clients_[i], false);
+        if (status == AmberfieldStatus_Ok && came.status == AmberfieldStatus_Ok)
         {
             const uint8_t* bytes = reinterpret_cast<const uint8_t*>(letter_.data());
             status = noted(amberfield_proxy_send(proxies_[i], bytes, letter_.size()), proxies_[i]);

@@ -14,6 +14,8 @@ typedef enum AmberfieldStatus {
   AmberfieldStatus_Over = 1,
   // Failure: amberfield_field_error or amberfield_host_error says why.
   AmberfieldStatus_Failed = 2,
+  // Failure of this rank alone, of those that share a field: others may wait for it. End the program.
+  AmberfieldStatus_Broken = 3,
 } AmberfieldStatus;
 
 // Kind of question of the DEM process.
@@ -573,8 +575,10 @@ struct AmberfieldHost *amberfield_host_open(const struct AmberfieldHostSettings 
 
 // Opens a field that ranks share: every rank of the host program opens it with the same settings and its own
 // table, gives its own particles to the calls that follow, and gets their field. All ranks make the same
-// calls in the same order, also those without particles; what fails on one rank fails on all. A rank should
-// have the particles of a compact piece of the box. `threads` 0 stands for all cores that this rank may use.
+// calls in the same order, also those without particles; what fails on one rank fails on all, with the same
+// text. AmberfieldStatus_Broken is a failure of one rank alone, and so is a handle that was not opened well:
+// then end the program. A rank should have the particles of a compact piece of the box. `threads` 0 stands
+// for all cores that this rank may use.
 //
 // With an OpenFOAM case rank 0 starts the solver and gets the particles of all ranks.
 //
@@ -592,7 +596,7 @@ struct AmberfieldHost *amberfield_host_open_over_ranks(const struct AmberfieldHo
 const char *amberfield_host_error(const struct AmberfieldHost *host);
 
 // Computes E [V/m] at every particle, three doubles each, and the potential [V] of all but the particle
-// itself, unless `potential` is NULL. The particles are at `positions` [m], three doubles each, with
+// itself, unless `potential` is NULL, for all ranks or none. The particles are at `positions` [m], three doubles each, with
 // `charges` [C], at the time `time` [s]. The first call chooses parameters and starts the solver, if there
 // is one.
 //

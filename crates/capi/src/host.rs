@@ -55,9 +55,9 @@ impl Workers {
                 None => work(),
             };
         };
+        let threads = self.threads.as_ref().ok_or(NOT_OPEN)?;
         let mut outcome = Err(NOT_OPEN.to_owned());
         let (end, room) = (server.end(), &mut outcome);
-        let threads = self.threads.as_ref().ok_or(NOT_OPEN)?;
         threads.in_place_scope(|scope| {
             scope.spawn(move |_| {
                 let _end = end;
@@ -96,9 +96,17 @@ pub(crate) fn call(
     method: impl FnOnce(&mut AmberfieldHost) -> Result<(), String>,
 ) -> AmberfieldStatus {
     let mut error = std::mem::take(&mut host.error);
-    let status = guarded(&mut error, || method(host).map(|()| AmberfieldStatus::Ok));
+    let mut has_panicked = true;
+    let status = guarded(&mut error, || {
+        let outcome = method(host);
+        has_panicked = false;
+        outcome.map(|()| AmberfieldStatus::Ok)
+    });
     host.error = error;
-    status
+    match &host.workers.server {
+        Some(server) if has_panicked || server.is_broken() => AmberfieldStatus::Broken,
+        _ => status,
+    }
 }
 
 impl AmberfieldHost {

@@ -4,6 +4,7 @@
 //! the library: the one that may use MPI. So whoever computes asks, and the caller serves.
 
 use amberfield_field::{FieldError, Parcels, Ranks};
+use std::cell::Cell;
 use std::ffi::c_void;
 use std::fmt;
 use std::sync::mpsc::{Receiver, Sender, channel};
@@ -140,6 +141,8 @@ pub(crate) struct RankServer {
     end: Sender<Wish>,
     wishes: Receiver<Wish>,
     outcomes: Sender<i32>,
+    /// Whether one of the host's functions has failed: ranks no longer agree on anything.
+    is_broken: Cell<bool>,
 }
 
 impl fmt::Debug for RankServer {
@@ -160,7 +163,12 @@ impl RankServer {
             wishes: Mutex::new(asks.clone()),
             outcomes: Mutex::new(answers),
         });
-        Ok(Self { table, ranks, end: asks, wishes, outcomes })
+        Ok(Self { table, ranks, end: asks, wishes, outcomes, is_broken: Cell::new(false) })
+    }
+
+    /// Whether an exchange between ranks has failed.
+    pub(crate) fn is_broken(&self) -> bool {
+        self.is_broken.get()
     }
 
     /// Ranks for threads that compute.
@@ -183,6 +191,7 @@ impl RankServer {
                 Wish::Sum(values) => unsafe { self.table.sum(&mut *values) },
                 Wish::End => return,
             };
+            self.is_broken.set(self.is_broken.get() || outcome != 0);
             if self.outcomes.send(outcome).is_err() {
                 return;
             }

@@ -22,8 +22,10 @@ pub unsafe extern "C" fn amberfield_host_open(
 
 /// Opens a field that ranks share: every rank of the host program opens it with the same settings and its own
 /// table, gives its own particles to the calls that follow, and gets their field. All ranks make the same
-/// calls in the same order, also those without particles; what fails on one rank fails on all. A rank should
-/// have the particles of a compact piece of the box. `threads` 0 stands for all cores that this rank may use.
+/// calls in the same order, also those without particles; what fails on one rank fails on all, with the same
+/// text. AmberfieldStatus_Broken is a failure of one rank alone, and so is a handle that was not opened well:
+/// then end the program. A rank should have the particles of a compact piece of the box. `threads` 0 stands
+/// for all cores that this rank may use.
 ///
 /// With an OpenFOAM case rank 0 starts the solver and gets the particles of all ranks.
 ///
@@ -70,7 +72,7 @@ pub unsafe extern "C" fn amberfield_host_error(host: *const AmberfieldHost) -> *
 }
 
 /// Computes E [V/m] at every particle, three doubles each, and the potential [V] of all but the particle
-/// itself, unless `potential` is NULL. The particles are at `positions` [m], three doubles each, with
+/// itself, unless `potential` is NULL, for all ranks or none. The particles are at `positions` [m], three doubles each, with
 /// `charges` [C], at the time `time` [s]. The first call chooses parameters and starts the solver, if there
 /// is one.
 ///
@@ -99,6 +101,9 @@ pub unsafe extern "C" fn amberfield_host_field(
         if !potential.is_null() {
             // SAFETY: the caller's promise.
             let out = unsafe { slice_mut(potential, particles.charges.len()) };
+            if out.len() != values.potential.len() {
+                return Err("rank 0 has not asked for potentials; all ranks must, or none".into());
+            }
             out.copy_from_slice(&values.potential);
         }
         Ok(())

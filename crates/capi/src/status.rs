@@ -10,4 +10,6 @@ pub enum AmberfieldStatus {
     Over = 1,
     /// Failure: amberfield_field_error or amberfield_host_error says why.
     Failed = 2,
+    /// Failure of this rank alone, of those that share a field: others may wait for it. End the program.
+    Broken = 3,
 }

@@ -232,6 +232,26 @@ fn what_one_rank_refuses_all_refuse() {
     assert!(words.iter().all(|text| text.contains("not finite") && *text == words[0]), "{words:?}");
 }
 
+/// A table function that fails, as MPI might.
+unsafe extern "C" fn fails(_: *mut c_void, _: *mut f64, _: u64) -> i32 {
+    7
+}
+
+#[test]
+fn a_host_whose_function_fails_is_told_to_end() {
+    let rank = ThreadRank::all(1).remove(0);
+    let host = Host::over(&AmberfieldRanks { sum: Some(fails), ..table(&rank) }, 1);
+    let (places, charges) = particles();
+    let mut e = vec![0.0; places.len()];
+    let (count, none) = (charges.len() as u64, std::ptr::null_mut());
+    // SAFETY: the handle is open, the arrays have the lengths.
+    let status = unsafe {
+        amberfield_host_field(host.0, 0.0, count, places.as_ptr(), charges.as_ptr(), e.as_mut_ptr(), none)
+    };
+    assert_eq!(status, AmberfieldStatus::Broken);
+    assert!(host.error().contains("function returned 7"), "{}", host.error());
+}
+
 #[test]
 fn tables_that_cannot_be_used_are_refused() {
     let rank = ThreadRank::all(1).remove(0);

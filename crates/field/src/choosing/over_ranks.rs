@@ -52,13 +52,16 @@ impl OverRanks<'_> {
         own.sort_unstable_by_key(|(bin, _)| *bin);
         let owner = |bin: usize| bin * count / bins.count();
         let (mut sent, mut received) = (Parcels::default(), Parcels::default());
+        let mut start = 0;
         for rank in 0..count {
-            let of_rank = own.iter().filter(|(bin, _)| owner(*bin) == rank);
-            for together in of_rank.collect::<Vec<_>>().chunk_by(|a, b| a.0 == b.0) {
+            // Bins ascend, and so do those who have them.
+            let end = own.partition_point(|(bin, _)| owner(*bin) <= rank);
+            for together in own[start..end].chunk_by(|a, b| a.0 == b.0) {
                 sent.values.push(together[0].0 as f64);
                 sent.values.push(together.iter().map(|(_, square)| square).sum());
             }
             sent.end_parcel();
+            start = end;
         }
         self.ranks.exchange_of_any_size(&sent, &mut received)?;
         let mut pairs = received.values.as_chunks::<2>().0.to_vec();

@@ -168,9 +168,11 @@ impl AxisImages {
         self.images.iter().any(|image| {
             let ends = [image.apply(from), image.apply(to)];
             let (first, last) = (ends[0].min(ends[1]), ends[0].max(ends[1]));
-            // The last image that begins at or below the interval's end.
+            // The last image that begins at or below the interval's end, up to rounding: that one too many is
+            // looked at does not matter.
             let periods = self.period.map_or(0.0, |period| ((high - first) / period).floor() * period);
-            first + periods <= high && last + periods >= low
+            let begins_below = self.period.is_some() || first <= high;
+            begins_below && last + periods >= low
         })
     }
 
@@ -379,6 +381,18 @@ mod tests {
                 }
             }
         }
+    }
+
+    /// Here the interval's end less the first coordinate, over the period, rounds up to a whole number.
+    #[test]
+    fn a_box_reaches_itself_however_the_ends_round() {
+        let images = AxisImages::new(AxisKind::Periodic, 0.0, 0.7);
+        let (low, high) = (0.099_999_999_999_999_97, 0.499_999_999_999_999_94);
+        let radius = high;
+        assert!(images.reach([0.3, 0.399_999_999_999_999_97], low - radius, high + radius));
+        assert!(!images.reach([0.3, 0.35], 0.36, 0.99));
+        let mirrored = AxisImages::new(AxisKind::Faces(Conductor, Open), 0.0, 1.0);
+        assert!(mirrored.reach([0.1, 0.2], -0.15, -0.12) && !mirrored.reach([0.1, 0.2], 0.3, 2.0));
     }
 
     #[test]

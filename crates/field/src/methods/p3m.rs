@@ -108,15 +108,7 @@ impl P3m {
         let places: Vec<_> = sample.iter().map(|&particle| self.positions[particle]).collect();
         let mut far = vec![FieldAt::default(); sample.len()];
         self.grid.gather(&places, &mut far);
-        let near = self.near.at(sample);
-        let levels = Levels {
-            coulomb: self.permittivity.coulomb(),
-            near: Part::new(&near),
-            far_of_charges: Part::new(&far),
-            ..Levels::default()
-        };
-        let sum = Sum::of_charges(levels, &places);
-        (0..sample.len()).map(|number| sum.at(number).e).collect()
+        e_of_charges(self.permittivity, &self.near.at(sample), &far, &places)
     }
 
     /// Takes the grains, and what a far level adds to them; how many places the field is asked for at.
@@ -139,6 +131,23 @@ impl P3m {
         }
         targets
     }
+}
+
+/// E of the charges alone [V/m] at places [m], from the near level and the grid there.
+pub(crate) fn e_of_charges(
+    permittivity: Permittivity,
+    near: &[FieldAt],
+    far: &[FieldAt],
+    places: &[Vector3<f64>],
+) -> Vec<Vector3<f64>> {
+    let levels = Levels {
+        coulomb: permittivity.coulomb(),
+        near: Part::new(near),
+        far_of_charges: Part::new(far),
+        ..Levels::default()
+    };
+    let sum = Sum::of_charges(levels, places);
+    (0..places.len()).map(|number| sum.at(number).e).collect()
 }
 
 /// Mean potential over Coulomb's constant [C/m] of the pairs of a net charge [C], in a box without conductor,

@@ -13,11 +13,11 @@ use crate::levels::grid::over_ranks::GridOverRanks;
 use crate::levels::near::NearLevel;
 use crate::levels::near::ghosts::Ghosts;
 use crate::methods::method::FieldMethod;
-use crate::methods::p3m::background_potential;
+use crate::methods::p3m::{background_potential, e_of_charges};
 use crate::methods::p3m_parameters::P3mParameters;
 use crate::numerics::stopwatch::Stopwatch;
 use crate::ranks::{Parcels, Ranks};
-use crate::sum::{Levels, OwnClouds, Part, Sum};
+use crate::sum::{Levels, OwnClouds, Part};
 use crate::values::{FieldAt, Wanted};
 use amberfield_core::{Domain, FieldSettings};
 use nalgebra::Vector3;
@@ -85,29 +85,20 @@ impl P3mOverRanks {
         let places: Vec<_> = sample.iter().map(|&particle| self.positions[particle]).collect();
         let mut far = vec![FieldAt::default(); sample.len()];
         self.grid.gather(&places, &mut far);
-        let near = self.near.at(sample);
-        let levels = Levels {
-            coulomb: self.settings.permittivity.coulomb(),
-            near: Part::new(&near),
-            far_of_charges: Part::new(&far),
-            ..Levels::default()
-        };
-        let sum = Sum::of_charges(levels, &places);
-        Ok((0..sample.len()).map(|number| sum.at(number).e).collect())
+        Ok(e_of_charges(self.settings.permittivity, &self.near.at(sample), &far, &places))
     }
 
     /// Sorts the near level, and solves on the grid.
     fn prepare(&mut self, positions: &[Vector3<f64>], charges: &[f64]) -> Result<Census, FieldError> {
         self.stopwatch.restart();
-        let own = self.load(positions, charges);
-        let census = self.take_census(own)?;
+        let loaded = self.load(positions, charges);
+        let census = self.take_census(loaded)?;
         let ranks = self.ranks.as_ref();
         self.ghosts.append(ranks, &census.boxes, &mut self.positions, &mut self.charges)?;
         self.stopwatch.lap("ghosts");
         self.near.sort(&self.positions, &self.charges, positions.len());
         self.stopwatch.lap("sort");
-        let own = (&self.positions[..positions.len()], charges);
-        self.grid.solve(ranks, &census.boxes, own.0, own.1)?;
+        self.grid.solve(ranks, &census.boxes, &self.positions[..positions.len()], charges)?;
         self.stopwatch.lap("grid");
         Ok(census)
     }

@@ -40,6 +40,17 @@ pub(super) struct Row {
     reach: f64,
 }
 
+/// Charges whose sum is wanted at the first ones.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Charges<'a> {
+    /// Places [m], inside the domain or within a period of it.
+    pub(super) positions: &'a [Vector3<f64>],
+    /// Charges [C].
+    pub(super) charges: &'a [f64],
+    /// Number of those at which the sum is wanted.
+    pub(super) targets: usize,
+}
+
 /// Sources sorted by cell. Memory is kept between builds.
 #[derive(Debug, Default)]
 pub(super) struct NearCells {
@@ -57,14 +68,12 @@ pub(super) struct NearCells {
 }
 
 impl NearCells {
-    /// Sorts the charges and their images within the cut-off radius of the bounding box of the first
-    /// `targets` positions; positions and radius in m, positions inside the domain or within a period of it.
+    /// Sorts the charges and their images within the cut-off radius [m] of the targets' bounding box.
     pub(super) fn build(
         &mut self,
         domain: &Domain,
         lattice: &ImageLattice,
-        (positions, charges): (&[Vector3<f64>], &[f64]),
-        targets: usize,
+        Charges { positions, charges, targets }: Charges<'_>,
         radius: f64,
         per_charge: f64,
     ) {
@@ -262,7 +271,13 @@ mod tests {
         // No image lies exactly at the cut-off: rounding would decide.
         for radius in [0.11, 0.5, 2.57] {
             let mut cells = NearCells::default();
-            cells.build(&domain, &lattice, (&positions, &charges), positions.len(), radius, 1.0);
+            cells.build(
+                &domain,
+                &lattice,
+                Charges { positions: &positions, charges: &charges, targets: 60 },
+                radius,
+                1.0,
+            );
             let target = BoundingBox::around(&positions).unwrap();
             let near = |a: [f64; 3], b: [f64; 3]| (Vector3::from(a) - Vector3::from(b)).norm() < 1.0;
             for source in (0..cells.real.len()).filter(|&source| cells.real[source] != IMAGE) {

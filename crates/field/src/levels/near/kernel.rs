@@ -223,6 +223,7 @@ fn bounds<T: Real>(group: Group<'_>, reference: [f64; 3]) -> [[T; 3]; 2] {
 mod tests {
     use super::*;
     use crate::geometry::images::ImageLattice;
+    use crate::levels::near::cells::Charges;
     use amberfield_core::{Boundary, Domain};
     use nalgebra::Vector3;
 
@@ -245,7 +246,13 @@ mod tests {
         let domain =
             Domain::new(Vector3::repeat(-2.0), Vector3::repeat(2.0), [[Boundary::Open; 2]; 3]).unwrap();
         let mut cells = NearCells::default();
-        cells.build(&domain, &ImageLattice::new(&domain), (&positions, &charges), COUNT, CUTOFF, 1.0);
+        cells.build(
+            &domain,
+            &ImageLattice::new(&domain),
+            Charges { positions: &positions, charges: &charges, targets: COUNT },
+            CUTOFF,
+            1.0,
+        );
         Scatter { positions, charges, cells }
     }
 

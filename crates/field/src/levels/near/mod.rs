@@ -11,7 +11,7 @@ use crate::numerics::scratch::PerThread;
 use crate::values::FieldAt;
 use amberfield_core::Domain;
 use candidates::NearSources;
-use cells::NearCells;
+use cells::{Charges, NearCells};
 use kernel::{Group, NearKernel};
 use nalgebra::Vector3;
 use rayon::prelude::*;
@@ -96,7 +96,8 @@ impl NearLevel {
         self.largest = charges.iter().fold(0.0, |largest, charge| charge.abs().max(largest));
         let per_charge = if self.largest > 0.0 { 1.0 / self.largest } else { 0.0 };
         let Self { domain, lattice, parameters, cells, .. } = self;
-        cells.build(domain, lattice, (positions, charges), targets, parameters.cutoff_m, per_charge);
+        let charges = Charges { positions, charges, targets };
+        cells.build(domain, lattice, charges, parameters.cutoff_m, per_charge);
         self.targets.clear();
         // An image's index lies beyond any particle's.
         let real = self.cells.real.iter().enumerate().filter(|(_, particle)| (**particle as usize) < targets);
