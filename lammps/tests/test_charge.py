@@ -408,7 +408,7 @@ region floor plane 0 0 0 0 0 1
 fix W all wall/gran/region granular hertz 1e6 0 tangential linear_nohistory 0 0 region floor
 neigh_modify exclude group all all
 """
-    small, apart = 0.2 * RADIUS, 2.5 * RADIUS
+    small, apart = 0.2 * RADIUS, 1.6 * RADIUS
     x = np.array([[0.001, 0.001, small + 5e-7], [0.001 + apart, 0.001, RADIUS + 1e-4]])
     grows = "group two id 2\nvariable wide equal 2e-4\nfix G two adapt 0 atom diameter v_wide\n"
     found = []
@@ -418,7 +418,9 @@ neigh_modify exclude group all all
         data_file(
             folder / "data.grains", x, np.zeros(2), BOX, radius=radii, v=np.array([[0.0, 0.0, -0.1]] * 2)
         )
-        head = input_of().replace("hybrid sphere charge", "hybrid sphere 1 charge")
+        head = (
+            input_of().replace("hybrid sphere charge", "hybrid sphere 1 charge") + "comm_modify cutoff 5e-4\n"
+        )
         state = run(folder, [[head + floor + more + INSULATING + "\nrun 8500", "both"]])["both"]
         found.append(state["q"][:, 0])
     assert found[0][0] < 0 and found[0][1] < 0
