@@ -46,7 +46,8 @@ class KeptCharges : protected LAMMPS_NS::Pointers {
     // Begins a run: largest radius of the atoms, Coulomb's constant, and the box as it is.
     void begin(double largest_radius, double coulomb);
 
-    // Makes sure that spots around an atom of a radius are found: one that came in the run may be the largest.
+    // Makes sure that spots around an atom of a radius are found: one that came in the run may be the
+    // largest.
     void cover(double radius);
 
     // Takes the spots of a wall along with its region, once in a step.

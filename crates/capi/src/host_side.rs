@@ -72,9 +72,9 @@ pub unsafe extern "C" fn amberfield_host_error(host: *const AmberfieldHost) -> *
 }
 
 /// Computes E [V/m] at every particle, three doubles each, and the potential [V] of all but the particle
-/// itself, unless `potential` is NULL, for all ranks or none. The particles are at `positions` [m], three doubles each, with
-/// `charges` [C], at the time `time` [s]. The first call chooses parameters and starts the solver, if there
-/// is one.
+/// itself, unless `potential` is NULL, for all ranks or none. The particles are at `positions` [m], three
+/// doubles each, with `charges` [C], at the time `time` [s]. The first call chooses parameters and starts the
+/// solver, if there is one.
 ///
 /// # Safety
 /// `host` comes from amberfield_host_open and is not closed; the arrays have room for `count` particles.
