@@ -30,7 +30,7 @@ constexpr double ROOM = 0.1;
 }    // namespace
 
 SharedField::SharedField(LAMMPS *lmp, const char *fix, int groupbit, const FieldWords &words,
-                             const Units &units) :
+                         const Units &units) :
     Pointers(lmp), fix_(fix), groupbit_(groupbit), words_(words), units_(units), ranks_(world), low_{},
     high_{}
 {
@@ -66,6 +66,9 @@ bool SharedField::follow_box()
 // Widens the box at open faces where charges are beyond it.
 void SharedField::fit_open_faces()
 {
+    bool is_open = false;
+    for (int face = 0; face < 6; ++face) is_open |= words_.is_open(face);
+    if (!is_open) return;
     // Lowest coordinates, and highest ones with the other sign
     double ends[6];
     for (int axis = 0; axis < 3; ++axis) {

@@ -133,7 +133,6 @@ impl AmberfieldHost {
             let Own { positions, charges } = own;
             let wanted = Wanted { potential: true, ..Wanted::default() };
             field.evaluate_at(time, positions, charges, wanted, values).map_err(|error| error.to_string())?;
-            energies = [0.0; 2];
             for ((place, charge), potential) in positions.iter().zip(charges).zip(&values.potential) {
                 let of_faces = field.given(place).faces.potential;
                 energies[0] += 0.5 * charge * (potential - of_faces);

@@ -108,19 +108,9 @@ impl ElectricField {
             )));
         };
         changing::check(domain, settings)?;
-        Ok(Self {
-            domain: domain.clone(),
-            settings: settings.clone(),
-            choice: choice.clone(),
-            method: Box::new(P3mOverRanks::new(&ranks, domain, settings, *parameters)),
-            ranks: Some(ranks),
-            faces: FacesLevel::new(domain, settings)?,
-            external: ExternalField::new(domain, settings),
-            stopwatch: Stopwatch::default(),
-            mesh_cells: None,
-            error_estimated: None,
-            error_measured: None,
-        })
+        let method = Box::new(P3mOverRanks::new(&ranks, domain, settings, *parameters));
+        let field = Self::with_method(domain, settings, choice, method)?;
+        Ok(Self { ranks: Some(ranks), ..field })
     }
 
     /// Makes the field over a field solver's mesh, whose boundary conditions take the place of a domain's:
@@ -167,19 +157,9 @@ impl ElectricField {
             Choice::Kolehmainen { cutoff_m } => {
                 let (permittivity, background) = (settings.permittivity, settings.neutralising_background);
                 let (domain, cells) = (solver.mesh().domain().clone(), solver.mesh().cell_count());
-                Ok(Self {
-                    faces: FacesLevel::new(&domain, settings)?,
-                    external: ExternalField::new(&domain, settings),
-                    stopwatch: Stopwatch::default(),
-                    domain,
-                    mesh_cells: Some(cells),
-                    ranks: None,
-                    settings: settings.clone(),
-                    choice: choice.clone(),
-                    method: Box::new(Kolehmainen::over(solver, permittivity, background, *cutoff_m)?),
-                    error_estimated: None,
-                    error_measured: None,
-                })
+                let method = Box::new(Kolehmainen::over(solver, permittivity, background, *cutoff_m)?);
+                let field = Self::with_method(&domain, settings, choice, method)?;
+                Ok(Self { mesh_cells: Some(cells), ..field })
             }
             choice => Err(FieldError::Settings(format!(
                 "a field solver's mesh cannot have the parameters {choice:?}; choose method p3m or \
@@ -195,19 +175,8 @@ impl ElectricField {
     ) -> Result<Self, FieldError> {
         let mesh = p3m.mesh().expect("it is over a mesh");
         let (domain, cells) = (mesh.domain().clone(), mesh.cell_count());
-        Ok(Self {
-            faces: FacesLevel::new(&domain, settings)?,
-            external: ExternalField::new(&domain, settings),
-            stopwatch: Stopwatch::default(),
-            domain,
-            mesh_cells: Some(cells),
-            ranks: None,
-            settings: settings.clone(),
-            choice: Choice::P3m(parameters),
-            method: Box::new(p3m),
-            error_estimated: None,
-            error_measured: None,
-        })
+        let field = Self::with_method(&domain, settings, &Choice::P3m(parameters), Box::new(p3m))?;
+        Ok(Self { mesh_cells: Some(cells), ..field })
     }
 
     /// Builds a field with parameters chosen earlier.
@@ -231,6 +200,16 @@ impl ElectricField {
             }
             Choice::P3m(parameters) => Box::new(P3m::new(domain, settings, *parameters)),
         };
+        Self::with_method(domain, settings, choice, method)
+    }
+
+    /// The field of a method for one process without a mesh, whose error is not known.
+    fn with_method(
+        domain: &Domain,
+        settings: &FieldSettings,
+        choice: &Choice,
+        method: Box<dyn FieldMethod>,
+    ) -> Result<Self, FieldError> {
         Ok(Self {
             domain: domain.clone(),
             settings: settings.clone(),

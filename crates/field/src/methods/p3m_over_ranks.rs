@@ -128,11 +128,7 @@ impl P3mOverRanks {
             grains.unwrap_or(BoundingBox { min: Vector3::zeros(), max: Vector3::zeros() });
         let flags = [f64::from(u8::from(own.is_err())), f64::from(u8::from(grains.is_some()))];
         let own_numbers = [&flags[..], &[sums.net, sums.absolute], min.as_slice(), max.as_slice()].concat();
-        let (mut told, mut heard) = (Parcels::default(), Parcels::default());
-        for _ in 0..ranks.count() {
-            told.values.extend(&own_numbers);
-            told.end_parcel();
-        }
+        let (told, mut heard) = (Parcels::for_all(&own_numbers, ranks.count()), Parcels::default());
         heard.resize(told.sizes());
         ranks.exchange(&told, &mut heard)?;
         let (mut boxes, mut sums, mut is_good) = (Vec::new(), ChargeSums::default(), true);

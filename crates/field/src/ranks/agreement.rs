@@ -18,11 +18,8 @@ impl dyn Ranks + '_ {
     /// The error of the first rank that has one.
     fn first_of<T>(&self, outcome: Result<T, FieldError>) -> Result<T, FieldError> {
         let reason = outcome.as_ref().err().map(FieldError::to_string).unwrap_or_default();
-        let (mut told, mut heard) = (Parcels::default(), Parcels::default());
-        for _ in 0..self.count() {
-            told.values.extend(reason.bytes().map(f64::from));
-            told.end_parcel();
-        }
+        let bytes: Vec<f64> = reason.bytes().map(f64::from).collect();
+        let (told, mut heard) = (Parcels::for_all(&bytes, self.count()), Parcels::default());
         self.exchange_of_any_size(&told, &mut heard)?;
         let first = (0..self.count()).find(|&rank| !heard.of(rank).is_empty()).unwrap_or_default();
         #[expect(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "it was a byte")]

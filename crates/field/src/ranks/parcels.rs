@@ -36,6 +36,12 @@ impl Parcels {
         self.values.resize(end, 0.0);
     }
 
+    /// Makes the same parcel for each of so many ranks.
+    #[must_use]
+    pub(crate) fn for_all(values: &[f64], ranks: usize) -> Self {
+        Self { values: values.repeat(ranks), ends: (1..=ranks).map(|rank| rank * values.len()).collect() }
+    }
+
     /// Removes all parcels; memory is kept.
     pub fn clear(&mut self) {
         self.values.clear();

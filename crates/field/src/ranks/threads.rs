@@ -58,11 +58,7 @@ impl Ranks for ThreadRank {
     }
 
     fn sum(&self, values: &mut [f64]) -> Result<(), FieldError> {
-        let mut sent = Parcels::default();
-        for _ in 0..self.count() {
-            sent.values.extend_from_slice(values);
-            sent.end_parcel();
-        }
+        let sent = Parcels::for_all(values, self.count());
         let mut received = sent.clone();
         self.exchange(&sent, &mut received)?;
         values.fill(0.0);

@@ -65,7 +65,7 @@ impl Ghosts {
     /// Packs the grains that are near a box.
     fn pack(&mut self, target: &BoundingBox, positions: &[Vector3<f64>], charges: &[f64]) {
         let deep = without_images(&self.domain, target, self.radius);
-        for (position, &charge) in positions.iter().zip(charges) {
+        for (position, &charge) in positions.iter().zip(charges).filter(|(_, charge)| **charge != 0.0) {
             let is_near = if deep.contains(position) {
                 target.distance_squared(position) <= self.radius * self.radius
             } else {
@@ -73,7 +73,7 @@ impl Ghosts {
                 self.lattice.for_each_near(position, target, self.radius, |_| is_near = true);
                 is_near
             };
-            if charge != 0.0 && is_near {
+            if is_near {
                 self.sent.values.extend([position.x, position.y, position.z, charge]);
             }
         }
