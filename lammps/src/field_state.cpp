@@ -7,7 +7,6 @@
 
 #include "atom.h"
 #include "comm.h"
-#include "memory.h"
 
 #include <cstdint>
 #include <cstring>
@@ -19,26 +18,24 @@ using amberfield::Forecast;
 namespace {
 
 // Numbers of the fix as a whole, before the text of the parameters
-constexpr int NUMBERS = 7;
+constexpr int NUMBERS = 11;
 
 }    // namespace
 
 void FixAmberfieldField::grow_arrays(int atoms)
 {
     forecast_.grow(atoms);
-    memory->grow(array_atom, atoms, 3, "amberfield/field:array_atom");
+    array_atom = forecast_.e;
 }
 
 void FixAmberfieldField::copy_arrays(int from, int to, int)
 {
     forecast_.copy(from, to);
-    for (int axis = 0; axis < 3; ++axis) array_atom[to][axis] = array_atom[from][axis];
 }
 
 void FixAmberfieldField::set_arrays(int i)
 {
     forecast_.clear(i);
-    for (int axis = 0; axis < 3; ++axis) array_atom[i][axis] = 0.0;
 }
 
 int FixAmberfieldField::pack_exchange(int i, double *buffer)
@@ -85,9 +82,13 @@ void FixAmberfieldField::write_restart(FILE *file)
                                      static_cast<double>(interval_.age),
                                      static_cast<double>(interval_.before),
                                      interval_.evaluations,
+                                     interval_.rate,
                                      interval_.squares,
                                      interval_.checked,
-                                     evaluated_count_};
+                                     evaluated_count_,
+                                     measured_,
+                                     measured_at_,
+                                     strength_};
     const int size = sizeof(numbers) + parameters.size() + 1;
     fwrite(&size, sizeof(int), 1, file);
     fwrite(numbers, sizeof(double), NUMBERS, file);
@@ -102,15 +103,19 @@ void FixAmberfieldField::restart(char *buffer)
     interval_.age = static_cast<long>(numbers[1]);
     interval_.before = static_cast<long>(numbers[2]);
     interval_.evaluations = numbers[3];
-    interval_.squares = numbers[4];
-    interval_.checked = numbers[5];
-    evaluated_count_ = numbers[6];
+    interval_.rate = numbers[4];
+    interval_.squares = numbers[5];
+    interval_.checked = numbers[6];
+    evaluated_count_ = numbers[7];
+    measured_ = numbers[8];
+    measured_at_ = numbers[9];
+    strength_ = numbers[10];
     source_.use_parameters(buffer + sizeof(numbers));
     is_restarted_ = true;
 }
 
 double FixAmberfieldField::memory_usage()
 {
-    return static_cast<double>(atom->nmax) * (Forecast::SIZE + 3) * sizeof(double)
+    return static_cast<double>(atom->nmax) * Forecast::SIZE * sizeof(double)
         + static_cast<double>(fresh_.capacity()) * sizeof(double);
 }

@@ -184,8 +184,9 @@ void FixAmberfieldCharge::see_ghosts()
     if (!field_) return;
     seen_.resize(atom->nlocal + atom->nghost);
     double **e = field_->field();
-    const double *charge = field_->charges_of_field();
-    for (int i = 0; i < atom->nlocal; ++i) seen_[i] = {{e[i][0], e[i][1], e[i][2]}, charge[i]};
+    for (int i = 0; i < atom->nlocal; ++i) {
+        seen_[i] = {{e[i][0], e[i][1], e[i][2]}, field_->charge_of_field(i)};
+    }
     forwarded_ = FIELD;
     comm->forward_comm(this, 4);
 }

@@ -7,7 +7,6 @@
 #include "comm.h"
 #include "domain.h"
 #include "error.h"
-#include "memory.h"
 #include "modify.h"
 #include "update.h"
 
@@ -25,6 +24,8 @@ namespace {
 constexpr double TRAVEL = 0.5;
 // Two sums over all atoms are equal up to rounding, relative to the sum of the sizes
 constexpr double SAME = 1e-12;
+// Error of the forecast that is allowed at least, over the tolerance, where the field has taken the rest
+constexpr double LEAST = 0.3;
 // Evaluations after which the error is measured again, the first time and from then on, as in amberfield's
 // own runs: each time costs several evaluations
 constexpr double RECHECK[2] = {200, 1000};
@@ -39,7 +40,7 @@ FixAmberfieldField::FixAmberfieldField(LAMMPS *lmp, int narg, char **arg) :
     scalar_flag = 1;
     extscalar = 1;
     vector_flag = 1;
-    size_vector = 3;
+    size_vector = 4;
     extvector = 0;
     global_freq = 1;
     peratom_flag = 1;
@@ -64,7 +65,6 @@ FixAmberfieldField::~FixAmberfieldField()
 {
     atom->delete_callback(id, Atom::GROW);
     atom->delete_callback(id, Atom::RESTART);
-    memory->destroy(array_atom);
 }
 
 int FixAmberfieldField::setmask()
@@ -124,66 +124,51 @@ void FixAmberfieldField::min_post_force(int vflag)
 
 void FixAmberfieldField::post_force(int vflag)
 {
-    if (update->ntimestep != last_step_) {
-        interval_.age += update->ntimestep - last_step_;
-        last_step_ = update->ntimestep;
-    }
+    const bigint steps = update->ntimestep - last_step_;
+    interval_.age += steps;
+    last_step_ = update->ntimestep;
     // The line through two evaluations counts in steps.
     if (update->dt != last_dt_ && last_dt_ > 0.0) is_fresh_due_ = true;
     last_dt_ = update->dt;
     energy_step_ = -1;
-    const Census now = census();
+    const Census now = carry_on(steps);
     if (is_due(now)) evaluate(now);
-    add_forces();
     v_init(vflag);
     if (vflag_global) add_virial();
 }
 
-// Adds qE as it is by now. Every step has this loop: it goes through rows as LAMMPS keeps them, one after
-// another.
-void FixAmberfieldField::add_forces()
+// Lays E on by some steps, adds qE, and takes the census. Every step goes through all atoms here, and once.
+FixAmberfieldField::Census FixAmberfieldField::carry_on(double steps)
 {
-    const int atoms = atom->nlocal;
-    if (atoms == 0) return;
+    double sums[3] = {0.0, 0.0, 0.0};
     const int *mask = atom->mask;
-    const double age = interval_.age;
-    const double *q = atom->q, *known = forecast_.e[0], *slope = forecast_.slope[0];
-    double *e = array_atom[0], *f = atom->f[0];
-    for (int i = 0; i < atoms; ++i) {
-        const double member = mask[i] & groupbit ? 1.0 : 0.0;
-        for (int k = 3 * i; k < 3 * i + 3; ++k) {
-            e[k] = member * (known[k] + age * slope[k]);
-            f[k] += q[i] * e[k];
-        }
-    }
-}
-
-FixAmberfieldField::Census FixAmberfieldField::census() const
-{
-    double sums[4] = {0.0, 0.0, 0.0, 0.0};
-    const int *mask = atom->mask;
-    const double *q = atom->q, *charge = forecast_.charge, *known = forecast_.known;
+    const double *q = atom->q, *charge = forecast_.charge;
     for (int i = 0, atoms = atom->nlocal; i < atoms; ++i) {
         if (!(mask[i] & groupbit)) continue;
+        const double *slope = forecast_.slope[i];
+        double *e = forecast_.e[i], *f = atom->f[i];
+        for (int axis = 0; axis < 3; ++axis) {
+            e[axis] += steps * slope[axis];
+            f[axis] += q[i] * e[axis];
+        }
         const double change = q[i] - charge[i];
         sums[0] += change * change;
         sums[1] += q[i] * q[i];
         sums[2] += 1.0;
-        sums[3] += known[i];
     }
-    double all[4];
-    MPI_Allreduce(sums, all, 4, MPI_DOUBLE, MPI_SUM, world);
-    return {all[0], all[1], all[2], all[3]};
+    double all[3];
+    MPI_Allreduce(sums, all, 3, MPI_DOUBLE, MPI_SUM, world);
+    return {all[0], all[1], all[2]};
 }
 
 // Whether E must be evaluated in this step.
 bool FixAmberfieldField::is_due(const Census &now)
 {
     const bool box_changed = source_.follow_box();
-    const bool others = now.known != now.count || now.known != evaluated_count_;
-    // What is no number is found where places and charges are looked at.
-    const bool charges_changed = !std::isfinite(now.changed)
-        || (words_.every == 0 && now.changed > words_.tolerance * words_.tolerance * now.squares);
+    // Charges that are no numbers are refused where places and charges are looked at.
+    const bool others = !std::isfinite(now.changed) || now.count != evaluated_count_;
+    const bool charges_changed =
+        words_.every == 0 && now.changed > words_.tolerance * words_.tolerance * now.squares;
     // Where atoms came or went, E has jumped, and no line goes through the jump.
     if (box_changed || is_fresh_due_ || others) interval_.restart();
     const bool due = is_fresh_due_ || box_changed || others || charges_changed || interval_.is_due();
@@ -191,7 +176,7 @@ bool FixAmberfieldField::is_due(const Census &now)
     return due;
 }
 
-// Evaluates E, checks the forecast that it replaces, and lays the line on.
+// Evaluates E, checks the forecast that it replaces, and corrects the line and the forces.
 void FixAmberfieldField::evaluate(const Census &now)
 {
     const int atoms = atom->nlocal;
@@ -210,35 +195,39 @@ void FixAmberfieldField::evaluate(const Census &now)
     // Sums of q^2 |change|^2, |change|^2, q^2 |E|^2, atoms; and the largest |change|^2
     double sums[4] = {0.0, 0.0, 0.0, 0.0}, largest = 0.0;
     for (int i = 0; i < atoms; ++i) {
-        if (!(atom->mask[i] & groupbit)) continue;
+        if (!(atom->mask[i] & groupbit)) {
+            forecast_.clear(i);
+            continue;
+        }
+        const double q = atom->q[i];
         double change2 = 0.0, size2 = 0.0;
-        const bool knows = forecast_.known[i] != 0.0 && age > 0.0;
+        const bool knows = forecast_.knows(i) && age > 0.0;
+        // A line through a charge that jumped would go on jumping.
+        const bool jumped = std::abs(q - forecast_.charge[i]) > words_.tolerance * std::abs(q);
         for (int axis = 0; axis < 3; ++axis) {
-            const double fresh = rows_[i][axis];
-            const double change = knows ? fresh - forecast_.at(i, axis, age) : 0.0;
+            const double fresh = rows_[i][axis], correction = fresh - forecast_.e[i][axis];
+            const double change = knows ? correction : 0.0;
             change2 += change * change;
             size2 += fresh * fresh;
-            // A line through a charge that jumped would go on jumping.
-            const bool jumped = std::abs(atom->q[i] - forecast_.charge[i])
-                > words_.tolerance * std::abs(atom->q[i]);
             double &slope = forecast_.slope[i][axis];
             slope = knows ? slope + (jumped ? 0.0 : change / age) : 0.0;
             forecast_.e[i][axis] = fresh;
+            atom->f[i][axis] += q * correction;
         }
-        const double weight = atom->q[i] * atom->q[i];
+        const double weight = q * q;
         sums[0] += weight * change2;
         sums[1] += change2;
         sums[2] += weight * size2;
         sums[3] += knows ? 1.0 : 0.0;
         largest = std::max(largest, change2);
-        forecast_.charge[i] = atom->q[i];
-        forecast_.known[i] = 1.0;
+        forecast_.charge[i] = q;
     }
     double all[4], most;
     MPI_Allreduce(sums, all, 4, MPI_DOUBLE, MPI_SUM, world);
     MPI_Allreduce(&largest, &most, 1, MPI_DOUBLE, MPI_MAX, world);
 
     const double size = scale(all, now);
+    follow_error_of_field(size, now);
     amberfield::Interval::Check check;
     if (size > 0.0 && all[3] > 0.0 && now.squares > 0.0) {
         check.drift = std::sqrt(all[0] / now.squares) / size;
@@ -246,8 +235,31 @@ void FixAmberfieldField::evaluate(const Census &now)
         check.largest = std::sqrt(most) / size;
     }
     const bool checked = all[3] > 0.0;
-    interval_.evaluated(checked ? &check : nullptr, words_.every, words_.tolerance, longest());
+    interval_.evaluated(checked ? &check : nullptr, words_.every, aim(), longest());
     evaluated_count_ = now.count;
+}
+
+// Error that a forecast may have at the end of an interval: what the field leaves of the tolerance.
+double FixAmberfieldField::aim() const
+{
+    const double tolerance = words_.tolerance, of_field = error_of_field();
+    const double left = tolerance * tolerance - of_field * of_field;
+    return std::sqrt(std::max(left, std::pow(LEAST * tolerance, 2)));
+}
+
+// Takes what was measured of the field's error, and how strong E is by now for these charges: the error does
+// not grow with E where charges come closer to each other.
+void FixAmberfieldField::follow_error_of_field(double scale, const Census &now)
+{
+    strength_ = now.squares > 0.0 ? scale / std::sqrt(now.squares / now.count) : 0.0;
+    if (source_.measured_error() < 0.0 || source_.measured_error() == measured_) return;
+    measured_ = source_.measured_error();
+    measured_at_ = strength_;
+}
+
+double FixAmberfieldField::error_of_field() const
+{
+    return strength_ > 0.0 ? measured_ * measured_at_ / strength_ : 0.0;
 }
 
 // Scale of E: its RMS over the charges, or that of as many charges at random where they cancel.
@@ -305,8 +317,12 @@ double FixAmberfieldField::compute_scalar()
 
 double FixAmberfieldField::compute_vector(int n)
 {
-    if (n == 0) return std::hypot(std::max(source_.measured_error(), 0.0), interval_.error());
-    return n == 1 ? static_cast<double>(interval_.steps) : interval_.evaluations;
+    switch (n) {
+        case 0: return std::hypot(error_of_field(), interval_.error());
+        case 1: return static_cast<double>(interval_.steps);
+        case 2: return interval_.evaluations;
+        default: return std::hypot(error_of_field(), interval_.error_of_run());
+    }
 }
 
 // Sums of r F along axes that are not periodic. All energies of charges go as one over the length: what is

@@ -55,7 +55,7 @@ class FixAmberfieldField : public Fix {
     // For the charge at contacts: the words, and the charges that E belongs to
     const amberfield::FieldWords &words() const { return words_; }
     double **field() const { return array_atom; }
-    const double *charges_of_field() const { return forecast_.charge; }
+    double charge_of_field(int i) const { return forecast_.knows(i) ? forecast_.charge[i] : 0.0; }
     // Charge on insulating walls, which takes part in the field
     void use_kept_charges(std::shared_ptr<const amberfield::KeptCharges> kept) { kept_ = std::move(kept); }
     // 1/(4 pi epsilon) in LAMMPS' units
@@ -64,10 +64,9 @@ class FixAmberfieldField : public Fix {
   private:
     // Sums over all atoms of the group that tell whether another evaluation is due
     struct Census {
-        double changed;    // sum of (q - q of the last evaluation)^2
+        double changed;    // sum of (q - q of the last evaluation)^2; no number where an atom has come
         double squares;    // sum of q^2
         double count;
-        double known;      // atoms that the last evaluation knew
     };
 
     void check_setting();
@@ -75,12 +74,14 @@ class FixAmberfieldField : public Fix {
     void check_computes(const std::function<void(const std::string &)> &refuse) const;
     bool virial_is_known() const;
     void start(int vflag);
-    Census census() const;
+    Census carry_on(double steps);
     bool is_due(const Census &census);
     void evaluate(const Census &census);
     double scale(const double *sums, const Census &census) const;
+    double aim() const;
+    void follow_error_of_field(double scale, const Census &census);
+    double error_of_field() const;
     double longest() const;
-    void add_forces();
     void add_virial();
     void give_kept_charges();
     amberfield::SharedField::Energy energy();
@@ -99,6 +100,8 @@ class FixAmberfieldField : public Fix {
     bool is_fresh_due_ = true;
     bool is_restarted_ = false;
     double evaluated_count_ = 0.0;
+    // Relative error of the field as it was measured last, and the scale of E over the RMS charge: then and now
+    double measured_ = 0.0, measured_at_ = 0.0, strength_ = 0.0;
     bigint last_step_ = -1;
     double last_dt_ = 0.0;
     bigint energy_step_ = -1;

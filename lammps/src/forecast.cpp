@@ -14,7 +14,6 @@ Forecast::~Forecast()
     memory->destroy(e);
     memory->destroy(slope);
     memory->destroy(charge);
-    memory->destroy(known);
 }
 
 void Forecast::grow(int atoms)
@@ -22,7 +21,6 @@ void Forecast::grow(int atoms)
     memory->grow(e, atoms, 3, "amberfield/field:e");
     memory->grow(slope, atoms, 3, "amberfield/field:slope");
     memory->grow(charge, atoms, "amberfield/field:charge");
-    memory->grow(known, atoms, "amberfield/field:known");
 }
 
 void Forecast::copy(int from, int to)
@@ -34,8 +32,9 @@ void Forecast::copy(int from, int to)
 
 void Forecast::clear(int i)
 {
-    const double nothing[SIZE] = {};
-    unpack(i, nothing);
+    std::fill_n(e[i], 3, 0.0);
+    std::fill_n(slope[i], 3, 0.0);
+    charge[i] = std::nan("");
 }
 
 int Forecast::pack(int i, double *buffer) const
@@ -43,7 +42,6 @@ int Forecast::pack(int i, double *buffer) const
     std::copy_n(e[i], 3, buffer);
     std::copy_n(slope[i], 3, buffer + 3);
     buffer[6] = charge[i];
-    buffer[7] = known[i];
     return SIZE;
 }
 
@@ -52,6 +50,5 @@ int Forecast::unpack(int i, const double *buffer)
     std::copy_n(buffer, 3, e[i]);
     std::copy_n(buffer + 3, 3, slope[i]);
     charge[i] = buffer[6];
-    known[i] = buffer[7];
     return SIZE;
 }

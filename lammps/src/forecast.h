@@ -6,14 +6,17 @@
 
 #include "pointers.h"
 
+#include <cmath>
+
 namespace amberfield {
 
-// E of every own atom at the last evaluation, its change per step, and the charge at that time. The arrays
-// go along with the atoms from rank to rank, and into restart files.
+// E of every own atom as it is by now, its change per step, and the charge at the last evaluation. The arrays
+// go along with the atoms from rank to rank, and into restart files. Every step reads all of them: what no
+// step needs does not belong here.
 class Forecast : protected LAMMPS_NS::Pointers {
   public:
     // Numbers of an atom
-    static constexpr int SIZE = 8;
+    static constexpr int SIZE = 7;
 
     explicit Forecast(LAMMPS_NS::LAMMPS *lmp) : Pointers(lmp) {}
     ~Forecast() override;
@@ -27,14 +30,13 @@ class Forecast : protected LAMMPS_NS::Pointers {
     int pack(int i, double *buffer) const;
     int unpack(int i, const double *buffer);
 
-    // E of an atom so many steps after the last evaluation
-    double at(int i, int axis, double age) const { return e[i][axis] + age * slope[i][axis]; }
+    // Whether the last evaluation knew an atom
+    bool knows(int i) const { return !std::isnan(charge[i]); }
 
     double **e = nullptr;
     double **slope = nullptr;
+    // No number for atoms that the last evaluation did not know
     double *charge = nullptr;
-    // 1 for atoms that the last evaluation knew
-    double *known = nullptr;
 };
 
 }    // namespace amberfield

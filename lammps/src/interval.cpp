@@ -10,12 +10,8 @@ using amberfield::Interval;
 
 namespace {
 
-// RMS over a long interval of the drift of an extrapolated field, over that at its end: sqrt(31/120)
-constexpr double EXTRAPOLATED = 0.508;
-// The same of a field that is held: sqrt(1/3)
-constexpr double HELD = 0.577;
-// RMS error over an interval that is aimed at, over the tolerance; the field itself may take the rest
-constexpr double AIM = 0.6;
+// Error at the end of an interval that is aimed at, over what is allowed: intervals differ
+constexpr double AIM = 0.9;
 // Largest difference of any atom that is aimed at, over the RMS difference
 constexpr double WORST = 30.0;
 // Least and most growth of the interval from one evaluation to the next
@@ -36,21 +32,26 @@ double drift_squares(double length, double before)
 
 }    // namespace
 
-void Interval::evaluated(const Check *check, long every, double tolerance, double most)
+void Interval::evaluated(const Check *check, long every, double aim, double most)
 {
     evaluations += 1.0;
     if (check && age > 0) {
         squares += check->drift * check->drift * drift_squares(age, before);
         checked += age;
-        steps = every > 0 ? every : next(*check, tolerance, most);
+        const bool is_line = before > 0;
+        const long chosen = next(*check, aim, most);
+        if (is_line) rate = check->drift / growth(age);
         before = age;
-    } else if (every > 0) {
-        steps = every;
+        // What held E was off by bounds the first line's error.
+        if (!is_line) rate = check->drift / growth(age);
+        steps = every == 0 ? chosen : is_line ? every : 1;
+    } else {
+        steps = 1;
     }
     age = 0;
 }
 
-double Interval::error() const
+double Interval::error_of_run() const
 {
     return checked > 0.0 ? std::sqrt(squares / checked) : 0.0;
 }
@@ -62,22 +63,15 @@ void Interval::restart()
     age = 0;
 }
 
-long Interval::next(const Check &check, double tolerance, double most) const
+long Interval::next(const Check &check, double aim, double most) const
 {
-    double aim = AIM * tolerance;
-    // The more the run has erred so far, the lower the aim.
-    if (error() > aim) aim *= std::pow(aim / error(), 2);
     const double drift = std::max({check.drift, check.drift_of_all, check.largest / WORST, 1e-300});
-    const double length = age;
-    double wanted;
-    if (before == 0) {
-        wanted = length * std::sqrt(aim / (HELD * drift));
-    } else {
-        const double curvature = drift / (length * (length + before));
-        wanted = 0.5 * (std::sqrt(length * length + 4.0 * aim / (EXTRAPOLATED * curvature)) - length);
-    }
+    const double length = age, share = AIM * aim / (drift / growth(age));
+    // The next line has its two evaluations `length` apart.
+    const double wanted =
+        before == 0 ? share : 0.5 * (std::sqrt(length * length + 4.0 * share) - length);
     // An interval that charges cut short says little about a longer one.
     const double longest = std::max(MOST_GROWTH * length, static_cast<double>(steps));
-    wanted = std::min(std::clamp(wanted, LEAST_GROWTH * length, longest), most);
-    return std::max(1L, static_cast<long>(wanted));
+    const double kept = std::min(std::clamp(wanted, LEAST_GROWTH * length, longest), most);
+    return std::max(1L, static_cast<long>(kept));
 }

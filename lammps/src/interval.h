@@ -9,9 +9,9 @@ namespace amberfield {
 // Steps between two evaluations of the field, and the error that the steps between them make.
 //
 // Every evaluation checks the forecast that it replaces: E on the line through the two evaluations before.
-// The line errs by 1/2 E'' s (s + S0) after s steps, if they were S0 steps apart. The next interval is that
-// over which the RMS error is what is aimed at. amberfield's own DEM does the same (several-rates.md among
-// the decisions).
+// The line errs by 1/2 E'' s (s + S0) after s steps, if they were S0 steps apart. The next interval ends
+// where that is what is aimed at. amberfield's own DEM does nearly the same (several-rates.md among the
+// decisions).
 struct Interval {
     // How far fresh E are from the forecast, over the scale of E.
     struct Check {
@@ -24,23 +24,30 @@ struct Interval {
     long age = 0;            // steps since the last evaluation
     long before = 0;         // steps between the last two evaluations; 0: E is held
     double evaluations = 0.0;
+    double rate = 0.0;       // of the last check: drift over growth(); 0: nothing was checked yet
     double squares = 0.0;    // sum over the checked steps of the squared relative error
     double checked = 0.0;    // checked steps
 
     bool is_due() const { return age >= steps; }
 
-    // Books an evaluation and chooses the next interval, of at most `most` steps, or of `every` unless that
-    // is 0. Without a check nothing was forecast.
-    void evaluated(const Check *check, long every, double tolerance, double most);
+    // Books an evaluation and chooses the next interval: one of at most `most` steps at the end of which the
+    // forecast errs by `aim`, or of `every` steps unless that is 0. The first intervals are short: a line needs
+    // two evaluations, and its error three.
+    void evaluated(const Check *check, long every, double aim, double most);
 
-    // RMS over all checked steps of the relative error of E that comes from not evaluating in each
-    double error() const;
+    // Relative error of E at present that comes from not evaluating in every step, RMS over the atoms
+    double error() const { return rate * growth(age); }
+
+    // RMS of that error over all checked steps
+    double error_of_run() const;
 
     // Forgets the line: what was known is of another bed.
     void restart();
 
   private:
-    long next(const Check &check, double tolerance, double most) const;
+    // How the error of the forecast grows with the steps, on the line or with E held
+    double growth(double length) const { return before > 0 ? length * (length + before) : length; }
+    long next(const Check &check, double aim, double most) const;
 };
 
 }    // namespace amberfield

@@ -26,6 +26,11 @@ namespace {
 // Room that an open face gets beyond the farthest charge, over the extent of all of them: so the box, and
 // with it the parameters, stay for a while.
 constexpr double ROOM = 0.1;
+// Share of the tolerance that the library gets, where forecasts take the rest: an interval gains more by a
+// larger share than an evaluation loses by a smaller one
+constexpr double OF_FIELD = 0.6;
+// Least tolerance that the library takes
+constexpr double LEAST_TOLERANCE = 1e-15;
 
 }    // namespace
 
@@ -103,7 +108,8 @@ void SharedField::open()
         settings.high[axis] = high_[axis] * units_.length;
     }
     std::copy(words_.faces, words_.faces + 6, settings.faces);
-    settings.tolerance = words_.tolerance;
+    settings.tolerance =
+        std::max((words_.every == 1 ? 1.0 : OF_FIELD) * words_.tolerance, LEAST_TOLERANCE);
     settings.relative_permittivity = words_.permittivity;
     settings.neutralising_background = words_.background;
     // The same parameters on every machine and for every number of ranks.

@@ -200,3 +200,10 @@ neutralising_background = {str(background).lower()}
 def error(e, exact):
     """Relative RMS error of a field."""
     return np.sqrt(((e - exact) ** 2).sum() / (exact**2).sum())
+
+
+def keeps_promise(true, stated, tolerance):
+    """Whether an error is within the tolerance, and what is stated within a factor 2 of it; 0: an exact sum."""
+    if stated == 0.0:
+        return true < 1e-12
+    return true <= tolerance and true / 2 <= stated <= 2 * true

@@ -7,7 +7,7 @@ import subprocess
 
 import numpy as np
 import pytest
-from support import BIN, HERE, SECONDS, command, data_file, error, exact_field, grains, message, run, start
+from support import BIN, HERE, SECONDS, command, data_file, error, exact_field, grains, keeps_promise, message, run, start
 
 BOX = ([0.0, 0.0, 0.0], [0.01, 0.01, 0.01])
 # The field meets its tolerance with room to spare; sums in other orders differ in the last digits of single
@@ -48,8 +48,7 @@ def snapshot(folder, boundary, words, count=300, net=0.0, ranks=1, more="", tole
 def test_field_is_that_of_the_direct_sum(tmp_path, boundary, words, net):
     state = snapshot(tmp_path, boundary, words, net=net)
     exact = exact_field(tmp_path, state["x"], state["q"][:, 0], BOX, faces_of(words))
-    assert error(state["e"], exact) < 2e-4
-    assert 0.0 <= state["error"] <= 1e-4
+    assert keeps_promise(error(state["e"], exact), state["error"], 1e-4)
 
 
 def test_potentials_of_faces_are_there(tmp_path):
@@ -66,8 +65,7 @@ def test_number_of_ranks_does_not_matter(tmp_path, boundary, words):
     assert abs(one["f"] - force).max() < 1e-12 * abs(force).max()
     exact = exact_field(tmp_path, one["x"], one["q"][:, 0], BOX, faces_of(words))
     for other in others:
-        assert error(other["e"], exact) < 1e-4
-        assert 0.2e-4 <= other["error"] <= 1e-4
+        assert keeps_promise(error(other["e"], exact), other["error"], 1e-4)
         # One rank has every pair in open space.
         assert error(other["e"], one["e"]) < (1e-4 if "o" in words else SINGLE)
         assert error(other["e"], others[0]["e"]) < SINGLE
@@ -119,16 +117,17 @@ timestep 1e-5
 thermo_style custom step ke pe etotal f_E f_E[1] f_E[2] f_E[3]
 """
     wanted = [("energy", "E", 0), ("error", "E", 1), ("interval", "E", 2), ("evaluations", "E", 3)]
-    parts = [[start() + dynamics + "run 0", "begin"], ["run 400", "end"]]
+    parts = [[start() + dynamics + "run 0", "begin"], ["run 211", "half"], ["run 189", "end"]]
     states = run(tmp_path, parts, ranks=ranks, fixes=["E"], globals=wanted, thermo=["ke", "pe", "etotal"])
     begin, end = states["begin"], states["end"]
     assert abs(end["pe"] / end["energy"] - 1) < 1e-9
     exchanged = abs(end["ke"] - begin["ke"])
     assert abs(end["etotal"] - begin["etotal"]) < 0.02 * max(exchanged, 0.01 * begin["ke"])
-    assert end["interval"] > 1 and end["evaluations"] < 200
-    assert 0 < end["error"] < 1e-3
-    exact = exact_field(tmp_path, end["x"] % 0.01, end["q"][:, 0], BOX, ["p"] * 6)
-    assert error(end["e"], exact) < 3e-3
+    # Opposite charges that fall onto each other need shorter and shorter intervals.
+    assert states["half"]["interval"] > 1 and end["evaluations"] < 200
+    for state in states.values():
+        exact = exact_field(tmp_path, state["x"] % 0.01, state["q"][:, 0], BOX, ["p"] * 6)
+        assert keeps_promise(error(state["e"], exact), state["error"], 1e-3)
 
 
 def test_interval_that_is_given_is_kept(tmp_path):
@@ -140,8 +139,8 @@ def test_interval_that_is_given_is_kept(tmp_path):
     state = run(
         tmp_path, [[start() + commands, "end"]], globals=[("every", "E", 2), ("evaluations", "E", 3)]
     )["end"]
-    # One at the start, held for a step, and each seventh behind.
-    assert state["every"] == 7 and state["evaluations"] == 11
+    # Three one after another, for a line with its error, and each seventh behind.
+    assert state["every"] == 7 and state["evaluations"] == 12
 
 
 MOVING = """
@@ -155,22 +154,24 @@ timestep 1e-5
 def test_runs_in_parts_and_from_a_restart_are_the_whole_run(tmp_path):
     x, q = grains(125, seed=9)
     data_file(tmp_path / "data.grains", x, 3 * q, BOX, v=np.full(x.shape, 0.01))
-    whole = run(tmp_path, [[start("p p f") + MOVING + "run 90", "end"]], fixes=["E"])["end"]
+    stated = [("stated", "E", 1)]
+    whole = run(tmp_path, [[start("p p f") + MOVING + "run 90", "end"]], fixes=["E"], globals=stated)["end"]
     parts = [[start("p p f") + MOVING + "run 40\nwrite_restart half.restart", None], ["run 50", "end"]]
     in_parts = run(tmp_path, parts, fixes=["E"])["end"]
     assert error(in_parts["e"], whole["e"]) < 1e-9
     again = start("p p f").replace("read_data data.grains", "read_restart half.restart")
     again = again.replace("atom_style hybrid sphere charge\natom_modify map array\nboundary p p f\n", "")
     again = again.replace("units si\n", "")
-    resumed = run(tmp_path, [[again + MOVING + "run 50", "end"]], fixes=["E"], globals=[("n", "E", 3)])["end"]
+    resumed = run(tmp_path, [[again + MOVING + "run 50", "end"]], fixes=["E"], globals=stated)["end"]
     assert error(resumed["e"], whole["e"]) < 1e-9
+    assert abs(resumed["stated"] / whole["stated"] - 1) < 1e-6
     assert abs(resumed["x"] - whole["x"]).max() < 1e-12
 
 
 def test_other_steps_boxes_and_atoms_are_followed(tmp_path):
     x, q = grains(125, seed=9)
     data_file(tmp_path / "data.grains", x, q, BOX)
-    wanted = [("evaluations", "E", 3)]
+    wanted = [("stated", "E", 1), ("evaluations", "E", 3)]
     parts = [
         [start("p p f") + MOVING + "run 20", "first"],
         ["reset_timestep 1000\nrun 0", "renumbered"],
@@ -189,7 +190,7 @@ def test_other_steps_boxes_and_atoms_are_followed(tmp_path):
         state = states[name]
         box = (BOX[0], [0.01, 0.01, 0.012 if name != "displaced" else 0.01])
         exact = exact_field(tmp_path, state["x"] % [0.01, 0.01, 1], state["q"][:, 0], box, list("ppppgg"))
-        assert error(state["e"], exact) < 3e-3, name
+        assert keeps_promise(error(state["e"], exact), state["stated"], 1e-3), name
 
 
 def test_faces_that_shrink_around_open_space(tmp_path):
@@ -198,11 +199,12 @@ def test_faces_that_shrink_around_open_space(tmp_path):
     data_file(tmp_path / "data.grains", x, q, BOX, v=v)
     commands = "fix N all nve/sphere\nfix E all amberfield/field tolerance 1e-3 boundary o o o\n"
     commands += "timestep 1e-4\nrun 300"
-    state = run(tmp_path, [[start("s s s") + commands, "end"]], fixes=["E"])["end"]
+    commands = start("s s s") + commands
+    state = run(tmp_path, [[commands, "end"]], fixes=["E"], globals=[("stated", "E", 1)])["end"]
     low, high = state["x"].min(0) - 1e-3, state["x"].max(0) + 1e-3
     assert (high - low).min() > 0.012
     exact = exact_field(tmp_path, state["x"], state["q"][:, 0], (low, high), ["o"] * 6)
-    assert error(state["e"], exact) < 3e-3
+    assert keeps_promise(error(state["e"], exact), state["stated"], 1e-3)
 
 
 def test_atoms_that_are_lost_are_felt_no_more(tmp_path):
@@ -212,11 +214,12 @@ def test_atoms_that_are_lost_are_felt_no_more(tmp_path):
         "fix N all nve/sphere\nfix E all amberfield/field tolerance 1e-3 boundary o o o\ntimestep 1e-4\n"
     )
     commands += "thermo_modify lost ignore\nthermo 10\nrun 60\nreset_atoms id\nrun 0"
-    state = run(tmp_path, [[start("f f f") + commands, "end"]], fixes=["E"])["end"]
+    commands = start("f f f") + commands
+    state = run(tmp_path, [[commands, "end"]], fixes=["E"], globals=[("stated", "E", 1)])["end"]
     assert 8 <= len(state["x"]) < 64
     low, high = state["x"].min(0) - 1e-3, state["x"].max(0) + 1e-3
     exact = exact_field(tmp_path, state["x"], state["q"][:, 0], (low, high), ["o"] * 6)
-    assert error(state["e"], exact) < 3e-3
+    assert keeps_promise(error(state["e"], exact), state["stated"], 1e-3)
 
 
 BALANCE = """
@@ -244,8 +247,7 @@ def test_settings_of_lammps_that_do_not_matter(tmp_path, head, more):
     commands += "timestep 1e-5\nrun 300"
     state = run(tmp_path, [[commands, "end"]], ranks=2, fixes=["E"], globals=[("stated", "E", 1)])["end"]
     exact = exact_field(tmp_path, state["x"] % 0.01, state["q"][:, 0], BOX, ["p"] * 6)
-    assert error(state["e"], exact) < 3e-3
-    assert 0 < state["stated"] < 1.2e-3
+    assert keeps_promise(error(state["e"], exact), state["stated"], 1e-3)
 
 
 def test_atoms_that_come_and_go_and_another_timestep_start_the_line_anew(tmp_path):
@@ -263,9 +265,8 @@ def test_atoms_that_come_and_go_and_another_timestep_start_the_line_anew(tmp_pat
     ]
     states = run(tmp_path, parts, fixes=["E"], globals=wanted)
     for state in states.values():
-        assert state["stated"] < 1.2e-2
         exact = exact_field(tmp_path, state["x"] % [0.01, 0.01, 1], state["q"][:, 0], BOX, list("ppppgg"))
-        assert error(state["e"], exact) < 2e-2
+        assert keeps_promise(error(state["e"], exact), state["stated"], 1e-2)
     assert states["quiet"]["every"] > 3
     assert states["longer"]["every"] == 1
     assert states["longer"]["evaluations"] == states["quiet"]["evaluations"] + 1
@@ -348,7 +349,8 @@ def test_stated_error_is_the_true_one(tmp_path):
     moving = "fix N all nve/sphere\nfix E all amberfield/field tolerance 1e-2 boundary p p p\ntimestep 1e-5\n"
     # Samples at no multiple of any interval, behind the first evaluations.
     parts = [[start() + moving + "run 150", None], *([f"run {23 + k % 5}", str(k)] for k in range(16))]
-    states = run(tmp_path, parts, fixes=["E"], globals=[("stated", "E", 1), ("interval", "E", 2)])
+    wanted = [("stated", "E", 1), ("interval", "E", 2), ("of_run", "E", 4)]
+    states = run(tmp_path, parts, fixes=["E"], globals=wanted)
     squares = []
     for state in states.values():
         charge = state["q"][:, 0]
@@ -357,6 +359,7 @@ def test_stated_error_is_the_true_one(tmp_path):
         scale = np.sqrt((weights * (exact**2).sum(1)).sum())
         at_random = 8.9875517873681764e9 * np.sqrt((charge**2).mean()) * (len(charge) / 1e-6) ** (2 / 3)
         squares.append((weights * ((state["e"] - exact) ** 2).sum(1)).sum() / max(scale, at_random) ** 2)
-    true, stated = np.sqrt(np.mean(squares)), states["15"]["stated"]
-    assert states["15"]["interval"] > 5
-    assert stated / 3 < true < 2 * stated, (true, stated)
+        assert keeps_promise(np.sqrt(squares[-1]), state["stated"], 1e-2)
+    end = states["15"]
+    assert end["interval"] > 5
+    assert keeps_promise(np.sqrt(np.mean(squares)), end["of_run"], 1e-2)

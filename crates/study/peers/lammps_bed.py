@@ -8,8 +8,8 @@ BED: little-endian doubles: count, box length, diameter, density, step, normal a
 damping [1/(m s)], friction, then x y z vx vy vz q per grain (SI units). Runs on as many ranks as mpirun
 started. A cut-off is in m; a force, in N, is asked of `kspace_modify force`.
 Every line, one for each skin and rank: skin over diameter, rank, seconds a step by the clock (median of 3
-rounds), the same by the rank's processor time, evaluations of the field per step, error of E that the program
-states (-1: none).
+rounds), the same by the rank's processor time, evaluations of the field per step, error of E over the run
+that the program states (-1: none).
 OUT, from the first skin: states behind a few more stretches of steps, doubles x y z q Ex Ey Ez of every
 grain. E is that which moves the grains; pppm's is its force on the charges over the charges.
 """
@@ -61,7 +61,7 @@ def measure(lmp, steps, kind):
         lmp.command(f"run {steps} pre no post no")
         times.append([(time.perf_counter() - clock) / steps, (time.process_time() - own) / steps])
     per_step = (evaluations(lmp, kind) - before) / (ROUNDS * steps)
-    stated = lmp.numpy.extract_fix("E", 0, 1, 0) if kind == "fix" else -1.0
+    stated = lmp.numpy.extract_fix("E", 0, 1, 3) if kind == "fix" else -1.0
     return [
         *numpy.median(times, axis=0),
         per_step if kind == "fix" else 1.0 * (kind == "pppm"),

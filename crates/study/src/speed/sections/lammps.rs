@@ -27,6 +27,9 @@ const RANKS_GOAL: f64 = 1.7;
 const CHARGE: f64 = 1e-13;
 /// Tolerance of the field that errors are measured against.
 const REFERENCE_TOLERANCE: f64 = 1e-7;
+/// Tolerances of our fix over the error that is asked for, largest first: it keeps its tolerance in every step,
+/// so that the RMS over steps is lower.
+const LOOSER: [f64; 5] = [2.0, 1.7, 1.4, 1.2, 1.0];
 /// Cut-offs around known ones.
 const AROUND: [f64; 3] = [0.85, 1.0, 1.2];
 /// Numbers of a grain in a state: place, charge, E.
@@ -37,8 +40,11 @@ struct Row {
     program: String,
     grains: usize,
     ranks: usize,
-    /// Asked for; 0 without charges.
+    /// Error that is asked for.
     tolerance: f64,
+    /// Tolerance of our fix, with which it has that error.
+    #[serde(default)]
+    own_tolerance: f64,
     /// Measured in states of the moving bed, relative RMS of E; 0 without charges.
     error: f64,
     /// Error that the program states.
@@ -102,7 +108,7 @@ pub(crate) fn measure(context: &Context) -> Result<()> {
                     let row = bed.run(ranks, steps.div_ceil(10), &words)?;
                     rows.push(Row { program: PPPM.to_owned(), tolerance, ..row });
                 }
-                let ours = bed.run(ranks, steps, &["fix", &plugin, &tolerance.to_string()])?;
+                let ours = bed.ours(ranks, steps, &plugin, tolerance)?;
                 rows.push(Row { program: OURS.to_owned(), tolerance, ..ours });
                 let last = bed.run(ranks, steps, &["none"])?;
                 let mean = |a: f64, b: f64| 0.5 * (a + b);
@@ -158,6 +164,21 @@ impl<'a> Bed<'a> {
         Ok(Some(Pppm { cutoff_m: best[0], order: best[1], force_n, analytic: best[3] }))
     }
 
+    /// Runs the bed with our fix, at the largest tolerance whose error is the one asked for.
+    fn ours(&self, ranks: usize, steps: usize, plugin: &str, error: f64) -> Result<Row> {
+        let mut found = None;
+        for factor in LOOSER {
+            let own_tolerance = factor * error;
+            let row = self.run(ranks, steps, &["fix", plugin, &own_tolerance.to_string()])?;
+            let is_met = row.error <= error;
+            found = Some(Row { own_tolerance, ..row });
+            if is_met {
+                break;
+            }
+        }
+        found.context("no tolerances")
+    }
+
     /// Runs the bed; the best of its skins.
     fn run(&self, ranks: usize, steps: usize, words: &[&str]) -> Result<Row> {
         let out = self.peers.file("charged-states.bin", [])?;
@@ -177,6 +198,7 @@ impl<'a> Bed<'a> {
             grains: self.cloud.position.len(),
             ranks,
             tolerance: 0.0,
+            own_tolerance: 0.0,
             error: self.error(&read_numbers(out.as_ref())?)?,
             stated: (best[5] >= 0.0).then_some(best[5]),
             clock_ms: 1e3 * best[2],
@@ -226,12 +248,13 @@ pub(crate) fn report(store: &Store) -> Result<Option<String>> {
     let Some((date, rows)) = store.newest::<Row>(NAME)? else { return Ok(None) };
     let mut table = Table::new(&[
         "grains",
-        "tolerance",
+        "error asked for",
         "ranks",
         "uncharged [ms/step]",
         "pppm error",
         "pppm [ms/step]",
         "pppm / uncharged",
+        "our tolerance",
         "our error",
         "stated",
         "evaluations per step",
@@ -260,6 +283,7 @@ pub(crate) fn report(store: &Store) -> Result<Option<String>> {
             pppm.map_or_else(|| "–".to_owned(), |row| format!("{:.1e}", row.error)),
             figure(pppm.map(|row| row.processor_ms), 2),
             figure(pppm.map(|row| row.processor_ms / plain.processor_ms), 1),
+            format!("{:.1e}", ours.own_tolerance),
             format!("{:.1e}", ours.error),
             ours.stated.map_or_else(|| "–".to_owned(), |stated| format!("{stated:.1e}")),
             figure(Some(ours.evaluations_per_step), 3),
