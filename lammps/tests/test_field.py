@@ -7,7 +7,20 @@ import subprocess
 
 import numpy as np
 import pytest
-from support import BIN, HERE, SECONDS, command, data_file, error, exact_field, grains, keeps_promise, message, run, start
+from support import (
+    BIN,
+    HERE,
+    SECONDS,
+    command,
+    data_file,
+    error,
+    exact_field,
+    grains,
+    keeps_promise,
+    message,
+    run,
+    start,
+)
 
 BOX = ([0.0, 0.0, 0.0], [0.01, 0.01, 0.01])
 # The field meets its tolerance with room to spare; sums in other orders differ in the last digits of single
