@@ -203,7 +203,7 @@ def error(e, exact):
 
 
 def keeps_promise(true, stated, tolerance):
-    """Whether an error is within the tolerance, and what is stated within a factor 2 of it; 0: an exact sum."""
+    """Whether an error is within the tolerance and stated within a factor 2; exact sums state 0."""
     if stated == 0.0:
         return true < 1e-12
     return true <= tolerance and true / 2 <= stated <= 2 * true
