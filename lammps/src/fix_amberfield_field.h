@@ -100,7 +100,8 @@ class FixAmberfieldField : public Fix {
     bool is_fresh_due_ = true;
     bool is_restarted_ = false;
     double evaluated_count_ = 0.0;
-    // Relative error of the field as it was measured last, and the scale of E over the RMS charge: then and now
+    // Relative error of the field as it was measured last, and the scale of E over the RMS charge: then
+    // and now
     double measured_ = 0.0, measured_at_ = 0.0, strength_ = 0.0;
     bigint last_step_ = -1;
     double last_dt_ = 0.0;

@@ -30,9 +30,9 @@ struct Interval {
 
     bool is_due() const { return age >= steps; }
 
-    // Books an evaluation and chooses the next interval: one of at most `most` steps at the end of which the
-    // forecast errs by `aim`, or of `every` steps unless that is 0. The first intervals are short: a line needs
-    // two evaluations, and its error three.
+    // Books an evaluation and chooses the next interval: one of at most `most` steps at the end of which
+    // the forecast errs by `aim`, or of `every` steps unless that is 0. The first intervals are short: a
+    // line needs two evaluations, and its error three.
     void evaluated(const Check *check, long every, double aim, double most);
 
     // Relative error of E at present that comes from not evaluating in every step, RMS over the atoms

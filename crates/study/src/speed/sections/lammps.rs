@@ -27,8 +27,8 @@ const RANKS_GOAL: f64 = 1.7;
 const CHARGE: f64 = 1e-13;
 /// Tolerance of the field that errors are measured against.
 const REFERENCE_TOLERANCE: f64 = 1e-7;
-/// Tolerances of our fix over the error that is asked for, largest first: it keeps its tolerance in every step,
-/// so that the RMS over steps is lower.
+/// Tolerances of our fix over the error that is asked for, largest first: it keeps its tolerance in every
+/// step, so that the RMS over steps is lower.
 const LOOSER: [f64; 5] = [2.0, 1.7, 1.4, 1.2, 1.0];
 /// Cut-offs around known ones.
 const AROUND: [f64; 3] = [0.85, 1.0, 1.2];
