@@ -1,6 +1,6 @@
 //! Parts of a mesh that no face joins: each has a potential of its own, and must take its own charge.
 
-use super::mesh::{Condition, FarMesh, FarMeshParts, Neighbour};
+use super::{Condition, FarMesh, FarMeshParts, Neighbour};
 use crate::error::FieldError;
 use crate::geometry::inputs::NET_CHARGE_ROUND_OFF;
 use amberfield_core::Permittivity;

@@ -8,10 +8,10 @@
 //! so that the sum keeps the case's own. Clouds are cut at the walls, not normalised anew.
 
 use super::local_fit::LocalFits;
-use super::mesh::{Condition, FarMesh};
-use super::walls::{Ghosts, OfWalls, Outline, Place, Walls};
+use super::{Condition, FarMesh};
 use super::{FarField, FarRadii, FarRequest, FarSolver, check_net_charge};
 use crate::error::FieldError;
+use crate::levels::walls::{Ghosts, OfWalls, Outline, Place, Walls};
 use crate::values::FieldAt;
 use amberfield_core::{Axis, Boundary, Domain, FarQuestion, FieldSettings, Permittivity, SourceCloud};
 use amberfield_laws::kaiser_bessel_cloud::Cloud;

@@ -8,8 +8,8 @@
 //! the face to second order; φ_c bears what it misses, ½ δ² ∂²φ/∂n², against φ_b. How φ_b differs from face
 //! to face counts, therefore, but not its difference from the cells: that is an unknown of the fit.
 
-use super::mesh::{BoundaryFace, Condition, FarMesh, Neighbour};
-use super::polygon;
+use super::{BoundaryFace, Condition, FarMesh, Neighbour};
+use crate::levels::walls::polygon;
 use crate::values::FieldAt;
 use nalgebra::{SMatrix, SVector, Vector3};
 use rayon::prelude::*;

@@ -2,16 +2,17 @@
 
 use super::boundary::{MeshPatch, check_boundary};
 use super::connected::ConnectedParts;
-use super::polygon;
 use super::reentrant::ReentrantEdges;
 use super::tree::CellTree;
 use crate::error::FieldError;
+use crate::levels::walls::{BoundaryFace, Condition, polygon};
 use amberfield_core::Domain;
-use nalgebra::{Matrix3, Vector3};
+use nalgebra::Vector3;
 use std::fmt::Display;
 
 /// Shift of the place of a condition from the foot towards its face's centre, over their distance.
 const APART: f64 = 1e-3;
+
 /// Neighbour of a cell beyond one of its faces.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Neighbour {
@@ -49,51 +50,6 @@ impl CellFace {
             Neighbour::Cell { cell, shift } if shift == Vector3::zeros() => Some(cell),
             _ => None,
         }
-    }
-}
-
-/// Condition that is prescribed on a boundary face.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub enum Condition {
-    /// The potential [V].
-    Potential(f64),
-    /// Outward slope ∂V/∂n of the potential [V/m].
-    Slope(f64),
-}
-
-impl Condition {
-    /// The potential [V] or slope [V/m].
-    #[must_use]
-    pub fn value(self) -> f64 {
-        let (Self::Potential(value) | Self::Slope(value)) = self;
-        value
-    }
-}
-
-/// A face at the end of the mesh.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub struct BoundaryFace {
-    /// Centre [m].
-    pub centre: Vector3<f64>,
-    /// Unit normal out of the mesh.
-    pub normal: Vector3<f64>,
-    /// Area [m²].
-    pub area: f64,
-    /// Mean over its corners x of (x − centre)(x − centre)ᵀ [m²].
-    pub spread: Matrix3<f64>,
-    /// Cell that the face belongs to.
-    pub cell: u32,
-    /// Patch that the face belongs to.
-    pub patch: u32,
-    /// Condition on the whole potential.
-    pub condition: Condition,
-}
-
-impl BoundaryFace {
-    /// Whether its potential is given, and not the slope.
-    #[must_use]
-    pub fn gives_potential(&self) -> bool {
-        matches!(self.condition, Condition::Potential(_))
     }
 }
 
@@ -299,7 +255,7 @@ impl FarMeshParts {
             centre,
             normal: face.normal,
             area,
-            spread: Matrix3::identity(),
+            spread: nalgebra::Matrix3::identity(),
             cell: cell as u32,
             patch: 0,
             condition,

@@ -1,6 +1,6 @@
 //! Places whose clouds are felt in a part of a domain.
 
-use super::copies::shifts;
+use crate::levels::copies::shifts;
 use amberfield_core::{Axis, Boundary, Domain};
 use nalgebra::Vector3;
 

@@ -127,7 +127,7 @@ impl FarMesh {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::levels::far::mesh::{Condition, FarMeshParts};
+    use crate::levels::far::{Condition, FarMeshParts};
     use amberfield_core::{Boundary, Domain};
 
     fn parts(counts: [usize; 3]) -> FarMeshParts {

@@ -1,7 +1,7 @@
 //! Boundary faces by their place.
 
+use super::boundary::BoundaryFace;
 use super::buckets::Buckets;
-use crate::levels::far::mesh::BoundaryFace;
 use nalgebra::Vector3;
 
 /// Faces of one wall in buckets.

@@ -4,7 +4,7 @@ use nalgebra::Vector3;
 
 /// Whether a point of a face's plane lies on the face, which need not be convex, or beside it by no more than
 /// `slack` [m]; corners are in order around the face.
-pub(super) fn holds(
+pub(in crate::levels) fn holds(
     corners: &[Vector3<f64>],
     normal: &Vector3<f64>,
     point: &Vector3<f64>,
@@ -31,7 +31,7 @@ pub(super) fn holds(
 
 /// Share of the way from a point of a face to another of its plane that lies on the face; corners are in
 /// order around it.
-pub(super) fn share_within(
+pub(in crate::levels) fn share_within(
     corners: &[Vector3<f64>],
     normal: &Vector3<f64>,
     from: &Vector3<f64>,

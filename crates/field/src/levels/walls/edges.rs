@@ -4,8 +4,8 @@
 //! 2π at the rim of a sheet without thickness. It is found by turning around the edge from one face through
 //! the mesh to the next, so that both sides of a sheet, whose faces have the same edges, stay apart.
 
-use crate::levels::far::mesh::FarMesh;
-use amberfield_core::Axis;
+use super::boundary::BoundaryFaces;
+use amberfield_core::{Axis, Domain};
 use nalgebra::Vector3;
 use std::collections::HashMap;
 use std::f64::consts::{PI, TAU};
@@ -53,24 +53,24 @@ impl Leaf {
     }
 }
 
-/// All edges at which two faces of a mesh's boundary meet.
-pub(super) fn edges(mesh: &FarMesh) -> Vec<Edge> {
-    let mut corners = Corners::new(mesh);
+/// All edges at which two faces of a boundary meet.
+pub(super) fn edges(boundary: &dyn BoundaryFaces) -> Vec<Edge> {
+    let mut corners = Corners::new(boundary.domain(), SAME_CORNER * boundary.smallest_cell());
     let mut leaves: HashMap<[u32; 2], Vec<Leaf>> = HashMap::new();
     let mut order = Vec::new();
-    for (face, boundary) in mesh.boundary().iter().enumerate() {
-        let around = mesh.corners_of(face);
+    for (number, face) in boundary.faces().iter().enumerate() {
+        let around = boundary.corners_of(number);
         let numbers: Vec<u32> = around.iter().map(|corner| corners.number(corner)).collect();
         for from in 0..around.len() {
             let to = (from + 1) % around.len();
             let (low, high) = if numbers[from] < numbers[to] { (from, to) } else { (to, from) };
             let ends = [around[low], around[high]];
             let Some(along) = (ends[1] - ends[0]).try_normalize(0.0) else { continue };
-            let inwards = boundary.centre - ends[0];
+            let inwards = face.centre - ends[0];
             let Some(into) = (inwards - along * along.dot(&inwards)).try_normalize(0.0) else { continue };
-            let turn = -into.cross(&boundary.normal).dot(&along).signum();
+            let turn = -into.cross(&face.normal).dot(&along).signum();
             let key = [numbers[low], numbers[high]];
-            let leaf = Leaf { face: face as u32, ends, along, into, turn };
+            let leaf = Leaf { face: number as u32, ends, along, into, turn };
             leaves.entry(key).or_insert_with(|| {
                 order.push(key);
                 Vec::new()
@@ -102,21 +102,19 @@ impl Edge {
 
 /// Numbers of the boundary's corners; corners at one place, or one period apart, have one number.
 struct Corners<'a> {
-    mesh: &'a FarMesh,
+    domain: &'a Domain,
     tolerance: f64,
     numbers: HashMap<[i64; 3], Vec<u32>>,
     places: Vec<Vector3<f64>>,
 }
 
 impl<'a> Corners<'a> {
-    fn new(mesh: &'a FarMesh) -> Self {
-        let smallest = mesh.volumes().iter().fold(f64::INFINITY, |least, volume| least.min(volume.cbrt()));
-        let tolerance = SAME_CORNER * smallest;
-        Self { mesh, tolerance, numbers: HashMap::new(), places: Vec::new() }
+    fn new(domain: &'a Domain, tolerance: f64) -> Self {
+        Self { domain, tolerance, numbers: HashMap::new(), places: Vec::new() }
     }
 
     fn number(&mut self, corner: &Vector3<f64>) -> u32 {
-        let domain = self.mesh.domain();
+        let domain = self.domain;
         let mut place = domain.wrap(*corner);
         for axis in Axis::ALL.into_iter().filter(|axis| domain.is_periodic(*axis)).map(Axis::index) {
             // A corner on the upper face of a period is one on the lower.

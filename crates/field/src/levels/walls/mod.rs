@@ -12,6 +12,7 @@
 //! the wall hides from them ([`ghosts`]). Near a crease, at which walls meet at an angle that is no right
 //! one, a ghost has what the two faces do ([`creases`]).
 
+mod boundary;
 mod buckets;
 mod creases;
 mod curved;
@@ -21,14 +22,16 @@ mod ghosts;
 mod images;
 mod mirror;
 mod patch;
+pub(super) mod polygon;
 mod screen;
 mod share;
 mod solid;
 
+pub(super) use boundary::BoundaryFaces;
+pub use boundary::{BoundaryFace, Condition};
 pub(super) use ghosts::Ghosts;
 pub(super) use screen::Place;
 
-use super::mesh::{Condition, FarMesh};
 use creases::Creases;
 use curved::CurvedWall;
 use edges::{Edge, edges};
@@ -50,7 +53,7 @@ const SEEN_FROM: f64 = 0.1;
 /// Largest factor of the depth up to which walls mirror charges.
 pub(super) const DEEPEST: f64 = 1.4;
 
-/// Edges and surroundings of a mesh's boundary faces: what walls know of the mesh whatever their depth.
+/// Edges and surroundings of a boundary's faces: what walls know of the boundary whatever their depth.
 #[derive(Debug)]
 pub(super) struct Outline {
     edges: Vec<Edge>,
@@ -58,8 +61,8 @@ pub(super) struct Outline {
 }
 
 impl Outline {
-    pub(super) fn new(mesh: &FarMesh) -> Self {
-        Self { edges: edges(mesh), around: surroundings(mesh) }
+    pub(super) fn new(boundary: &dyn BoundaryFaces) -> Self {
+        Self { edges: edges(boundary), around: surroundings(boundary) }
     }
 }
 
@@ -74,10 +77,10 @@ pub(super) struct OfWalls {
     pub(super) ghosts: Vec<Ghost>,
 }
 
-/// The boundary of a mesh, as walls are made of it.
+/// A boundary, as walls are made of it.
 #[derive(Clone, Copy)]
 struct Surface<'a> {
-    mesh: &'a FarMesh,
+    boundary: &'a dyn BoundaryFaces,
     edges: &'a [Edge],
     around: &'a [Surroundings],
     /// Factor of the ghosts' radii.
@@ -94,7 +97,7 @@ impl Surface<'_> {
     }
 
     fn sign(&self, face: u32) -> f64 {
-        match self.mesh.boundary()[face as usize].condition {
+        match self.boundary.faces()[face as usize].condition {
             Condition::Potential(_) => -1.0,
             Condition::Slope(_) => 1.0,
         }
@@ -114,7 +117,7 @@ struct Wall {
     sign: f64,
 }
 
-/// The walls of a mesh.
+/// The walls of a boundary.
 #[derive(Debug)]
 pub(super) struct Walls {
     /// Curved ones first.
@@ -131,49 +134,53 @@ pub(super) struct Walls {
 }
 
 impl Walls {
-    /// Walls of a mesh, with the radii of ghosts scaled, and the distance up to which edges matter.
-    pub(super) fn new(mesh: &FarMesh, outline: &Outline, ghost_scale: f64, edge_scale: f64) -> Self {
-        let boundary = mesh.boundary();
+    /// Walls of a boundary, with the radii of ghosts scaled, and the distance up to which edges matter.
+    pub(super) fn new(
+        boundary: &dyn BoundaryFaces,
+        outline: &Outline,
+        ghost_scale: f64,
+        edge_scale: f64,
+    ) -> Self {
+        let faces = boundary.faces();
         let Outline { edges, around } = outline;
         let largest = around.iter().map(|face| face.cell).fold(0.0, f64::max);
         let reach = edge_scale.min(1.0) * mirror::LOOK_FOR_EDGES_OF_CELL * largest;
-        let surface = Surface { mesh, edges, around, ghost_scale, edge_scale, reach };
-        let mut at: Vec<_> = (0..boundary.len()).map(|face| mesh.place_of_condition(face)).collect();
-        let beside = neighbours(mesh, edges);
+        let surface = Surface { boundary, edges, around, ghost_scale, edge_scale, reach };
+        let mut at: Vec<_> = (0..faces.len()).map(|face| boundary.place_of_condition(face)).collect();
+        let beside = neighbours(boundary.faces(), edges);
         let mut walls = Vec::new();
-        for faces in connected(&beside) {
-            let shape = match FlatWall::new(&surface, &faces) {
+        for members in connected(&beside) {
+            let shape = match FlatWall::new(&surface, &members) {
                 Some(wall) => Shape::Flat(wall),
                 None => {
-                    let number = |face: &u32| faces.binary_search(face).expect("connected") as u32;
-                    let within: Vec<Vec<u32>> = faces
+                    let number = |face: &u32| members.binary_search(face).expect("connected") as u32;
+                    let within: Vec<Vec<u32>> = members
                         .iter()
                         .map(|&face| beside[face as usize].iter().map(number).collect())
                         .collect();
-                    let wall = CurvedWall::new(&surface, &faces, &within);
-                    for (index, &face) in faces.iter().enumerate() {
+                    let wall = CurvedWall::new(&surface, &members, &within);
+                    for (index, &face) in members.iter().enumerate() {
                         at[face as usize] = wall.place(index, &at[face as usize]);
                     }
                     Shape::Curved(wall)
                 }
             };
-            walls.push((Wall { shape, sign: surface.sign(faces[0]) }, faces));
+            walls.push((Wall { shape, sign: surface.sign(members[0]) }, members));
         }
         walls.sort_by_key(|(wall, _)| matches!(wall.shape, Shape::Flat(_)));
-        let mut wall_of = vec![0; boundary.len()];
-        for ((_, faces), number) in walls.iter().zip(0..) {
-            faces.iter().for_each(|&face| wall_of[face as usize] = number);
+        let mut wall_of = vec![0; faces.len()];
+        for ((_, members), number) in walls.iter().zip(0..) {
+            members.iter().for_each(|&face| wall_of[face as usize] = number);
         }
         let place = |(at, face): (&Vector3<f64>, usize)| {
-            let into = SEEN_FROM * mesh.volumes()[boundary[face].cell as usize].cbrt();
-            Place { at: *at, seen_from: at - boundary[face].normal * into }
+            let into = SEEN_FROM * boundary.cell_at(face);
+            Place { at: *at, seen_from: at - faces[face].normal * into }
         };
-        let faces = 0..boundary.len() as u32;
-        let ground: Vec<Ground> = faces.map(|face| surface.ground(face)).collect();
+        let ground: Vec<Ground> = (0..faces.len() as u32).map(|face| surface.ground(face)).collect();
         Self {
             walls: walls.into_iter().map(|(wall, _)| wall).collect(),
             places: at.iter().zip(0..).map(place).collect(),
-            creases: Creases::new(mesh, edges, reach),
+            creases: Creases::new(boundary, edges, reach),
             deepest: ground.iter().map(|ground| ground.depth).fold(0.0, f64::max),
             ground,
             wall_of,
@@ -239,8 +246,7 @@ impl Walls {
 
 /// Each boundary face's neighbours that go on smoothly, with a condition of the same kind: those across an
 /// edge, and those across one of theirs that are as near.
-fn neighbours(mesh: &FarMesh, edges: &[Edge]) -> Vec<Vec<u32>> {
-    let boundary = mesh.boundary();
+fn neighbours(boundary: &[BoundaryFace], edges: &[Edge]) -> Vec<Vec<u32>> {
     let kind = |face: u32| boundary[face as usize].gives_potential();
     let mut across = vec![Vec::new(); boundary.len()];
     for edge in edges.iter().filter(|edge| edge.bend().abs() < creases::LEAST_BEND) {

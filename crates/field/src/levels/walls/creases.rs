@@ -3,11 +3,11 @@
 //! Around a crease the field is that between two half planes (`amberfield_laws::wedge`): around the rim of a
 //! sheet, the edge of a plate or a body, and in a corner whose angle is not a right one.
 
+use super::boundary::{BoundaryFaces, Condition};
 use super::buckets::Buckets;
 use super::edges::Edge;
 use super::patch::{Patch, half_diagonal};
 use super::screen::{EdgeScreen, RIGHT};
-use crate::levels::far::mesh::{Condition, FarMesh};
 use amberfield_core::Domain;
 use amberfield_laws::wedge::{Face, Wedge};
 use nalgebra::Vector3;
@@ -83,30 +83,30 @@ pub(super) struct Tip {
 
 impl Creases {
     /// The creases among edges; a search finds those up to `reach` [m] away.
-    pub(super) fn new(mesh: &FarMesh, edges: &[Edge], reach: f64) -> Self {
+    pub(super) fn new(boundary: &dyn BoundaryFaces, edges: &[Edge], reach: f64) -> Self {
         let is_crease = |edge: &&Edge| {
             let is_right = (edge.angle - RIGHT).abs() < NEARLY_RIGHT;
             edge.bend().abs() > LEAST_BEND && !is_right
         };
-        let mut creases = Self::of(mesh, edges.iter().filter(is_crease), reach);
-        let all: Vec<u32> = (0..mesh.boundary().len() as u32).collect();
-        let patch = Patch::new(mesh.boundary(), &all, reach);
+        let mut creases = Self::of(boundary, edges.iter().filter(is_crease), reach);
+        let all: Vec<u32> = (0..boundary.faces().len() as u32).collect();
+        let patch = Patch::new(boundary.faces(), &all, reach);
         creases
             .pieces
             .par_iter_mut()
-            .for_each(|piece| piece.straight = piece.straight_up_to(mesh, &patch, reach));
+            .for_each(|piece| piece.straight = piece.straight_up_to(boundary, &patch, reach));
         creases
     }
 
     /// The free rims of a wall of some faces: creases around which the mesh goes.
-    pub(super) fn rims_of(mesh: &FarMesh, edges: &[Edge], faces: &[u32], reach: f64) -> Self {
+    pub(super) fn rims_of(boundary: &dyn BoundaryFaces, edges: &[Edge], faces: &[u32], reach: f64) -> Self {
         let belongs = |edge: &&Edge| edge.faces.iter().any(|face| faces.binary_search(face).is_ok());
-        Self::of(mesh, edges.iter().filter(|edge| edge.bend() > LEAST_BEND).filter(belongs), reach)
+        Self::of(boundary, edges.iter().filter(|edge| edge.bend() > LEAST_BEND).filter(belongs), reach)
     }
 
-    fn of<'a>(mesh: &FarMesh, edges: impl Iterator<Item = &'a Edge>, reach: f64) -> Self {
-        let boundary = mesh.boundary();
-        let kind = |face: u32| match boundary[face as usize].condition {
+    fn of<'a>(boundary: &dyn BoundaryFaces, edges: impl Iterator<Item = &'a Edge>, reach: f64) -> Self {
+        let faces = boundary.faces();
+        let kind = |face: u32| match faces[face as usize].condition {
             Condition::Potential(_) => Face::Conductor,
             Condition::Slope(_) => Face::Insulator,
         };
@@ -114,7 +114,7 @@ impl Creases {
             .map(|edge| Piece {
                 ends: edge.ends,
                 into: edge.into,
-                normals: edge.faces.map(|face| boundary[face as usize].normal),
+                normals: edge.faces.map(|face| faces[face as usize].normal),
                 faces: edge.faces,
                 wedge: Wedge::new(edge.angle, edge.faces.map(kind)),
                 straight: reach,
@@ -123,7 +123,7 @@ impl Creases {
         let longest = pieces.iter().map(|piece| (piece.ends[1] - piece.ends[0]).norm()).fold(0.0, f64::max);
         let middles: Vec<_> = pieces.iter().map(|piece| 0.5 * (piece.ends[0] + piece.ends[1])).collect();
         let buckets = Buckets::new(middles.iter(), reach + 0.5 * longest);
-        Self { pieces, buckets, reach, domain: mesh.domain().clone() }
+        Self { pieces, buckets, reach, domain: boundary.domain().clone() }
     }
 
     pub(super) fn is_empty(&self) -> bool {
@@ -159,12 +159,12 @@ impl Creases {
 impl Piece {
     /// Distance up to which the walls around the piece are the two half planes of its faces [m]: what looks
     /// another way from the back of a plate, and what stands across the crease, apart.
-    fn straight_up_to(&self, mesh: &FarMesh, patch: &Patch, reach: f64) -> f64 {
+    fn straight_up_to(&self, boundary: &dyn BoundaryFaces, patch: &Patch, reach: f64) -> f64 {
         let middle = 0.5 * (self.ends[0] + self.ends[1]);
         let along = (self.ends[1] - self.ends[0]).normalize();
-        let domain = mesh.domain();
+        let domain = boundary.domain();
         let bends_at = |face: usize| {
-            let face = &mesh.boundary()[face];
+            let face = &boundary.faces()[face];
             let apart = domain.shortest(face.centre - middle);
             let distance = apart.norm();
             let looks = self.normals.map(|normal| normal.dot(&face.normal));

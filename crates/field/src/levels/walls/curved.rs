@@ -5,12 +5,12 @@
 //! corners' distances from the centre, brings the corners onto it. Facets lie inside a concave wall by s:
 //! images in one surface and boundary data on the other would be wrong by more than all the rest.
 
+use super::boundary::BoundaryFace;
 use super::creases::Creases;
 use super::mirror::{Ground, Mirror, Side};
 use super::patch::{Patch, half_diagonal};
 use super::screen::Screen;
 use super::{DEEPEST, Surface};
-use crate::levels::far::mesh::BoundaryFace;
 use nalgebra::{Matrix2, SMatrix, SVector, Vector2, Vector3};
 
 /// Steps of Newton's method to the nearest point of a surface.
@@ -63,7 +63,7 @@ pub(super) struct CurvedWall {
 impl CurvedWall {
     /// A wall of faces; `around` has each face's neighbours in it, by their number among `faces`.
     pub(super) fn new(surface: &Surface<'_>, faces: &[u32], around: &[Vec<u32>]) -> Self {
-        let all = surface.mesh.boundary();
+        let all = surface.boundary.faces();
         let member = |index: u32| &all[faces[index as usize] as usize];
         let facets = (0..faces.len() as u32).map(|index| {
             let near = &around[index as usize];
@@ -91,7 +91,7 @@ impl CurvedWall {
             patch: Patch::new(all, faces, DEEPEST * deepest),
             conductor: member(0).gives_potential(),
             ground,
-            rims: Creases::rims_of(surface.mesh, surface.edges, faces, surface.reach),
+            rims: Creases::rims_of(surface.boundary, surface.edges, faces, surface.reach),
         }
     }
 

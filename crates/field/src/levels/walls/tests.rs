@@ -1,5 +1,5 @@
-use super::super::mesh::{Condition, FarMeshParts};
 use super::*;
+use crate::levels::far::{Condition, FarMesh, FarMeshParts};
 use amberfield_core::{Boundary, Domain};
 
 #[test]

@@ -15,7 +15,7 @@ use super::buckets::Buckets;
 use super::mirror::Extent;
 use super::screen::{EdgeKey, EdgeScreen, Place, Screen, ScreenKey};
 use super::share::{Share, Shares};
-use crate::levels::far::copies::shifts;
+use crate::levels::copies::shifts;
 use crate::values::FieldAt;
 use amberfield_core::{Axis, Domain};
 use amberfield_laws::wedge::Around;

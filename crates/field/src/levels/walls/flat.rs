@@ -1,12 +1,12 @@
 //! A flat wall.
 
+use super::boundary::BoundaryFace;
 use super::creases::Creases;
 use super::mirror::{Ground, Mirror, Side};
 use super::patch::Patch;
+use super::polygon;
 use super::screen::Screen;
 use super::{FLAT, Surface};
-use crate::levels::far::mesh::BoundaryFace;
-use crate::levels::far::polygon;
 use nalgebra::Vector3;
 
 /// Share of a wall's rectangle that its faces fill, if they fill it.
@@ -33,7 +33,7 @@ pub(super) struct FlatWall {
 impl FlatWall {
     /// A wall of faces, if they are flat.
     pub(super) fn new(surface: &Surface<'_>, faces: &[u32]) -> Option<Self> {
-        let all = surface.mesh.boundary();
+        let all = surface.boundary.faces();
         let first = &all[faces[0] as usize];
         let (normal, offset, size) = (first.normal, first.normal.dot(&first.centre), first.area.sqrt());
         let members = || faces.iter().map(|&face| &all[face as usize]);
@@ -43,7 +43,7 @@ impl FlatWall {
         if !members().all(in_plane) {
             return None;
         }
-        let polygon = |&face: &u32| surface.mesh.corners_of(face as usize).to_vec();
+        let polygon = |&face: &u32| surface.boundary.corners_of(face as usize).to_vec();
         let polygons: Vec<Vec<Vector3<f64>>> = faces.iter().map(polygon).collect();
         let (mut low, mut high) = (first.centre, first.centre);
         for corner in polygons.iter().flatten() {
@@ -56,7 +56,7 @@ impl FlatWall {
         let filled = (normal[across].abs() - 1.0).abs() < FLAT && area > FILLED * rectangle;
         let ground: Vec<Ground> = faces.iter().map(|&face| surface.ground(face)).collect();
         let deepest = ground.iter().map(|ground| ground.depth).fold(0.0, f64::max);
-        let rims = Creases::rims_of(surface.mesh, surface.edges, faces, surface.reach);
+        let rims = Creases::rims_of(surface.boundary, surface.edges, faces, surface.reach);
         let is_even = filled && rims.is_empty() && ground.iter().all(|other| other.is_like(&ground[0]));
         // Feet lie on the plane to rounding only.
         let slack = Vector3::repeat(FLAT * size);

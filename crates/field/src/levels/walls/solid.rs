@@ -1,8 +1,8 @@
 //! Surroundings of each boundary face: the size of the cells there, and how thick the solid behind it is.
 
+use super::boundary::BoundaryFaces;
 use super::patch::Patch;
-use crate::levels::far::mesh::{BoundaryFace, FarMesh, Neighbour};
-use crate::levels::far::polygon;
+use super::polygon;
 use nalgebra::Vector3;
 use rayon::prelude::*;
 
@@ -16,7 +16,7 @@ const SLACK: f64 = 1e-3;
 pub(super) struct Surroundings {
     /// Size of the largest cell at the face and beside it, the cube root of the volume [m].
     pub(super) cell: f64,
-    /// Thickness of the solid behind the face, up to the next place of the mesh [m]; infinite where none is
+    /// Thickness of the solid behind the face, up to the next place of grains [m]; infinite where none is
     /// near.
     pub(super) solid: f64,
     /// Distance to the wall in front of the face [m]; infinite where none is near.
@@ -24,32 +24,26 @@ pub(super) struct Surroundings {
 }
 
 /// Surroundings of all boundary faces.
-pub(super) fn surroundings(mesh: &FarMesh) -> Vec<Surroundings> {
-    let all: Vec<u32> = (0..mesh.boundary().len() as u32).collect();
-    let patch = Patch::new(mesh.boundary(), &all, 0.0);
+pub(super) fn surroundings(boundary: &dyn BoundaryFaces) -> Vec<Surroundings> {
+    let faces = boundary.faces();
+    let all: Vec<u32> = (0..faces.len() as u32).collect();
+    let patch = Patch::new(faces, &all, 0.0);
     let of_face = |face: usize| {
-        let cell = cell_size(mesh, mesh.boundary()[face].cell as usize);
-        let BoundaryFace { normal, centre, cell: inside, .. } = mesh.boundary()[face];
-        let look = Look { mesh, patch: &patch, face, farthest: LOOK * cell };
-        // The face's own cell is in front of it; the back of a sheet without thickness is not.
-        let depth = normal.dot(&(centre - mesh.centres()[inside as usize]));
-        Surroundings { cell, solid: look.along(&normal, f64::NEG_INFINITY), gap: look.along(&-normal, depth) }
+        let cell = boundary.cell_around(face);
+        let normal = faces[face].normal;
+        let look = Look { boundary, patch: &patch, face, farthest: LOOK * cell };
+        Surroundings {
+            cell,
+            solid: look.along(&normal, boundary.least_solid(face)),
+            gap: look.along(&-normal, boundary.least_gap(face)),
+        }
     };
-    (0..mesh.boundary().len()).into_par_iter().map(of_face).collect()
-}
-
-/// Largest size of a cell and of those beside it [m].
-fn cell_size(mesh: &FarMesh, cell: usize) -> f64 {
-    let beside = mesh.faces_of(cell).iter().filter_map(|face| match face.neighbour {
-        Neighbour::Cell { cell, .. } => Some(cell as usize),
-        Neighbour::Boundary(_) => None,
-    });
-    beside.chain([cell]).map(|cell| mesh.volumes()[cell].cbrt()).fold(0.0, f64::max)
+    (0..faces.len()).into_par_iter().map(of_face).collect()
 }
 
 /// Line of sight from the centre of a boundary face.
 struct Look<'a> {
-    mesh: &'a FarMesh,
+    boundary: &'a dyn BoundaryFaces,
     patch: &'a Patch,
     face: usize,
     farthest: f64,
@@ -59,15 +53,15 @@ impl Look<'_> {
     /// Distance to the first boundary face that is seen from the side on which the line travels, beyond a
     /// least distance [m].
     fn along(&self, direction: &Vector3<f64>, least: f64) -> f64 {
-        let from = self.mesh.boundary()[self.face].centre;
+        let from = self.boundary.faces()[self.face].centre;
         let step = self.patch.reach();
         let mut nearest = f64::INFINITY;
         let mut reached = 0.0;
         // Outwards a line meets faces from behind, inwards from the front: both against their own sense.
-        let outwards = direction.dot(&self.mesh.boundary()[self.face].normal);
+        let outwards = direction.dot(&self.boundary.faces()[self.face].normal);
         while reached < self.farthest && nearest > reached {
             let place = from + direction * reached;
-            let wrapped = self.mesh.domain().wrap(place);
+            let wrapped = self.boundary.domain().wrap(place);
             for other in self.patch.near(&wrapped).filter(|other| *other != self.face) {
                 let distance = self.distance(other, &(from + wrapped - place), direction, outwards);
                 if distance > least {
@@ -81,7 +75,7 @@ impl Look<'_> {
 
     /// Distance to one face along the line; infinite where the line misses it.
     fn distance(&self, other: usize, from: &Vector3<f64>, direction: &Vector3<f64>, outwards: f64) -> f64 {
-        let face = &self.mesh.boundary()[other];
+        let face = &self.boundary.faces()[other];
         let towards = face.normal.dot(direction);
         let size = face.area.sqrt();
         let distance = face.normal.dot(&(face.centre - from)) / towards;
@@ -89,7 +83,7 @@ impl Look<'_> {
             return f64::INFINITY;
         }
         let at = from + direction * distance;
-        let is_hit = polygon::holds(self.mesh.corners_of(other), &face.normal, &at, SLACK * size);
+        let is_hit = polygon::holds(self.boundary.corners_of(other), &face.normal, &at, SLACK * size);
         if is_hit { distance.max(0.0) } else { f64::INFINITY }
     }
 }
