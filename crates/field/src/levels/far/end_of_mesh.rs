@@ -1,11 +1,15 @@
 //! The mesh's end, as walls are made of it.
 
 use super::{BoundaryFace, FarMesh, Neighbour};
-use crate::levels::walls::BoundaryFaces;
+use crate::levels::walls::{BoundaryFaces, Carrier};
 use amberfield_core::Domain;
 use nalgebra::Vector3;
 
 impl BoundaryFaces for FarMesh {
+    fn carrier(&self) -> Carrier {
+        Carrier::Cells
+    }
+
     fn faces(&self) -> &[BoundaryFace] {
         self.boundary()
     }

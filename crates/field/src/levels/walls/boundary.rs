@@ -1,4 +1,4 @@
-//! Boundary that walls are made of: its faces, whatever carries the field before them.
+//! Boundary that walls are made of: its faces, and what carries the field before them.
 
 use amberfield_core::Domain;
 use nalgebra::{Matrix3, Vector3};
@@ -40,6 +40,26 @@ pub struct BoundaryFace {
     pub condition: Condition,
 }
 
+impl Carrier {
+    /// Difference of the normals and planes of faces below which they are flat, over one and over the face's
+    /// size: corners of facets are in single precision often.
+    pub(super) fn flatness(self) -> f64 {
+        match self {
+            Self::Cells => 1e-6,
+            Self::Facets => 1e-4,
+        }
+    }
+
+    /// Cosine of the angle of walls up to which they mirror each other's images once. Where two walls are not
+    /// at a right angle, the image's place depends on which comes first.
+    pub(super) fn across(self) -> f64 {
+        match self {
+            Self::Cells => 0.7,
+            Self::Facets => 0.3,
+        }
+    }
+}
+
 impl BoundaryFace {
     /// Whether its potential is given, and not the slope.
     #[must_use]
@@ -48,8 +68,21 @@ impl BoundaryFace {
     }
 }
 
+/// Carrier of the field that images leave; it decides which images there can be.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub(in crate::levels) enum Carrier {
+    /// Cells before the walls: ghosts take the place of images that would lie in other cells.
+    #[default]
+    Cells,
+    /// Charge on the walls' own facets: there are plain images only, fewer beside rims and in narrow gaps.
+    Facets,
+}
+
 /// Faces at which the space of the grains ends.
 pub(in crate::levels) trait BoundaryFaces: Sync {
+    /// Carrier of the field that images leave.
+    fn carrier(&self) -> Carrier;
+
     /// The faces.
     fn faces(&self) -> &[BoundaryFace];
 

@@ -5,12 +5,13 @@
 //! corners' distances from the centre, brings the corners onto it. Facets lie inside a concave wall by s:
 //! images in one surface and boundary data on the other would be wrong by more than all the rest.
 
+use super::DEEPEST;
 use super::boundary::BoundaryFace;
 use super::creases::Creases;
 use super::mirror::{Ground, Mirror, Side};
 use super::patch::{Patch, half_diagonal};
 use super::screen::Screen;
-use super::{DEEPEST, Surface};
+use super::smooth::Surface;
 use nalgebra::{Matrix2, SMatrix, SVector, Vector2, Vector3};
 
 /// Steps of Newton's method to the nearest point of a surface.
@@ -41,6 +42,8 @@ pub(crate) struct Quadric {
 /// A face of a curved wall.
 #[derive(Clone, Debug)]
 struct Facet {
+    /// Number in the boundary.
+    face: u32,
     surface: Quadric,
     half: f64,
     /// Faces around it, by their number in the patch.
@@ -69,7 +72,8 @@ impl CurvedWall {
             let near = &around[index as usize];
             let others = near.iter().map(|&other| member(other));
             let surface = Quadric::through(member(index), others);
-            Facet { surface, half: half_diagonal(member(index)), around: near.clone() }
+            let face = faces[index as usize];
+            Facet { face, surface, half: half_diagonal(member(index)), around: near.clone() }
         });
         let ground = |&face: &u32| {
             let ground = surface.ground(face);
@@ -98,6 +102,11 @@ impl CurvedWall {
     /// The point of the surface over a point of a face.
     pub(super) fn place(&self, face: usize, point: &Vector3<f64>) -> Vector3<f64> {
         self.facets[face].surface.foot(point).at
+    }
+
+    /// Height of the surface over a face's centre, along the face's normal [m].
+    pub(super) fn height(&self, face: usize) -> f64 {
+        self.facets[face].surface.height
     }
 
     /// Mirrors a charge at a point, with depths scaled.
@@ -129,6 +138,7 @@ impl CurvedWall {
         let image_depth = distance / (1.0 - curvature * distance);
         let side = Side::of(ground, &self.rims, &foot.at, &foot.normal, image_depth)?;
         Some(Mirror {
+            face: Some(facet.face),
             normal: foot.normal,
             offset: foot.normal.dot(&foot.at),
             distance,

@@ -55,7 +55,7 @@ impl Leaf {
 
 /// All edges at which two faces of a boundary meet.
 pub(super) fn edges(boundary: &dyn BoundaryFaces) -> Vec<Edge> {
-    let mut corners = Corners::new(boundary.domain(), SAME_CORNER * boundary.smallest_cell());
+    let mut corners = Corners::new(boundary);
     let mut leaves: HashMap<[u32; 2], Vec<Leaf>> = HashMap::new();
     let mut order = Vec::new();
     for (number, face) in boundary.faces().iter().enumerate() {
@@ -101,7 +101,7 @@ impl Edge {
 }
 
 /// Numbers of the boundary's corners; corners at one place, or one period apart, have one number.
-struct Corners<'a> {
+pub(super) struct Corners<'a> {
     domain: &'a Domain,
     tolerance: f64,
     numbers: HashMap<[i64; 3], Vec<u32>>,
@@ -109,11 +109,13 @@ struct Corners<'a> {
 }
 
 impl<'a> Corners<'a> {
-    fn new(domain: &'a Domain, tolerance: f64) -> Self {
+    pub(super) fn new(boundary: &'a dyn BoundaryFaces) -> Self {
+        let (domain, tolerance) = (boundary.domain(), SAME_CORNER * boundary.smallest_cell());
         Self { domain, tolerance, numbers: HashMap::new(), places: Vec::new() }
     }
 
-    fn number(&mut self, corner: &Vector3<f64>) -> u32 {
+    /// Number of a corner [m].
+    pub(super) fn number(&mut self, corner: &Vector3<f64>) -> u32 {
         let domain = self.domain;
         let mut place = domain.wrap(*corner);
         for axis in Axis::ALL.into_iter().filter(|axis| domain.is_periodic(*axis)).map(Axis::index) {

@@ -1,12 +1,12 @@
 //! A flat wall.
 
-use super::boundary::BoundaryFace;
+use super::boundary::{BoundaryFace, Carrier};
 use super::creases::Creases;
 use super::mirror::{Ground, Mirror, Side};
 use super::patch::Patch;
 use super::polygon;
 use super::screen::Screen;
-use super::{FLAT, Surface};
+use super::smooth::Surface;
 use nalgebra::Vector3;
 
 /// Share of a wall's rectangle that its faces fill, if they fill it.
@@ -23,10 +23,13 @@ pub(super) struct FlatWall {
     /// Ground below all of it, where that is one and the faces fill the extent.
     even: Option<Ground>,
     patch: Patch,
+    /// The faces of the boundary.
+    faces: Vec<u32>,
     /// Corners of each face; empty where the ground is even.
     polygons: Vec<Vec<Vector3<f64>>>,
     ground: Vec<Ground>,
     deepest: f64,
+    flatness: f64,
     rims: Creases,
 }
 
@@ -34,11 +37,14 @@ impl FlatWall {
     /// A wall of faces, if they are flat.
     pub(super) fn new(surface: &Surface<'_>, faces: &[u32]) -> Option<Self> {
         let all = surface.boundary.faces();
+        let carrier = surface.boundary.carrier();
+        let flatness = carrier.flatness();
         let first = &all[faces[0] as usize];
         let (normal, offset, size) = (first.normal, first.normal.dot(&first.centre), first.area.sqrt());
         let members = || faces.iter().map(|&face| &all[face as usize]);
         let in_plane = |face: &BoundaryFace| {
-            (face.normal - normal).norm() < FLAT && (normal.dot(&face.centre) - offset).abs() < FLAT * size
+            (face.normal - normal).norm() < flatness
+                && (normal.dot(&face.centre) - offset).abs() < flatness * size
         };
         if !members().all(in_plane) {
             return None;
@@ -53,13 +59,17 @@ impl FlatWall {
         let across = normal.iamax();
         let rectangle: f64 = (0..3).filter(|axis| *axis != across).map(|axis| extent[axis]).product();
         let area: f64 = members().map(|face| face.area).sum();
-        let filled = (normal[across].abs() - 1.0).abs() < FLAT && area > FILLED * rectangle;
+        let filled = (normal[across].abs() - 1.0).abs() < flatness && area > FILLED * rectangle;
         let ground: Vec<Ground> = faces.iter().map(|&face| surface.ground(face)).collect();
         let deepest = ground.iter().map(|ground| ground.depth).fold(0.0, f64::max);
         let rims = Creases::rims_of(surface.boundary, surface.edges, faces, surface.reach);
-        let is_even = filled && rims.is_empty() && ground.iter().all(|other| other.is_like(&ground[0]));
+        // Facets are each asked for.
+        let is_even = carrier == Carrier::Cells
+            && filled
+            && rims.is_empty()
+            && ground.iter().all(|other| other.is_like(&ground[0]));
         // Feet lie on the plane to rounding only.
-        let slack = Vector3::repeat(FLAT * size);
+        let slack = Vector3::repeat(flatness * size);
         Some(Self {
             normal,
             offset,
@@ -67,6 +77,8 @@ impl FlatWall {
             high: high + slack,
             even: is_even.then_some(ground[0]),
             patch: Patch::new(all, faces, 0.0),
+            faces: faces.to_vec(),
+            flatness,
             polygons: if is_even { Vec::new() } else { polygons },
             ground,
             deepest,
@@ -84,9 +96,12 @@ impl FlatWall {
         if (0..3).any(|axis| foot[axis] < self.low[axis] || foot[axis] > self.high[axis]) {
             return None;
         }
-        let ground = match &self.even {
-            Some(ground) => ground,
-            None => &self.ground[self.face_under(&foot)?],
+        let (ground, face) = match self.even {
+            Some(ground) => (ground, None),
+            None => {
+                let face = self.face_under(&foot)?;
+                (self.ground[face], Some(self.faces[face]))
+            }
         };
         let ground = ground.deeper(depth_scale);
         if distance >= ground.depth {
@@ -95,6 +110,7 @@ impl FlatWall {
         let side = Side::of(&ground, &self.rims, &foot, &self.normal, distance)?;
         let plane = || Screen::Plane { normal: self.normal, offset: self.offset };
         Some(Mirror {
+            face,
             normal: self.normal,
             offset: self.offset,
             distance,
@@ -107,7 +123,7 @@ impl FlatWall {
 
     /// The face on which a point of the wall's plane lies.
     fn face_under(&self, foot: &Vector3<f64>) -> Option<usize> {
-        let slack = FLAT * (self.high - self.low).max();
+        let slack = self.flatness * (self.high - self.low).max();
         let mut near = self.patch.near(foot);
         near.find(|&face| polygon::holds(&self.polygons[face], &self.normal, foot, slack))
     }

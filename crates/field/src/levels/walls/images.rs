@@ -4,6 +4,7 @@
 //! third image, two that face each other a row of images. Screens then reflect the charge and all of those,
 //! one screen after the other: what the first hides or shows, the next hides and mirrors again.
 
+use super::boundary::Carrier;
 use super::ghosts::{Confined, Ghost, Shown};
 use super::mirror::{AtEdge, Mirror, Screened};
 use super::screen::Screen;
@@ -11,8 +12,6 @@ use nalgebra::Vector3;
 
 /// Image charges below this share of their charge are left out.
 const LEAST: f64 = 1e-9;
-/// Cosine of the angle of walls up to which they mirror each other's images once.
-const ACROSS: f64 = 0.7;
 /// Cosine of the angle of walls that face each other.
 const FACING: f64 = -0.9;
 /// Walls that mirror one charge at most.
@@ -45,6 +44,7 @@ pub(crate) struct Images {
     pub(crate) plain: Vec<Image>,
     /// Ghosts, which only hidden places feel.
     pub(crate) ghosts: Vec<Ghost>,
+    carrier: Carrier,
     solid: Vec<Reflection>,
     screens: Vec<Reflection>,
     sources: Vec<Source>,
@@ -73,6 +73,11 @@ struct Bound {
 }
 
 impl Images {
+    /// No images yet; those to come leave a field that something carries.
+    pub(super) fn new(carrier: Carrier) -> Self {
+        Self { carrier, ..Self::default() }
+    }
+
     /// Makes the images and ghosts of a unit charge at a point, beside an edge or not.
     pub(super) fn take(
         &mut self,
@@ -160,7 +165,9 @@ impl Images {
     fn add_solid(&mut self, from: usize, before: Image, used: &mut Vec<usize>) {
         for number in from..self.solid.len() {
             let Reflection { mirror, sign, .. } = self.solid[number];
-            if !used.iter().all(|&earlier| are_across(&self.solid[earlier].mirror, &mirror)) {
+            let stands_across =
+                |&earlier: &usize| self.solid[earlier].mirror.is_across(&mirror, self.carrier);
+            if !used.iter().all(stands_across) {
                 continue;
             }
             let at = if used.is_empty() { mirror.image(&before.at) } else { mirror.again(&before.at) };
@@ -255,11 +262,6 @@ impl Images {
             }
         }
     }
-}
-
-/// Whether two walls stand at an angle near a right one.
-fn are_across(a: &Mirror, b: &Mirror) -> bool {
-    a.normal.dot(&b.normal).abs() < ACROSS
 }
 
 /// Whether two walls face each other.

@@ -1,5 +1,6 @@
 //! Mirror that a wall is for one charge near it, and whether an image can lie behind the wall.
 
+use super::boundary::Carrier;
 use super::creases::{Creases, NearCrease};
 use super::screen::{EdgeScreen, Screen};
 use super::solid::Surroundings;
@@ -16,6 +17,8 @@ const AT_EDGE_OF_CELL: f64 = 3.5;
 const WHOLE_AT_EDGE: f64 = 0.65;
 /// Distance up to which edges are looked for, over the cell size.
 pub(super) const LOOK_FOR_EDGES_OF_CELL: f64 = 10.5;
+/// Distance up to which rims are looked for, over the cell size, where facets carry the field.
+pub(super) const LOOK_FOR_RIMS_OF_CELL: f64 = FROM_RIM[1] * DEPTH_OF_CELL;
 /// Solid between an image and the mesh behind it at least, over the image's depth and over the cell size.
 const BEHIND_OF_DEPTH: f64 = 1.0;
 const BEHIND_OF_CELL: f64 = 1.5;
@@ -40,9 +43,19 @@ const ON_FACE: f64 = 1e-6;
 /// place of a sheet's.
 const THICK: [f64; 2] = [0.4, 1.2];
 
+/// Depth at most over the distance of the wall across, and over the thickness of the solid, where facets
+/// carry the field: no image is nearer to other facets than to its own.
+const OF_GAP: f64 = 0.5;
+const OF_SOLID: f64 = 0.5;
+/// Distance of a charge's foot from a rim over the charge's own from the wall, between which images come into
+/// being where facets carry the field: the charge of a wall gathers at its rim.
+const FROM_RIM: [f64; 2] = [0.0, 2.0];
+
 /// Wall below a charge's foot: how deep it mirrors, and what is behind it.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) struct Ground {
+    /// Carrier of the field that images leave.
+    pub(super) carrier: Carrier,
     /// Size of the cells [m].
     pub(super) cell: f64,
     /// Thickness of the solid [m].
@@ -58,11 +71,17 @@ pub(super) struct Ground {
 
 impl Ground {
     /// The ground at a boundary face, with ghosts' radii and the reach of edges scaled.
-    pub(super) fn new(around: &Surroundings, ghost_scale: f64, edge_scale: f64) -> Self {
+    pub(super) fn new(around: &Surroundings, carrier: Carrier, ghost_scale: f64, edge_scale: f64) -> Self {
+        let depth = DEPTH_OF_CELL * around.cell;
+        let depth = match carrier {
+            Carrier::Cells => depth,
+            Carrier::Facets => depth.min(OF_GAP * around.gap).min(OF_SOLID * around.solid),
+        };
         Self {
+            carrier,
             cell: around.cell,
             solid: around.solid,
-            depth: DEPTH_OF_CELL * around.cell,
+            depth,
             radius: ghost_scale * RADIUS_OF_CELL * around.cell,
             radius_at_edge: ghost_scale * RADIUS_AT_EDGE_OF_CELL * around.cell,
             at_edge: edge_scale.min(1.0) * AT_EDGE_OF_CELL * around.cell,
@@ -92,6 +111,8 @@ impl Ground {
 /// there.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Mirror {
+    /// Face of the boundary under the charge; `None` where all of the wall is alike.
+    pub(super) face: Option<u32>,
     pub(super) normal: Vector3<f64>,
     pub(super) offset: f64,
     pub(super) distance: f64,
@@ -194,6 +215,11 @@ impl Mirror {
         along > SAME_WAY && along * other.distance > self.distance * (1.0 + 1e-6)
     }
 
+    /// Whether this wall and another stand at an angle near a right one.
+    pub(super) fn is_across(&self, other: &Self, carrier: Carrier) -> bool {
+        self.normal.dot(&other.normal).abs() < carrier.across()
+    }
+
     /// Charge of the image over the charge's, but for the sign and the curvature, at a distance [m].
     pub(super) fn fade(&self, distance: f64) -> f64 {
         self.share * (1.0 - smooth_step(2.0 * distance / self.depth - 1.0))
@@ -227,6 +253,8 @@ pub(super) enum Side {
     Solid,
     /// A screen, and the radius up to which its ghosts are felt [m].
     Screen(f64),
+    /// Facets beside a rim or far from it, and the share of the images there.
+    Facets(f64),
 }
 
 impl Side {
@@ -239,10 +267,14 @@ impl Side {
         normal: &Vector3<f64>,
         image_depth: f64,
     ) -> Option<Self> {
-        let near = rims.nearest(foot).filter(|rim| rim.distance < ground.radius);
+        let is_near = |rim: &NearCrease| ground.carrier == Carrier::Facets || rim.distance < ground.radius;
+        let near = rims.nearest(foot).filter(is_near);
         let inside = near.and_then(|rim| rim.inside(normal, foot)).unwrap_or(f64::INFINITY);
         if inside < 0.0 {
             return None;
+        }
+        if ground.carrier == Carrier::Facets {
+            return Some(Self::Facets(step(inside / image_depth.max(f64::MIN_POSITIVE), FROM_RIM)));
         }
         if ground.is_safe(image_depth) && inside > ground.at_edge {
             return Some(Self::Solid);
@@ -255,6 +287,7 @@ impl Side {
     pub(super) fn share(&self, ground: &Ground) -> f64 {
         match *self {
             Self::Solid => 1.0,
+            Self::Facets(share) => share,
             Self::Screen(radius) => {
                 step(radius / ground.radius.min(RADIUS_OF_CELL * ground.cell), LEAST_RADIUS)
             }
@@ -264,7 +297,7 @@ impl Side {
     /// The screen, if the wall is one.
     pub(super) fn screened(&self, ground: &Ground, screen: impl FnOnce() -> Screen) -> Option<Screened> {
         match *self {
-            Self::Solid => None,
+            Self::Solid | Self::Facets(_) => None,
             Self::Screen(radius) => {
                 let extent = Extent { radius, cells: radius / ground.cell };
                 Some(Screened { screen: screen(), extent })

@@ -17,6 +17,10 @@ mod buckets;
 mod creases;
 mod curved;
 mod edges;
+#[cfg_attr(not(test), expect(dead_code, reason = "the level of boundary elements comes after it"))]
+mod facet_walls;
+#[cfg_attr(not(test), expect(dead_code, reason = "the level of boundary elements comes after it"))]
+mod facets;
 mod flat;
 mod ghosts;
 mod images;
@@ -25,28 +29,23 @@ mod patch;
 pub(super) mod polygon;
 mod screen;
 mod share;
+mod smooth;
 mod solid;
 
-pub(super) use boundary::BoundaryFaces;
 pub use boundary::{BoundaryFace, Condition};
+pub(super) use boundary::{BoundaryFaces, Carrier};
 pub(super) use ghosts::Ghosts;
 pub(super) use screen::Place;
 
 use creases::Creases;
-use curved::CurvedWall;
 use edges::{Edge, edges};
-use flat::FlatWall;
 use ghosts::Ghost;
 use images::{Images, Reflection};
 use mirror::{AtEdge, Ground, Mirror};
 use nalgebra::Vector3;
-use patch::half_diagonal;
+use smooth::{Shape, Surface, Wall, WallOfFaces};
 use solid::{Surroundings, surroundings};
 
-/// Faces whose normals and planes differ by less are flat, over one and over the face's size.
-const FLAT: f64 = 1e-6;
-/// Distance of neighbouring faces' centres over their half diagonals.
-const NEIGHBOURS: f64 = 1.2;
 /// Distance into the mesh from which a place on a wall is seen, over the cell's size.
 const SEEN_FROM: f64 = 0.1;
 
@@ -75,46 +74,6 @@ pub(super) struct OfWalls {
     pub(super) image_charges: Vec<f64>,
     /// Ghosts, with their charges [C].
     pub(super) ghosts: Vec<Ghost>,
-}
-
-/// A boundary, as walls are made of it.
-#[derive(Clone, Copy)]
-struct Surface<'a> {
-    boundary: &'a dyn BoundaryFaces,
-    edges: &'a [Edge],
-    around: &'a [Surroundings],
-    /// Factor of the ghosts' radii.
-    ghost_scale: f64,
-    /// Factor of the distance up to which an edge takes the place of the planes beside it.
-    edge_scale: f64,
-    /// Distance up to which edges matter [m].
-    reach: f64,
-}
-
-impl Surface<'_> {
-    fn ground(&self, face: u32) -> Ground {
-        Ground::new(&self.around[face as usize], self.ghost_scale, self.edge_scale)
-    }
-
-    fn sign(&self, face: u32) -> f64 {
-        match self.boundary.faces()[face as usize].condition {
-            Condition::Potential(_) => -1.0,
-            Condition::Slope(_) => 1.0,
-        }
-    }
-}
-
-#[derive(Debug)]
-enum Shape {
-    Flat(FlatWall),
-    Curved(CurvedWall),
-}
-
-/// A wall and what its images' charges are multiplied with.
-#[derive(Debug)]
-struct Wall {
-    shape: Shape,
-    sign: f64,
 }
 
 /// The walls of a boundary.
@@ -147,30 +106,15 @@ impl Walls {
         let reach = edge_scale.min(1.0) * mirror::LOOK_FOR_EDGES_OF_CELL * largest;
         let surface = Surface { boundary, edges, around, ghost_scale, edge_scale, reach };
         let mut at: Vec<_> = (0..faces.len()).map(|face| boundary.place_of_condition(face)).collect();
-        let beside = neighbours(boundary.faces(), edges);
-        let mut walls = Vec::new();
-        for members in connected(&beside) {
-            let shape = match FlatWall::new(&surface, &members) {
-                Some(wall) => Shape::Flat(wall),
-                None => {
-                    let number = |face: &u32| members.binary_search(face).expect("connected") as u32;
-                    let within: Vec<Vec<u32>> = members
-                        .iter()
-                        .map(|&face| beside[face as usize].iter().map(number).collect())
-                        .collect();
-                    let wall = CurvedWall::new(&surface, &members, &within);
-                    for (index, &face) in members.iter().enumerate() {
-                        at[face as usize] = wall.place(index, &at[face as usize]);
-                    }
-                    Shape::Curved(wall)
-                }
-            };
-            walls.push((Wall { shape, sign: surface.sign(members[0]) }, members));
-        }
-        walls.sort_by_key(|(wall, _)| matches!(wall.shape, Shape::Flat(_)));
+        let walls = surface.walls();
         let mut wall_of = vec![0; faces.len()];
-        for ((_, members), number) in walls.iter().zip(0..) {
-            members.iter().for_each(|&face| wall_of[face as usize] = number);
+        for (WallOfFaces { wall, faces }, number) in walls.iter().zip(0..) {
+            faces.iter().for_each(|&face| wall_of[face as usize] = number);
+            if let Shape::Curved(wall) = &wall.shape {
+                for (index, &face) in faces.iter().enumerate() {
+                    at[face as usize] = wall.place(index, &at[face as usize]);
+                }
+            }
         }
         let place = |(at, face): (&Vector3<f64>, usize)| {
             let into = SEEN_FROM * boundary.cell_at(face);
@@ -178,7 +122,7 @@ impl Walls {
         };
         let ground: Vec<Ground> = (0..faces.len() as u32).map(|face| surface.ground(face)).collect();
         Self {
-            walls: walls.into_iter().map(|(wall, _)| wall).collect(),
+            walls: walls.into_iter().map(|made| made.wall).collect(),
             places: at.iter().zip(0..).map(place).collect(),
             creases: Creases::new(boundary, edges, reach),
             deepest: ground.iter().map(|ground| ground.depth).fold(0.0, f64::max),
@@ -220,10 +164,7 @@ impl Walls {
     fn reflect(&self, point: &Vector3<f64>, images: &mut Images) {
         let edge = self.edge_at(point);
         let of_walls = self.walls.iter().zip(0..).filter_map(|(wall, number)| {
-            let mirror = match &wall.shape {
-                Shape::Flat(flat) => flat.mirror(point, self.depth_scale)?,
-                Shape::Curved(curved) => curved.mirror(point, self.depth_scale)?,
-            };
+            let mirror = wall.mirror(point, self.depth_scale)?;
             let of_edge = edge.as_ref().filter(|(_, walls)| walls.contains(&number));
             let share = of_edge.map_or(1.0, |(edge, _)| 1.0 - edge.share);
             Some(Reflection {
@@ -242,59 +183,6 @@ impl Walls {
         let edge = AtEdge::new(&crease, &self.creases, &self.ground[faces[0] as usize], point)?;
         Some((edge, faces.map(|face| self.wall_of[face as usize])))
     }
-}
-
-/// Each boundary face's neighbours that go on smoothly, with a condition of the same kind: those across an
-/// edge, and those across one of theirs that are as near.
-fn neighbours(boundary: &[BoundaryFace], edges: &[Edge]) -> Vec<Vec<u32>> {
-    let kind = |face: u32| boundary[face as usize].gives_potential();
-    let mut across = vec![Vec::new(); boundary.len()];
-    for edge in edges.iter().filter(|edge| edge.bend().abs() < creases::LEAST_BEND) {
-        let [first, second] = edge.faces;
-        if first != second && kind(first) == kind(second) {
-            across[first as usize].push(second);
-            across[second as usize].push(first);
-        }
-    }
-    let is_near = |face: u32, other: u32| {
-        let (first, second) = (&boundary[face as usize], &boundary[other as usize]);
-        // Faces that only a period joins are two walls.
-        (first.centre - second.centre).norm() < NEIGHBOURS * (half_diagonal(first) + half_diagonal(second))
-    };
-    let of = |face: u32| {
-        let direct = &across[face as usize];
-        let further = direct.iter().flat_map(|&next| across[next as usize].iter().copied());
-        let all = direct.iter().copied().chain(further);
-        let mut found: Vec<u32> = all.filter(|&other| other != face && is_near(face, other)).collect();
-        found.sort_unstable();
-        found.dedup();
-        found
-    };
-    (0..boundary.len() as u32).map(of).collect()
-}
-
-/// Sets of faces that are connected, each in ascending order.
-fn connected(around: &[Vec<u32>]) -> Vec<Vec<u32>> {
-    let mut seen = vec![false; around.len()];
-    let mut sets = Vec::new();
-    for first in 0..around.len() {
-        if std::mem::replace(&mut seen[first], true) {
-            continue;
-        }
-        let mut set = vec![first as u32];
-        let mut next = 0;
-        while let Some(&face) = set.get(next) {
-            next += 1;
-            for &other in &around[face as usize] {
-                if !std::mem::replace(&mut seen[other as usize], true) {
-                    set.push(other);
-                }
-            }
-        }
-        set.sort_unstable();
-        sets.push(set);
-    }
-    sets
 }
 
 #[cfg(test)]
