@@ -1,5 +1,6 @@
 //! Settings of the electric field.
 
+use crate::conductor::Conductor;
 use crate::course::FieldCourse;
 use crate::domain::FaceCourse;
 use crate::permittivity::Permittivity;
@@ -116,6 +117,9 @@ pub struct FieldSettings {
     pub overlap: bool,
     /// Bound on the electric force, when asked for.
     pub force_limit: Option<ForceLimit>,
+    /// Conductors inside the box that bound the field.
+    #[serde(default)]
+    pub conductors: Vec<Conductor>,
 }
 
 impl FieldSettings {
@@ -144,6 +148,7 @@ impl Default for FieldSettings {
             coupling_interval: CouplingInterval::Auto,
             overlap: false,
             force_limit: None,
+            conductors: Vec::new(),
         }
     }
 }

@@ -7,6 +7,7 @@
 
 mod charge_transfer;
 mod cohesion;
+mod conductor;
 pub mod constants;
 mod contact_rules;
 mod course;
@@ -30,6 +31,7 @@ mod wall_motion;
 
 pub use charge_transfer::ChargeTransfer;
 pub use cohesion::Cohesion;
+pub use conductor::{Conductor, ConductorState};
 pub use contact_rules::{ContactRules, WallRule};
 pub use course::{Course, CourseRow, FieldCourse, LEAST_PER_PERIOD, PotentialCourse};
 pub use domain::{Axis, Boundary, Domain, DomainError, FaceCourse, Side};

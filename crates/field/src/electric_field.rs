@@ -1,5 +1,6 @@
 //! The evaluator: one scene's field, with the parameters chosen for it.
 
+mod before_surfaces;
 mod building;
 mod changing;
 
@@ -63,7 +64,7 @@ impl ElectricField {
     /// normal fields that are given on faces. Those that change with time are those of the time that was set
     /// by [`Self::set_time`], and of t = 0 before.
     ///
-    /// Allocates nothing once `out` has its size and the number of particles stays.
+    /// Allocates nothing once `out` has its size and the number of particles stays, but before conductors.
     ///
     /// # Errors
     /// Values that are not finite; a net charge that no longer vanishes where it must; grains outside the
@@ -92,6 +93,8 @@ impl ElectricField {
         wanted: Wanted,
         out: &mut FieldValues,
     ) -> Result<(), FieldError> {
+        let given = |place: &Vector3<f64>| (self.external.at(place) + self.faces.at(place)).potential;
+        self.method.give_potentials(&given);
         let levels = self.method.levels(time_s, positions, charges, wanted)?;
         self.stopwatch.restart();
         let faces = Part::new(self.faces.evaluate(positions));
@@ -111,6 +114,9 @@ impl ElectricField {
         positions: &[Vector3<f64>],
         charges: &[f64],
     ) -> Result<Option<Measured>, FieldError> {
+        if !self.settings.conductors.is_empty() {
+            return self.measure_before_surfaces(positions, charges).map(Some);
+        }
         let Choice::P3m(parameters) = self.choice else { return Ok(None) };
         if self.mesh_cells.is_some() {
             let measured = over_mesh::measure(self.method.as_mut(), parameters, positions, charges)?;
@@ -156,6 +162,12 @@ impl ElectricField {
     /// Field solver of another process, to tell it where its next solve starts.
     pub fn far_solver_mut(&mut self) -> Option<&mut FarSolver> {
         self.method.far_solver_mut()
+    }
+
+    /// Potential of each of the settings' conductors [V], as the last evaluation left it; empty without any.
+    #[must_use]
+    pub fn potentials_of_conductors(&self) -> Vec<f64> {
+        self.method.potentials_of_conductors()
     }
 
     /// Parameters in force.

@@ -27,7 +27,7 @@ impl<'a> Part<'a> {
 
     /// The part at a particle.
     #[inline]
-    fn at(self, particle: usize) -> FieldAt {
+    pub(crate) fn at(self, particle: usize) -> FieldAt {
         self.0.get(particle).copied().unwrap_or_default()
     }
 }

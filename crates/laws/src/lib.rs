@@ -6,6 +6,7 @@
 
 pub mod beetstra_drag;
 pub mod charge_transfer;
+pub mod charged_triangle;
 pub mod contact_area;
 pub mod coulomb_friction;
 pub mod cubic_table;

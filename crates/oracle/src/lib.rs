@@ -15,6 +15,7 @@ mod norms;
 mod parallel_plates;
 mod point_charge;
 pub mod reference;
+pub mod surfaces;
 mod wedge;
 
 pub use charged_ball::{ChargedBall, ball_points};

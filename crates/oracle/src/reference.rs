@@ -130,8 +130,32 @@ pub fn by_name(name: &str) -> Option<ReferenceSet> {
     SETS.iter().find(|source| source.name == name).map(load)
 }
 
+/// Charges, with what acts on each (4πε₀ = 1).
+#[derive(Clone, Debug, PartialEq)]
+pub struct Charges {
+    /// Positions.
+    pub position: Vec<Vector3<f64>>,
+    /// Charges.
+    pub charge: Vec<f64>,
+    /// Potential at each charge without its own q/r.
+    pub potential: Vec<f64>,
+    /// Field at each charge without its own.
+    pub e: Vec<Vector3<f64>>,
+}
+
+/// Charges of a table.
+pub(crate) fn charges_of(table: &str) -> Charges {
+    let rows = rows::<8>(table);
+    Charges {
+        position: rows.iter().map(|row| Vector3::new(row[0], row[1], row[2])).collect(),
+        charge: rows.iter().map(|row| row[3]).collect(),
+        potential: rows.iter().map(|row| row[4]).collect(),
+        e: rows.iter().map(|row| Vector3::new(row[5], row[6], row[7])).collect(),
+    }
+}
+
 fn load(source: &SetFile) -> ReferenceSet {
-    let rows = rows::<8>(source.text);
+    let Charges { position, charge, potential, e } = charges_of(source.text);
     ReferenceSet {
         name: source.name,
         domain: Domain::new(
@@ -140,10 +164,10 @@ fn load(source: &SetFile) -> ReferenceSet {
             source.axes.map(|boundary| [boundary; 2]),
         )
         .expect("a cube of positive edge with equal opposite faces is a domain"),
-        position: rows.iter().map(|row| Vector3::new(row[0], row[1], row[2])).collect(),
-        charge: rows.iter().map(|row| row[3]).collect(),
-        potential: rows.iter().map(|row| row[4]).collect(),
-        e: rows.iter().map(|row| Vector3::new(row[5], row[6], row[7])).collect(),
+        position,
+        charge,
+        potential,
+        e,
         e_bound: source.e_bound,
         potential_bound: source.potential_bound,
     }

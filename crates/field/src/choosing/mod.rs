@@ -8,6 +8,6 @@ mod cost;
 pub(crate) mod error_model;
 pub(crate) mod over_mesh;
 pub(crate) mod over_ranks;
-mod splittings;
+pub(crate) mod splittings;
 pub(crate) mod trials;
 pub(crate) mod tuner;

@@ -42,6 +42,9 @@ impl ElectricField {
     ) -> Result<Self, FieldError> {
         check_finite(positions, charges)?;
         changing::check(domain, settings)?;
+        if !settings.conductors.is_empty() {
+            return Self::before_surfaces(domain, settings, positions, charges);
+        }
         let (mut error_estimated, mut error_measured) = (None, None);
         let choice = match settings.method {
             Method::Cutoff => Choice::Cutoff { cutoff_m: cutoff_radius(settings)? },
@@ -125,6 +128,7 @@ impl ElectricField {
         charges: &[f64],
     ) -> Result<Self, FieldError> {
         check_finite(positions, charges)?;
+        check_no_conductors(settings, "over a field solver's mesh, whose patches do")?;
         if settings.method == Method::Kolehmainen {
             let choice = Choice::Kolehmainen { cutoff_m: cutoff_radius(settings)? };
             return Self::over_mesh_with_choice(solver, settings, &choice);
@@ -189,6 +193,9 @@ impl ElectricField {
         choice: &Choice,
     ) -> Result<Self, FieldError> {
         changing::check(domain, settings)?;
+        if !settings.conductors.is_empty() {
+            return Self::before_surfaces_with_choice(domain, settings, choice);
+        }
         let permittivity = settings.permittivity;
         let background = settings.neutralising_background;
         let method: Box<dyn FieldMethod> = match choice {
@@ -204,7 +211,7 @@ impl ElectricField {
     }
 
     /// The field of a method for one process without a mesh, whose error is not known.
-    fn with_method(
+    pub(super) fn with_method(
         domain: &Domain,
         settings: &FieldSettings,
         choice: &Choice,
@@ -270,6 +277,7 @@ fn check_over_ranks(
 ) -> Result<(), FieldError> {
     check_finite(positions, charges)?;
     check_in_box(domain, positions)?;
+    check_no_conductors(settings, "that ranks share")?;
     if settings.method == Method::P3m {
         return Ok(());
     }
@@ -277,6 +285,17 @@ fn check_over_ranks(
         "method {} cannot be shared by ranks; choose method p3m",
         settings.method
     )))
+}
+
+/// Refuses conductors where nothing takes them into account.
+fn check_no_conductors(settings: &FieldSettings, with: &str) -> Result<(), FieldError> {
+    match settings.conductors.first() {
+        None => Ok(()),
+        Some(conductor) => Err(FieldError::Settings(format!(
+            "conductor {} cannot bound a field {with}; let its wall have field = \"none\"",
+            conductor.name
+        ))),
+    }
 }
 
 /// Refuses methods that have no far level.

@@ -6,4 +6,5 @@ pub(crate) mod faces;
 pub mod far;
 pub(crate) mod grid;
 pub(crate) mod near;
+pub(crate) mod surfaces;
 mod walls;

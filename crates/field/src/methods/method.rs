@@ -90,6 +90,14 @@ pub trait FieldMethod: fmt::Debug + Send + Sync {
         None
     }
 
+    /// Potential of each conductor with a surface of triangles [V], as the last evaluation left it.
+    fn potentials_of_conductors(&self) -> Vec<f64> {
+        Vec::new()
+    }
+
+    /// Tells surfaces the potential [V] of electrodes and of the external field at any place [m].
+    fn give_potentials(&mut self, _given: &dyn Fn(&Vector3<f64>) -> f64) {}
+
     /// Mean number of partners that were summed for a particle in the last evaluation, images included.
     fn pairs_per_particle(&self) -> f64;
 

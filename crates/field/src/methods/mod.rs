@@ -4,6 +4,7 @@ pub(crate) mod cutoff;
 pub(crate) mod direct;
 pub(crate) mod kolehmainen;
 pub(crate) mod method;
+pub(crate) mod over_surfaces;
 pub(crate) mod p3m;
 pub(crate) mod p3m_over_ranks;
 pub(crate) mod p3m_parameters;

@@ -3,6 +3,7 @@
 
 pub(crate) mod bessel;
 pub(crate) mod chebyshev;
+pub(crate) mod gmres;
 pub(crate) mod processor;
 pub(crate) mod scratch;
 pub(crate) mod stopwatch;

@@ -11,7 +11,7 @@ const LARGER: f64 = 1.25;
 
 /// Places by their bucket.
 #[derive(Clone, Debug, Default)]
-pub(super) struct Buckets {
+pub(crate) struct Buckets {
     low: Vector3<f64>,
     edge: f64,
     reach: f64,
@@ -25,12 +25,12 @@ pub(super) struct Buckets {
 
 impl Buckets {
     /// Puts places [m] into buckets; a search finds at least those up to `reach` [m] away.
-    pub(super) fn new<'a>(places: impl Iterator<Item = &'a Vector3<f64>> + Clone, reach: f64) -> Self {
+    pub(crate) fn new<'a>(places: impl Iterator<Item = &'a Vector3<f64>> + Clone, reach: f64) -> Self {
         Self::with_rings(places, reach, 1)
     }
 
     /// Puts places [m] into buckets whose edge is a part of `reach` [m], so that a search looks at less.
-    pub(super) fn with_rings<'a>(
+    pub(crate) fn with_rings<'a>(
         places: impl Iterator<Item = &'a Vector3<f64>> + Clone,
         reach: f64,
         rings: u32,
@@ -67,12 +67,12 @@ impl Buckets {
     }
 
     /// Numbers of the places in the buckets around a point.
-    pub(super) fn near(&self, point: &Vector3<f64>) -> impl Iterator<Item = usize> + '_ {
+    pub(crate) fn near(&self, point: &Vector3<f64>) -> impl Iterator<Item = usize> + '_ {
         self.rows(point).flat_map(|row| self.numbers[row].iter().map(|&number| number as usize))
     }
 
     /// Ranges of [`Self::order`] in which the places in the buckets around a point stand.
-    pub(super) fn rows(&self, point: &Vector3<f64>) -> impl Iterator<Item = Range<usize>> + '_ {
+    pub(crate) fn rows(&self, point: &Vector3<f64>) -> impl Iterator<Item = Range<usize>> + '_ {
         let here = self.bucket(point);
         let from = here.map(|place| (place - self.rings).max(0));
         let to: [i64; 3] = std::array::from_fn(|axis| (here[axis] + self.rings).min(self.counts[axis] - 1));
@@ -84,12 +84,12 @@ impl Buckets {
     }
 
     /// Numbers of all places, bucket by bucket.
-    pub(super) fn order(&self) -> &[u32] {
+    pub(crate) fn order(&self) -> &[u32] {
         &self.numbers
     }
 
     /// Distance up to which a search finds every place [m].
-    pub(super) fn reach(&self) -> f64 {
+    pub(crate) fn reach(&self) -> f64 {
         self.reach
     }
 

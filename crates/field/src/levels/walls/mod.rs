@@ -17,9 +17,7 @@ mod buckets;
 mod creases;
 mod curved;
 mod edges;
-#[cfg_attr(not(test), expect(dead_code, reason = "the level of boundary elements comes after it"))]
 mod facet_walls;
-#[cfg_attr(not(test), expect(dead_code, reason = "the level of boundary elements comes after it"))]
 mod facets;
 mod flat;
 mod ghosts;
@@ -34,6 +32,9 @@ mod solid;
 
 pub use boundary::{BoundaryFace, Condition};
 pub(super) use boundary::{BoundaryFaces, Carrier};
+pub(super) use buckets::Buckets;
+pub(super) use facet_walls::{FacetImages, FacetWalls};
+pub(super) use facets::{FacetSide, Facets};
 pub(super) use ghosts::Ghosts;
 pub(super) use screen::Place;
 
