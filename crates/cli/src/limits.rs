@@ -1,6 +1,6 @@
 //! Limits of the model that a scene runs into, as `docs/equations.md` lists them.
 
-use amberfield_core::{Boundary, Step, WallCharging};
+use amberfield_core::{Boundary, ConductorState, Step, WallCharging};
 use amberfield_scene::Scene;
 
 /// Lines about the limits of the model that bear on a scene; none without charge transfer.
@@ -74,7 +74,12 @@ fn has_given_field(scene: &Scene) -> bool {
     };
     let changes = scene.electric_field.as_ref().is_some_and(|field| field.field.external_course.is_some())
         || scene.domain.as_ref().is_some_and(|domain| !domain.courses().is_empty());
+    let conductors = scene.electric_field.iter().flat_map(|field| &field.field.conductors);
+    let has_conductor = conductors.into_iter().any(|conductor| match conductor.state {
+        ConductorState::Potential(given) | ConductorState::Charge(given) => given != 0.0,
+    });
     changes
+        || has_conductor
         || external.is_some_and(|external| external > 0.0)
         || scene.domain.as_ref().is_some_and(|domain| domain.faces().iter().flatten().any(has_value))
 }

@@ -1,6 +1,6 @@
 //! Text of a plan, and of what a run has and costs.
 
-use amberfield_core::{Plan, WallShape};
+use amberfield_core::{Conductor, Plan, WallShape};
 use amberfield_dem::Outlook;
 use amberfield_scene::Scene;
 
@@ -33,14 +33,32 @@ pub(crate) fn walls(scene: &Scene) -> Vec<String> {
             |[low, high]| format!("{:?} to {:?} m", low.as_slice(), high.as_slice()),
         ),
     };
+    let bounds =
+        |wall: usize| scene.conductor(wall).map(|conductor| facets(scene, conductor)).unwrap_or_default();
     scene
         .walls
         .iter()
-        .map(|wall| {
+        .enumerate()
+        .map(|(number, wall)| {
             let moves = if wall.motion.is_empty() { "" } else { ", moves" };
-            format!("{}: {}{moves}", wall.name, place(&wall.shape))
+            format!("{}: {}{moves}{}", wall.name, place(&wall.shape), bounds(number))
         })
         .collect()
+}
+
+/// Facets of a conductor, over the radius of the smallest grain where grains have one.
+fn facets(scene: &Scene, conductor: &Conductor) -> String {
+    let mut sizes: Vec<f64> = conductor.surface.sizes().collect();
+    sizes.sort_by(f64::total_cmp);
+    let radii = [&scene.particles.radius, &scene.feeds.grains.radius].into_iter().flatten();
+    let smallest = radii.copied().filter(|radius| *radius > 0.0).min_by(f64::total_cmp);
+    let unit = if smallest.is_some() { "radii of the smallest grain" } else { "m" };
+    let [least, median, most] =
+        [0, sizes.len() / 2, sizes.len() - 1].map(|at| sizes[at] / smallest.unwrap_or(1.0));
+    format!(
+        ", bounds the field by {} facets of {least:.3e} to {most:.3e} {unit}, {median:.3e} in the median",
+        sizes.len()
+    )
 }
 
 /// Line with what the step costs in accuracy of impacts.

@@ -24,6 +24,15 @@ impl TriangleMesh {
         Some(self.vertices.iter().fold([first; 2], around))
     }
 
+    /// Edge of the equilateral triangle of the area of each triangle [m].
+    pub fn sizes(&self) -> impl ExactSizeIterator<Item = f64> + '_ {
+        self.triangles.iter().map(|triangle| {
+            let [a, b, c] = triangle.map(|vertex| self.vertices[vertex as usize]);
+            let area = 0.5 * (b - a).cross(&(c - a)).norm();
+            (4.0 / 3.0_f64.sqrt() * area).sqrt()
+        })
+    }
+
     /// Edges of one triangle alone, at which the surface ends [m].
     #[must_use]
     pub fn rim(&self) -> Vec<[Vector3<f64>; 2]> {
@@ -91,8 +100,8 @@ pub struct Wall {
     pub material: MaterialId,
     /// Treatment of charge.
     pub charging: WallCharging,
-    /// Whether it is a boundary of the electric field too: a patch of a field solver's mesh. Faces of the
-    /// domain are known by their place.
+    /// Whether it is a boundary of the electric field too, with its mirror charges: a patch of a field
+    /// solver's mesh, or one of the field's conductors. Faces of the domain are known by their place.
     pub bounds_field: bool,
     /// Motions, one after another; empty for a wall at rest.
     pub motion: Vec<WallMotion>,

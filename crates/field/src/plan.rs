@@ -1,7 +1,7 @@
 //! The field stages that a scene has, with the reason for each.
 
 use crate::choosing::choice::Choice;
-use amberfield_core::{Domain, FieldSettings, Plan};
+use amberfield_core::{Conductor, ConductorState, Domain, FieldSettings, Plan};
 
 /// Course of the faces' potentials.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -72,12 +72,33 @@ pub(crate) fn plan(
             );
         }
     }
+    plan_surfaces(&mut plan, settings);
     plan_given(&mut plan, settings, potentials);
     let images = domain.faces().iter().flatten().any(|face| face.is_conductor() || face.is_insulating());
-    if !images {
+    if !images && settings.conductors.is_empty() {
         plan.leave_out("images", "no conducting or insulating face");
     }
     plan
+}
+
+/// Plans the surfaces of conductors, if there are any.
+fn plan_surfaces(plan: &mut Plan, settings: &FieldSettings) {
+    if settings.conductors.is_empty() {
+        plan.leave_out("surfaces", "no wall has a field");
+        return;
+    }
+    let of = |conductor: &Conductor| {
+        let facets = conductor.surface.triangles.len();
+        let state = match conductor.state {
+            ConductorState::Potential(volts) => format!("at {volts} V"),
+            ConductorState::Charge(charge) => format!("floating with {charge:e} C"),
+        };
+        (facets, format!("{} {state}, {facets} facets", conductor.name))
+    };
+    let (facets, names): (Vec<usize>, Vec<String>) = settings.conductors.iter().map(of).unzip();
+    let facets: usize = facets.iter().sum();
+    let megabytes = 4e-6 * (facets as f64).powi(2);
+    plan.build("surfaces", format!("{}; their matrix has {megabytes:.1} MB", names.join("; ")));
 }
 
 /// Plans what the scene gives: the external field, and potentials that change.

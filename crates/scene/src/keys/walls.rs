@@ -1,7 +1,7 @@
 //! Keys of `[[walls]]`.
 
 use super::{Form, Key};
-use crate::limits::{COORDINATE, SPEED, TIME};
+use crate::limits::{CHARGE, COORDINATE, ELECTRIC, SPEED, TIME};
 use crate::tree::Range;
 
 static PLANE: &[Key] = &[
@@ -139,6 +139,24 @@ static MOTION: &[Key] = &[
         .also(&["end", "to_s", "stop_s"]),
 ];
 
+static FLOATING: &[Key] = &[Key::new("charge_C", Form::Number(CHARGE), "Charge of the conductor.")
+    .unit("C")
+    .required()
+    .example("0.0")
+    .also(&["charge", "q"])];
+
+static FIELD: &[Key] = &[
+    Key::new("potential_V", Form::Number(ELECTRIC), "Potential of the conductor.")
+        .unit("V")
+        .without("a charge")
+        .example("1000.0")
+        .also(&["potential", "voltage", "v"]),
+    Key::new("floating", Form::Table(FLOATING), "Conductor that is insulated from everything.")
+        .without("a potential")
+        .example("{ charge_C = 0.0 }")
+        .also(&["charge_C", "insulated", "charge"]),
+];
+
 pub(super) static KEYS: &[Key] = &[
     Key::new("stl", Form::Text, "STL file with the wall's surface.")
         .without("plane, or patch")
@@ -172,7 +190,16 @@ pub(super) static KEYS: &[Key] = &[
     )
     .without("\"grounded\" for surfaces, \"none\" for planes")
     .example("\"insulating\"")
-    .also(&["potential_V", "conducting", "conductor", "electric", "potential"]),
+    .also(&["conducting", "electric"]),
+    Key::new(
+        "field",
+        Form::Either(&[Form::Word(&["grounded", "none"]), Form::Table(FIELD)]),
+        "Conductor that the stl's surface is to the field, which then ends there; or none, which the field \
+         goes through.",
+    )
+    .default("\"none\"")
+    .example("{ potential_V = 1000.0 }")
+    .also(&["potential_V", "conductor", "potential", "bounds_field", "electrode", "boundary"]),
     Key::new(
         "motion",
         Form::Tables(MOTION),

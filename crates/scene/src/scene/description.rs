@@ -3,8 +3,8 @@
 use super::key_places::KeyPlaces;
 use super::physics::Physics;
 use amberfield_core::{
-    Cohesion, ContactRules, Domain, Feeds, FieldSettings, Gas, Material, MaterialPair, Outlet, Particles,
-    RollingModel, TimeSettings, Wall,
+    Cohesion, Conductor, ContactRules, Domain, Feeds, FieldSettings, Gas, Material, MaterialPair, Outlet,
+    Particles, RollingModel, TimeSettings, Wall,
 };
 use serde::{Deserialize, Serialize};
 use std::path::PathBuf;
@@ -99,6 +99,15 @@ impl Scene {
     #[must_use]
     pub fn physics(&self) -> &Physics {
         &self.physics
+    }
+
+    /// Conductor that a wall is to the field; `None` where it does not bound it, or is a solver's patch.
+    #[must_use]
+    pub fn conductor(&self, wall: usize) -> Option<&Conductor> {
+        let conductors = &self.electric_field.as_ref()?.field.conductors;
+        let bounds = |wall: &Wall| wall.bounds_field;
+        let before = self.walls[..wall].iter().filter(|wall| bounds(wall)).count();
+        conductors.get(before).filter(|_| bounds(&self.walls[wall]))
     }
 
     /// Place and value of a key, as a message begins with them: `scene.toml:31: feeds[0].region = { … }`.

@@ -21,6 +21,7 @@ mod time;
 mod time_table;
 mod together;
 mod unusual;
+mod wall_field;
 mod wall_motion;
 mod walls;
 

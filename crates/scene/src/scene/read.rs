@@ -14,6 +14,7 @@ use super::particles::read_section;
 use super::physics::Physics;
 use super::time::read_time;
 use super::together::{check_lists, check_reach, check_sections, check_together};
+use super::wall_field::Surroundings;
 use super::walls::read_walls;
 use crate::SceneError;
 use crate::error::Problems;
@@ -143,7 +144,7 @@ fn read_sections(
         Some(domain),
         Some(list),
         Some(contacts),
-        Some(electric_field),
+        Some(mut electric_field),
         Some(charge_transfer),
         Some(solver),
         Some(gas),
@@ -157,7 +158,12 @@ fn read_sections(
     };
     let materials = Materials { ignored: list.is_empty(), list };
     let pairs = read_pairs(document, &materials)?;
-    let walls = read_walls(document, &materials, solver.as_ref(), domain.as_ref(), source)?;
+    let around =
+        Surroundings { solver: solver.as_ref(), domain: domain.as_ref(), field: electric_field.as_ref() };
+    let walls = read_walls(document, &materials, around, source)?;
+    if let Some(settings) = &mut electric_field {
+        settings.field.conductors = walls.conductors;
+    }
     let mut section = read_section(document, domain.as_ref(), &materials, &walls.walls, !motion, source)?;
     let time = read_time(document, section.on_exit, section.allow_overlap)?;
     let of_motion = time.as_ref().filter(|_| motion);

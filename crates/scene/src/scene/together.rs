@@ -2,13 +2,14 @@
 
 use super::description::{Purpose, Scene};
 use super::unusual::unusual_values;
+use super::wall_field::{facets_that_misfit, is_conducting_face, leaves};
 use crate::SceneError;
 use crate::error::{Problems, shorten};
 use crate::table::SceneTable;
 use crate::tree::nearest;
 use amberfield_core::{
-    Axis, Boundary, Cohesion, Domain, FieldSettings, LEAST_PER_PERIOD, Method, MotionKind, Step, Vector3,
-    Wall, WallCharging, WallShape,
+    Axis, Boundary, Cohesion, CouplingInterval, Domain, FieldSettings, LEAST_PER_PERIOD, Method, Step, Wall,
+    WallCharging,
 };
 
 /// Number of grains beyond which the direct sum causes a warning.
@@ -171,6 +172,21 @@ fn check_courses(document: &SceneTable<'_>, scene: &Scene) -> Result<(), SceneEr
              number",
         )));
     }
+    let changes = field.external_course.is_some() || !faces.is_empty();
+    let follows = field.coupling_interval == CouplingInterval::Steps(1);
+    if changes && !field.conductors.is_empty() && scene.time.is_some() && !follows {
+        let interval = match field.coupling_interval {
+            CouplingInterval::Auto => "\"auto\"".to_owned(),
+            CouplingInterval::Steps(steps) => steps.to_string(),
+        };
+        problems.keep::<()>(Err(document.bad_below(
+            "electric_field",
+            "coupling_interval",
+            &interval,
+            "walls with a field answer to a potential or external field that changes with time only where \
+             the field is evaluated; give coupling_interval = 1, or constants",
+        )));
+    }
     let longest = field.longest_step_s(faces);
     if let Some(Step::Seconds(step)) = scene.time.as_ref().map(|time| time.step)
         && step > longest
@@ -269,7 +285,8 @@ fn warn(scene: &mut Scene) {
         scene.warnings.push("walls.patch has no effect without [solver]".to_owned());
     }
     if scene.solver.is_none() {
-        scene.walls.iter_mut().for_each(|wall| wall.bounds_field = false);
+        let patches = scene.walls.iter_mut().zip(&scene.wall_patches);
+        patches.filter(|(_, patch)| patch.is_some()).for_each(|(wall, _)| wall.bounds_field = false);
     }
     let far_tolerance = scene.electric_field.as_ref().is_some_and(|field| field.far_tolerance.is_some());
     if scene.solver.is_none() && far_tolerance {
@@ -289,9 +306,17 @@ fn warn(scene: &mut Scene) {
     let moving: Vec<String> = moving.map(|wall| mesh_stays(&wall.name)).collect();
     scene.warnings.extend(moving);
     if method.is_some() {
-        let unknown: Vec<String> = unknown_grounded_walls(scene).map(|wall| wall.name.clone()).collect();
-        let over_mesh = scene.solver.is_some();
-        scene.warnings.extend(unknown.iter().map(|name| unknown_grounded(name, over_mesh)));
+        let beside = Beside::of(scene);
+        let unknown: Vec<String> =
+            unknown_grounded_walls(scene).map(|wall| unknown_grounded(&wall.name, beside)).collect();
+        scene.warnings.extend(unknown);
+    }
+    let radii = [&scene.particles.radius, &scene.feeds.grains.radius].into_iter().flatten();
+    let smallest = radii.copied().filter(|radius| *radius > 0.0).min_by(f64::total_cmp);
+    if let (Some(settings), Some(radius)) = (&scene.electric_field, smallest) {
+        let misfits =
+            settings.field.conductors.iter().flat_map(|conductor| facets_that_misfit(conductor, radius));
+        scene.warnings.extend(misfits);
     }
 }
 
@@ -299,32 +324,53 @@ fn warn(scene: &mut Scene) {
 fn unknown_grounded_walls(scene: &Scene) -> impl Iterator<Item = &Wall> {
     let is_known = |wall: &Wall| match (&scene.solver, &scene.domain) {
         (Some(_), _) => wall.bounds_field,
-        (None, Some(domain)) => !leaves(wall) && is_conducting_face(domain, &wall.shape),
+        (None, Some(domain)) => {
+            wall.bounds_field || (!leaves(wall) && is_conducting_face(domain, &wall.shape))
+        }
         (None, None) => false,
     };
     scene.walls.iter().filter(move |wall| wall.charging == WallCharging::Grounded && !is_known(wall))
 }
 
-/// Warning about a grounded wall at which the field does not end.
-fn unknown_grounded(name: &str, over_mesh: bool) -> String {
-    if over_mesh {
-        format!(
-            "{name}: the wall takes charge, but is no patch of the solver's mesh: at its contacts all of the \
-             field counts twice, that of electrodes too; name its patch with patch = \"…\", or set charging \
-             = \"none\""
-        )
-    } else {
-        format!(
-            "{name}: the internal grid does not know this grounded surface; it takes charge, but does not \
-             bound the field: at its contacts the field of charges counts twice, for their images, and \
-             fields of electrodes and external ones as they are"
-        )
+/// What bounds the field beside a wall that does not.
+#[derive(Clone, Copy)]
+enum Beside {
+    Faces,
+    Mesh,
+    Conductors,
+}
+
+impl Beside {
+    fn of(scene: &Scene) -> Self {
+        let has_conductors =
+            scene.electric_field.as_ref().is_some_and(|field| !field.field.conductors.is_empty());
+        match (scene.solver.is_some(), has_conductors) {
+            (true, _) => Self::Mesh,
+            (false, true) => Self::Conductors,
+            (false, false) => Self::Faces,
+        }
     }
 }
 
-/// Whether a wall leaves its place.
-fn leaves(wall: &Wall) -> bool {
-    wall.motion.iter().any(|motion| !matches!(motion.kind, MotionKind::Slide(_)))
+/// Warning about a grounded wall at which the field does not end.
+fn unknown_grounded(name: &str, beside: Beside) -> String {
+    match beside {
+        Beside::Mesh => format!(
+            "{name}: the wall takes charge, but is no patch of the solver's mesh: at its contacts all of the \
+             field counts twice, that of electrodes too; name its patch with patch = \"…\", or set charging \
+             = \"none\""
+        ),
+        Beside::Conductors => format!(
+            "{name}: the wall takes charge, but does not bound the field, while others do: at its contacts \
+             the field of charges counts twice, that of the walls with a field too; give it field = \
+             \"grounded\" as well, or set charging = \"none\""
+        ),
+        Beside::Faces => format!(
+            "{name}: the internal grid does not know this grounded surface; it takes charge, but does not \
+             bound the field: at its contacts the field of charges counts twice, for their images, and \
+             fields of electrodes and external ones as they are"
+        ),
+    }
 }
 
 /// Warning about a wall that moves in a mesh that does not.
@@ -334,19 +380,4 @@ fn mesh_stays(name: &str) -> String {
          its patch where the case has it; keep the motion small beside the cells, or let the surface slide \
          with surface_velocity_m_s"
     )
-}
-
-/// Whether a wall lies on conducting faces of the domain.
-fn is_conducting_face(domain: &Domain, shape: &WallShape) -> bool {
-    let is_face = |place: &Vector3<f64>, out: &Vector3<f64>| {
-        domain.face_under(place, out).is_some_and(Boundary::is_conductor)
-    };
-    match shape {
-        WallShape::Plane { point, normal } => is_face(point, &-normal),
-        WallShape::Mesh(mesh) => mesh.triangles.iter().all(|triangle| {
-            let [a, b, c] = triangle.map(|vertex| mesh.vertices[vertex as usize]);
-            let normal = (b - a).cross(&(c - a)).normalize();
-            [normal, -normal].iter().any(|out| [a, b, c].iter().all(|place| is_face(place, out)))
-        }),
-    }
 }

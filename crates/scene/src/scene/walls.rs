@@ -1,15 +1,15 @@
 //! Sections `[[walls]]`.
 
+use super::wall_field::{Surroundings, read_wall_field};
 use super::wall_motion::read_motion;
 use crate::SceneError;
 use crate::error::Problems;
 use crate::materials::Materials;
 use crate::poly_mesh::{PatchError, PolyMesh};
-use crate::scene::OpenFoamSettings;
 use crate::source::SceneSource;
 use crate::stl::{Surface, read_stl};
 use crate::table::SceneTable;
-use amberfield_core::{Domain, Fingerprint, TriangleMesh, Wall, WallCharging, WallShape};
+use amberfield_core::{Conductor, Domain, Fingerprint, TriangleMesh, Wall, WallCharging, WallShape};
 
 /// Length below which a normal has no direction.
 const SHORTEST_NORMAL: f64 = 1e-100;
@@ -26,6 +26,8 @@ pub(super) struct ReadWalls {
     pub(super) walls: Vec<Wall>,
     /// `OpenFOAM` patch of each wall.
     pub(super) patches: Vec<Option<String>>,
+    /// Walls that bound the field, in their order.
+    pub(super) conductors: Vec<Conductor>,
     pub(super) warnings: Vec<String>,
 }
 
@@ -34,31 +36,37 @@ struct ReadWall {
     wall: Wall,
     /// `OpenFOAM` patch with the same surface.
     patch: Option<String>,
+    /// What it is to the field, where it bounds it.
+    conductor: Option<Conductor>,
 }
 
 /// Reads `[[walls]]`.
 pub(super) fn read_walls(
     document: &SceneTable<'_>,
     materials: &Materials,
-    solver: Option<&OpenFoamSettings>,
-    domain: Option<&Domain>,
+    around: Surroundings<'_>,
     source: &mut SceneSource,
 ) -> Result<ReadWalls, SceneError> {
-    let mut read = ReadWalls { walls: Vec::new(), patches: Vec::new(), warnings: Vec::new() };
-    let mut mesh = solver.map(|solver| PolyMesh::of(&solver.openfoam_case, source.mesh()));
+    let (walls, patches, conductors, warnings) = Default::default();
+    let mut read = ReadWalls { walls, patches, conductors, warnings };
+    let mut mesh = around.solver.map(|solver| PolyMesh::of(&solver.openfoam_case, source.mesh()));
     let mut problems = Problems::default();
     for table in document.tables("walls")?.into_iter().flatten() {
         let wall = table.and_then(|table| {
-            let read = read_wall(&table, materials, mesh.as_mut(), source, &mut read.warnings)?;
-            check_size(&table, &read.wall, domain).map(|()| read)
+            let mut read = read_wall(&table, materials, mesh.as_mut(), source, &mut read.warnings)?;
+            check_size(&table, &read.wall, around.domain)?;
+            read.conductor = read_wall_field(&table, &read.wall, around)?;
+            read.wall.bounds_field |= read.conductor.is_some();
+            Ok(read)
         });
         // Whoever can make the mesh does so and reads the scene again.
         if let Err(error @ SceneError::NoMesh { .. }) = wall {
             return Err(error);
         }
-        if let Some(ReadWall { wall, patch }) = problems.keep(wall) {
+        if let Some(ReadWall { wall, patch, conductor }) = problems.keep(wall) {
             read.walls.push(wall);
             read.patches.push(patch);
+            read.conductors.extend(conductor);
         }
     }
     problems.finish().map(|()| read)
@@ -113,7 +121,8 @@ fn read_wall(
     let patch = patch.map(ToOwned::to_owned);
     let charging = charging.unwrap_or(usual);
     let motion = read_motion(table, source)?;
-    Ok(ReadWall { wall: Wall { name, shape, material, charging, bounds_field, motion }, patch })
+    let wall = Wall { name, shape, material, charging, bounds_field, motion };
+    Ok(ReadWall { wall, patch, conductor: None })
 }
 
 /// Refuses a surface that is so large that its file is in another unit.

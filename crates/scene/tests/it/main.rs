@@ -17,3 +17,4 @@ mod outputs;
 mod potentials;
 mod round_trips;
 mod vtk_files;
+mod wall_fields;
