@@ -52,11 +52,13 @@ fn facets(scene: &Scene, conductor: &Conductor) -> String {
     sizes.sort_by(f64::total_cmp);
     let radii = [&scene.particles.radius, &scene.feeds.grains.radius].into_iter().flatten();
     let smallest = radii.copied().filter(|radius| *radius > 0.0).min_by(f64::total_cmp);
+    let [least, median, most] = [0, sizes.len() / 2, sizes.len() - 1].map(|at| match smallest {
+        Some(radius) => format!("{:.2}", sizes[at] / radius),
+        None => format!("{:.3e}", sizes[at]),
+    });
     let unit = if smallest.is_some() { "radii of the smallest grain" } else { "m" };
-    let [least, median, most] =
-        [0, sizes.len() / 2, sizes.len() - 1].map(|at| sizes[at] / smallest.unwrap_or(1.0));
     format!(
-        ", bounds the field by {} facets of {least:.3e} to {most:.3e} {unit}, {median:.3e} in the median",
+        ", bounds the field by {} facets of {least} to {most} {unit}, {median} in the median",
         sizes.len()
     )
 }
