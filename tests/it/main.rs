@@ -22,4 +22,5 @@ mod run;
 mod scenes;
 mod start;
 mod study;
+mod wall_fields;
 mod what_must_not_matter;
