@@ -158,7 +158,7 @@ fn a_contact_takes_the_charge_that_it_takes_on_a_grounded_face() {
         ["wall_charge_C", "kinetic_J", "collisions"].map(|name| *history.numbers(name).last().unwrap())
     });
     assert_eq!([facets[2], face[2]], [1.0; 2], "both bounce off the wall once");
-    // Images that counted twice would move a fifth more.
+    // Images that counted twice would move twice as much.
     for (found, expected) in facets.iter().zip(face) {
         assert!((found / expected - 1.0).abs() < OF_PLATE, "{facets:?} {face:?}");
     }
