@@ -107,7 +107,7 @@ fn there_is_no_field_in_a_conductor_at_a_potential_or_with_a_charge() {
         let size = |row: usize| e.iter().map(|e| e[row] * e[row]).sum::<f64>().sqrt();
         (table.numbers("potential_V"), [0, 1, 2].map(size))
     };
-    // A cube of edge a has the capacity 0.660 678 · 4πε a: Hwang and Mascagni, J. Appl. Phys. 95, 3798 (2004).
+    // A cube of edge a has the capacity 0.660 678 · 4πεa: Hwang and Mascagni, J. Appl. Phys. 95, 3798 (2004).
     let capacity = 0.660_678 * 2e-3 / COULOMB;
     let (volts, e) = found(&[]);
     for inside in 0..2 {

@@ -332,7 +332,7 @@ fn unknown_grounded_walls(scene: &Scene) -> impl Iterator<Item = &Wall> {
     scene.walls.iter().filter(move |wall| wall.charging == WallCharging::Grounded && !is_known(wall))
 }
 
-/// What bounds the field beside a wall that does not.
+/// Kind of what bounds the field beside a wall that does not.
 #[derive(Clone, Copy)]
 enum Beside {
     Faces,

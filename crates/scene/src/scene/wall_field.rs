@@ -12,7 +12,7 @@ use amberfield_core::{
 /// Facets that fit grains, over the radius of the smallest one.
 const FITTING: [f64; 2] = [0.5, 5.0];
 
-/// What decides whether a wall can bound the field.
+/// Sections that decide whether a wall can bound the field.
 #[derive(Clone, Copy)]
 pub(super) struct Surroundings<'a> {
     pub(super) solver: Option<&'a OpenFoamSettings>,
@@ -127,8 +127,8 @@ fn check_place(table: &SceneTable<'_>, surface: &TriangleMesh, domain: &Domain) 
     }
     if let Some((face, reach)) = beyond(surface, domain) {
         let problem = format!(
-            "the surface reaches {reach:.3e} m beyond the face {face}, which is not open: what lies there has \
-             an image or a copy within the box; cut the surface at the face, or make the face open"
+            "the surface reaches {reach:.3e} m beyond the face {face}, which is not open: what lies there \
+             has an image or a copy within the box; cut the surface at the face, or make the face open"
         );
         return Err(table.bad("field", problem));
     }

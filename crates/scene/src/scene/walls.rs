@@ -36,7 +36,7 @@ struct ReadWall {
     wall: Wall,
     /// `OpenFOAM` patch with the same surface.
     patch: Option<String>,
-    /// What it is to the field, where it bounds it.
+    /// Conductor that it is to the field, where it bounds it.
     conductor: Option<Conductor>,
 }
 
