@@ -115,7 +115,7 @@ impl ElectricField {
         charges: &[f64],
     ) -> Result<Option<Measured>, FieldError> {
         if !self.settings.conductors.is_empty() {
-            return self.measure_before_surfaces(positions, charges).map(Some);
+            return self.measure_before_surfaces(positions, charges);
         }
         let Choice::P3m(parameters) = self.choice else { return Ok(None) };
         if self.mesh_cells.is_some() {

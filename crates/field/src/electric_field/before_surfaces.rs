@@ -20,6 +20,9 @@ use nalgebra::Vector3;
 /// Share of the tolerance that the sum over charges gets; facets have the rest.
 const OF_SUM: f64 = 0.5;
 
+/// Most facets of a check by facets split in four: their matrix has 0.6 GB.
+const MOST_FOR_A_CHECK: usize = 12_000;
+
 /// Surfaces of a scene, and the box in which charges, images and the surfaces' own charges lie.
 struct Before {
     surfaces: Surfaces,
@@ -114,12 +117,22 @@ impl ElectricField {
     }
 
     /// Measures the error of E at all grains: by facets split in four, and by a second splitting of p3m.
+    /// `None` where the split facets are too many.
     pub(super) fn measure_before_surfaces(
         &mut self,
         positions: &[Vector3<f64>],
         charges: &[f64],
-    ) -> Result<Measured, FieldError> {
+    ) -> Result<Option<Measured>, FieldError> {
         let finer = FieldSettings { conductors: split(&self.settings.conductors), ..self.settings.clone() };
+        let facets: usize = finer.conductors.iter().map(|finer| finer.surface.triangles.len()).sum();
+        if facets > MOST_FOR_A_CHECK {
+            tracing::warn!(
+                facets = facets / 4,
+                most = MOST_FOR_A_CHECK / 4,
+                "the conductors have too many facets for their error to be measured"
+            );
+            return Ok(None);
+        }
         let choice = match &self.choice {
             Choice::P3m(parameters) => Choice::P3m(second_splitting(*parameters)),
             choice => choice.clone(),
@@ -144,7 +157,7 @@ impl ElectricField {
             );
         }
         self.error_measured = Some(measured);
-        Ok(measured)
+        Ok(Some(measured))
     }
 }
 

@@ -251,6 +251,7 @@ impl ElectricField {
                 settings.method
             )));
         }
+        check_no_conductors(settings, "whose parameters are compared")?;
         check_scene(domain, settings, positions, charges)?;
         let grains = OneProcess { domain, settings, positions, charges };
         let tuner = Tuner::new(domain, settings, grains.statistics(), &grains);

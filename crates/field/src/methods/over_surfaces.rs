@@ -136,7 +136,6 @@ impl FieldMethod for OverSurfaces {
             looks += 1;
         }
         tracing::debug!(looks, missing = self.missing, "surfaces");
-        self.surfaces.end(looks > 1);
         self.stopwatch.lap("surfaces");
         Ok(Levels {
             coulomb: look.coulomb,

@@ -59,9 +59,6 @@ pub(crate) struct Surfaces {
     floating: Floating,
     /// Potential of each conductor over Coulomb's constant [C/m].
     potentials: Vec<f64>,
-    /// Density that the last two evaluations ended with [C/m²]; empty before.
-    density: Vec<f64>,
-    before: Vec<f64>,
     /// Density whose points are in use, and what the equation makes of it [C/m²].
     in_use: Vec<f64>,
     corrected: Vec<f64>,
@@ -92,7 +89,6 @@ impl Surfaces {
             ConductorState::Charge(_) => 0.0,
         };
         let floating = Floating::new(conductors, &elements, &matrix);
-        let nothing = vec![0.0; elements.len()];
         Ok(Self {
             buckets: points::buckets_of(&elements),
             potentials: conductors.iter().map(potential).collect(),
@@ -104,9 +100,7 @@ impl Surfaces {
             points: Points::default(),
             images: SurfaceImages::new(walls, domain, conductors.len()),
             floating,
-            density: Vec::new(),
-            before: Vec::new(),
-            in_use: nothing,
+            in_use: Vec::new(),
             corrected: Vec::new(),
         })
     }
@@ -128,15 +122,15 @@ impl Surfaces {
         self.elements.all.iter().map(|element| element.centre)
     }
 
-    /// Begins an evaluation for grains at these places [m]: the density goes on as it did.
+    /// Begins an evaluation for grains at these places [m], from no density: nothing is kept from one
+    /// evaluation to the next, so that a run that is resumed has the field of one that never stopped.
     pub(crate) fn begin(&mut self, grains: &[Vector3<f64>], charges: &[f64]) {
         self.images.find(&self.elements, &self.buckets, grains, charges);
         self.points.place(&self.elements, &self.buckets, grains);
-        if !self.before.is_empty() {
-            let both = self.density.iter().zip(&self.before);
-            self.in_use = both.map(|(now, before)| 2.0 * now - before).collect();
-        } else if !self.density.is_empty() {
-            self.in_use.clone_from(&self.density);
+        self.in_use.clear();
+        self.in_use.resize(self.elements.len(), 0.0);
+        for &conductor in &self.floating.conductors {
+            self.potentials[conductor] = 0.0;
         }
         self.points.charge(&self.elements, &self.in_use);
     }
@@ -145,14 +139,6 @@ impl Surfaces {
     pub(crate) fn look_again(&mut self) {
         std::mem::swap(&mut self.in_use, &mut self.corrected);
         self.points.charge(&self.elements, &self.in_use);
-    }
-
-    /// Ends an evaluation: the next one goes on from the corrected density, along a line unless it jumped.
-    pub(crate) fn end(&mut self, jumped: bool) {
-        self.before = std::mem::replace(&mut self.density, std::mem::take(&mut self.corrected));
-        if jumped {
-            self.before.clear();
-        }
     }
 
     /// Images of the grains, with their charges [C].
