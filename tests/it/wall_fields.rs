@@ -56,7 +56,7 @@ fn domain(z_m: f64, z_min: &str) -> String {
     )
 }
 
-const FIELD: &str = "particles.file = 'grains.csv'\n[electric_field]\ntolerance = 1e-3\ntuning = 'model'\n";
+const FIELD: &str = "particles.file = 'grains.csv'\n[electric_field]\ntolerance = 1e-2\ntuning = 'model'\n";
 
 /// Rows of `amberfield field`.
 fn field(bench: &Workbench, options: &[&str]) -> CsvTable {
