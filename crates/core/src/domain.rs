@@ -341,6 +341,27 @@ impl Domain {
         })
     }
 
+    /// Name of the face of some kind beyond which a region with these corners [m] reaches farthest, and how
+    /// far [m]; `None` where it reaches beyond none.
+    #[must_use]
+    pub fn farthest_beyond(
+        &self,
+        [low, high]: &[Vector3<f64>; 2],
+        is_meant: impl Fn(Boundary) -> bool,
+    ) -> Option<(&'static str, f64)> {
+        let reach = |(axis, side): (Axis, Side)| {
+            let k = axis.index();
+            let reach = match side {
+                Side::Min => self.min[k] - low[k],
+                Side::Max => high[k] - self.max[k],
+            };
+            let is_beyond = is_meant(self.face(axis, side)) && reach > self.same_place_m();
+            is_beyond.then(|| (axis.face_name(side), reach))
+        };
+        let faces = Axis::ALL.into_iter().flat_map(|axis| [(axis, Side::Min), (axis, Side::Max)]);
+        faces.filter_map(reach).max_by(|(_, a), (_, b)| a.total_cmp(b))
+    }
+
     /// The point moved by whole periods into the half-open box along the periodic axes.
     #[must_use]
     pub fn wrap(&self, mut point: Vector3<f64>) -> Vector3<f64> {

@@ -24,12 +24,17 @@ impl TriangleMesh {
         Some(self.vertices.iter().fold([first; 2], around))
     }
 
-    /// Edge of the equilateral triangle of the area of each triangle [m].
+    /// Size of a triangle of this area [m²]: the edge of the equilateral one [m].
+    #[must_use]
+    pub fn size_of(area: f64) -> f64 {
+        (4.0 / 3.0_f64.sqrt() * area).sqrt()
+    }
+
+    /// Size of each triangle [m], see [`Self::size_of`].
     pub fn sizes(&self) -> impl ExactSizeIterator<Item = f64> + '_ {
         self.triangles.iter().map(|triangle| {
             let [a, b, c] = triangle.map(|vertex| self.vertices[vertex as usize]);
-            let area = 0.5 * (b - a).cross(&(c - a)).norm();
-            (4.0 / 3.0_f64.sqrt() * area).sqrt()
+            Self::size_of(0.5 * (b - a).cross(&(c - a)).norm())
         })
     }
 

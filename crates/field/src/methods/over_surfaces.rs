@@ -26,8 +26,6 @@ pub(crate) struct OverSurfaces {
     positions: Vec<Vector3<f64>>,
     charges: Vec<f64>,
     parts: Parts,
-    /// Field that the last evaluation left missing on the surfaces, relative to E_rms.
-    missing: f64,
     /// Coulomb's constant of the medium [V m/C].
     coulomb: f64,
     stopwatch: Stopwatch,
@@ -52,7 +50,6 @@ impl OverSurfaces {
             positions: Vec::new(),
             charges: Vec::new(),
             parts: Parts::default(),
-            missing: 0.0,
             coulomb: 0.0,
             stopwatch: Stopwatch::default(),
         }
@@ -74,8 +71,7 @@ impl OverSurfaces {
         self.charges.extend_from_slice(charges);
     }
 
-    /// Evaluates the field of all charges at the grains, and what the surfaces' density is off by; returns
-    /// the field that is missing on them over the scale of E.
+    /// Evaluates the field of all charges at the grains, and what the surfaces' density is off by.
     fn look(&mut self, time_s: f64, positions: &[Vector3<f64>], charges: &[f64]) -> Result<Look, FieldError> {
         self.load(positions, charges);
         let wanted = Wanted { potential: true, ..Wanted::default() };
@@ -97,24 +93,22 @@ impl OverSurfaces {
         let far =
             |grain| levels.middle.at(grain) + levels.far_of_charges.at(grain) + levels.correction.at(grain);
         self.parts.far.extend((0..grains).map(far));
-        let look = Look {
-            coulomb: levels.coulomb,
-            at_centre: levels.own_clouds.at_centre,
-            background: levels.background,
-        };
+        let (at_centre, background) = (levels.own_clouds.at_centre, levels.background);
         let charged = charges.iter().filter(|charge| **charge != 0.0).count().max(1);
         let scale = per_volt * (squares / charged as f64).sqrt();
         let missing = self.surfaces.correct(&potential);
-        self.missing = if missing == 0.0 { 0.0 } else { missing / scale.max(self.surfaces.least_scale()) };
-        Ok(look)
+        let missing = if missing == 0.0 { 0.0 } else { missing / scale.max(self.surfaces.least_scale()) };
+        Ok(Look { at_centre, background, missing })
     }
 }
 
-/// Numbers that a look at the equation leaves of the method's levels.
+/// Numbers that a look at the equation leaves.
 struct Look {
-    coulomb: f64,
+    /// Potentials that the method's levels have beside the fields at places.
     at_centre: f64,
     background: f64,
+    /// Field that is missing on the surfaces, over the scale of E.
+    missing: f64,
 }
 
 impl FieldMethod for OverSurfaces {
@@ -130,15 +124,15 @@ impl FieldMethod for OverSurfaces {
         self.stopwatch.lap("images");
         let mut look = self.look(time_s, positions, charges)?;
         let mut looks = 1;
-        while self.missing > ENOUGH * self.tolerance && looks < MOST_LOOKS {
+        while look.missing > ENOUGH * self.tolerance && looks < MOST_LOOKS {
             self.surfaces.look_again();
             look = self.look(time_s, positions, charges)?;
             looks += 1;
         }
-        tracing::debug!(looks, missing = self.missing, "surfaces");
+        tracing::debug!(looks, missing = look.missing, "surfaces");
         self.stopwatch.lap("surfaces");
         Ok(Levels {
-            coulomb: look.coulomb,
+            coulomb: self.coulomb,
             near: Part::new(&self.parts.near),
             far_of_charges: Part::new(&self.parts.far),
             own_clouds: OwnClouds { charges, at_centre: look.at_centre },

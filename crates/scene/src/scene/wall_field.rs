@@ -5,7 +5,7 @@ use crate::SceneError;
 use crate::scene::OpenFoamSettings;
 use crate::table::SceneTable;
 use amberfield_core::{
-    Axis, Boundary, Conductor, ConductorState, Domain, Method, MotionKind, Side, TriangleMesh, Vector3, Wall,
+    Boundary, Conductor, ConductorState, Domain, Method, MotionKind, TriangleMesh, Vector3, Wall,
     WallCharging, WallShape,
 };
 
@@ -125,7 +125,9 @@ fn check_place(table: &SceneTable<'_>, surface: &TriangleMesh, domain: &Domain) 
              that of a conductor with; ground a face or make one open",
         ));
     }
-    if let Some((face, reach)) = beyond(surface, domain) {
+    let is_closed = |boundary| boundary != Boundary::Open;
+    let beyond = surface.bounds().and_then(|bounds| domain.farthest_beyond(&bounds, is_closed));
+    if let Some((face, reach)) = beyond {
         let problem = format!(
             "the surface reaches {reach:.3e} m beyond the face {face}, which is not open: what lies there \
              has an image or a copy within the box; cut the surface at the face, or make the face open"
@@ -144,22 +146,6 @@ fn check_place(table: &SceneTable<'_>, surface: &TriangleMesh, domain: &Domain) 
         return Err(table.bad("field", problem));
     }
     Ok(())
-}
-
-/// Face that is not open beyond which a surface reaches farthest, and how far [m].
-fn beyond(surface: &TriangleMesh, domain: &Domain) -> Option<(&'static str, f64)> {
-    let [low, high] = surface.bounds()?;
-    let reach = |(axis, side): (Axis, Side)| {
-        let k = axis.index();
-        let reach = match side {
-            Side::Min => domain.min()[k] - low[k],
-            Side::Max => high[k] - domain.max()[k],
-        };
-        let is_beyond = domain.face(axis, side) != Boundary::Open && reach > domain.same_place_m();
-        is_beyond.then(|| (axis.face_name(side), reach))
-    };
-    let faces = Axis::ALL.into_iter().flat_map(|axis| [(axis, Side::Min), (axis, Side::Max)]);
-    faces.filter_map(reach).max_by(|(_, a), (_, b)| a.total_cmp(b))
 }
 
 /// Whether a wall leaves its place.

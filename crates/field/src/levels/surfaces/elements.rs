@@ -1,6 +1,6 @@
 //! Boundary elements: the facets of the conductors' surfaces, each with an even density.
 
-use amberfield_core::Conductor;
+use amberfield_core::{Conductor, TriangleMesh};
 use nalgebra::{Matrix3, Vector3};
 use std::f64::consts::FRAC_PI_2;
 
@@ -38,7 +38,7 @@ impl Element {
         let centre = (a + b + c) / 3.0;
         let radius = corners.iter().map(|corner| (corner - centre).norm()).fold(0.0, f64::max);
         let normal = across.try_normalize(f64::MIN_POSITIVE)?;
-        let size = (4.0 / 3.0_f64.sqrt() * area).sqrt();
+        let size = TriangleMesh::size_of(area);
         Some(Self { corners, centre, normal, area, size, radius, conductor })
     }
 
@@ -100,6 +100,13 @@ impl Elements {
             element.centre += step;
             element.corners = element.corners.map(|corner| corner + step);
         }
+    }
+
+    /// Mean over the area of a function of a density.
+    pub(super) fn mean(&self, density: &[f64], function: impl Fn(f64) -> f64) -> f64 {
+        let area: f64 = self.all.iter().map(|element| element.area).sum();
+        let parts = self.all.iter().zip(density).map(|(element, x)| element.area * function(*x));
+        parts.sum::<f64>() / area
     }
 
     pub(super) fn len(&self) -> usize {

@@ -23,12 +23,13 @@ pub(crate) use split::split;
 use crate::error::FieldError;
 use crate::levels::walls::{Buckets, FacetWalls, Facets};
 use crate::numerics::gmres;
-use amberfield_core::{Axis, Boundary, Conductor, ConductorState, Domain, Side};
+use amberfield_core::{Boundary, Conductor, ConductorState, Domain};
 use elements::{Element, Elements};
 use images::SurfaceImages;
 use matrix::Matrix;
 use nalgebra::{DMatrix, DVector, Vector3};
 use points::Points;
+use std::f64::consts::TAU;
 
 /// Distance of two centroids over the size of the other facet up to which its points are corrected.
 const NEAR: f64 = 3.0;
@@ -149,10 +150,7 @@ impl Surfaces {
     /// Scale of E below which nothing is resolved, over Coulomb's constant [C/m²]: that of the conductors'
     /// own charge.
     pub(crate) fn least_scale(&self) -> f64 {
-        let area: f64 = self.elements.all.iter().map(|element| element.area).sum();
-        let charge: f64 =
-            self.elements.all.iter().zip(&self.in_use).map(|(element, x)| (element.area * x).abs()).sum();
-        (charge / area).max(f64::MIN_POSITIVE)
+        self.elements.mean(&self.in_use, f64::abs).max(f64::MIN_POSITIVE)
     }
 
     /// Points with the charges [C] of the density in use.
@@ -180,10 +178,7 @@ impl Surfaces {
         let product = |x: &[f64], out: &mut Vec<f64>| self.matrix.product(x, out);
         let mut change = gmres::solve(product, &residual, SOLVED, MOST_PRODUCTS);
         self.float(&mut change);
-        let area: f64 = self.elements.all.iter().map(|element| element.area).sum();
-        let squares =
-            self.elements.all.iter().zip(&change).map(|(element, change)| element.area * change * change);
-        let missing = std::f64::consts::TAU * (squares.sum::<f64>() / area).sqrt();
+        let missing = TAU * self.elements.mean(&change, |change| change * change).sqrt();
         self.corrected.clear();
         self.corrected.extend(self.in_use.iter().zip(&change).map(|(now, change)| now + change));
         missing
@@ -290,8 +285,9 @@ fn check(conductors: &[Conductor], domain: &Domain, elements: &Elements) -> Resu
         if surface.vertices.iter().flatten().any(|x| !x.is_finite()) {
             return refuse(format!("conductor {} has a corner that is not finite", conductor.name));
         }
-        let overrun = surface.bounds().and_then(|bounds| overrun_of_faces(domain, &bounds));
-        if let Some(face) = overrun {
+        let is_closed = |boundary| !matches!(boundary, Boundary::Open | Boundary::Periodic);
+        let beyond = surface.bounds().and_then(|bounds| domain.farthest_beyond(&bounds, is_closed));
+        if let Some((face, _)) = beyond {
             return refuse(format!(
                 "conductor {} reaches beyond {face}, which is no open face of the domain; move the face or \
                  cut the surface there",
@@ -300,20 +296,4 @@ fn check(conductors: &[Conductor], domain: &Domain, elements: &Elements) -> Resu
         }
     }
     Ok(())
-}
-
-/// The face of the domain, neither open nor periodic, that a box crosses.
-fn overrun_of_faces(domain: &Domain, [low, high]: &[Vector3<f64>; 2]) -> Option<&'static str> {
-    let closed = |axis, side| !matches!(domain.face(axis, side), Boundary::Open | Boundary::Periodic);
-    let slack = domain.same_place_m();
-    Axis::ALL.into_iter().find_map(|axis| {
-        let k = axis.index();
-        let below = closed(axis, Side::Min) && low[k] < domain.min()[k] - slack;
-        let above = closed(axis, Side::Max) && high[k] > domain.max()[k] + slack;
-        match (below, above) {
-            (true, _) => Some(axis.face_name(Side::Min)),
-            (_, true) => Some(axis.face_name(Side::Max)),
-            _ => None,
-        }
-    })
 }

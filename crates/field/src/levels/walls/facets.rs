@@ -7,7 +7,7 @@
 use super::boundary::{BoundaryFace, BoundaryFaces, Carrier, Condition};
 use super::edges::Corners;
 use crate::error::FieldError;
-use amberfield_core::Domain;
+use amberfield_core::{Domain, TriangleMesh};
 use nalgebra::{Matrix3, Vector3};
 use std::collections::HashMap;
 
@@ -63,7 +63,7 @@ impl Facets {
             // Normals point out of the space of the grains: the front's corners turn the other way.
             corners.extend([a, c, b, a, b, c]);
         }
-        let edge = |facet: usize| (4.0 / 3_f64.sqrt() * faces[2 * facet].area).sqrt();
+        let edge = |facet: usize| TriangleMesh::size_of(faces[2 * facet].area);
         let cell: Vec<f64> = (0..count).map(|facet| CELL_OF_EDGE * edge(facet)).collect();
         let sides = triangles.iter().flat_map(|[a, b, c]| [b - a, c - b, a - c]);
         let shortest_edge = sides.map(|side| side.norm()).fold(f64::INFINITY, f64::min);
