@@ -45,6 +45,8 @@ mod madelung;
 mod particle_impacts;
 #[path = "pull-off/check.rs"]
 mod pull_off;
+#[path = "sensing-ring/check.rs"]
+mod sensing_ring;
 #[path = "separator/check.rs"]
 mod separator;
 #[path = "settling-charged-bed/check.rs"]

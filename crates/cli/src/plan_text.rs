@@ -33,8 +33,9 @@ pub(crate) fn walls(scene: &Scene) -> Vec<String> {
             |[low, high]| format!("{:?} to {:?} m", low.as_slice(), high.as_slice()),
         ),
     };
-    let bounds =
-        |wall: usize| scene.conductor(wall).map(|conductor| facets(scene, conductor)).unwrap_or_default();
+    let bounds = |wall: usize| {
+        scene.conductor(wall).map(|conductor| facets(scene, wall, conductor)).unwrap_or_default()
+    };
     scene
         .walls
         .iter()
@@ -47,7 +48,7 @@ pub(crate) fn walls(scene: &Scene) -> Vec<String> {
 }
 
 /// Facets of a conductor, over the radius of the smallest grain where grains have one.
-fn facets(scene: &Scene, conductor: &Conductor) -> String {
+fn facets(scene: &Scene, wall: usize, conductor: &Conductor) -> String {
     let mut sizes: Vec<f64> = conductor.surface.sizes().collect();
     sizes.sort_by(f64::total_cmp);
     let radii = [&scene.particles.radius, &scene.feeds.grains.radius].into_iter().flatten();
@@ -57,8 +58,14 @@ fn facets(scene: &Scene, conductor: &Conductor) -> String {
         None => format!("{:.3e}", sizes[at]),
     });
     let unit = if smallest.is_some() { "radii of the smallest grain" } else { "m" };
+    let given = match &scene.walls[wall].shape {
+        WallShape::Mesh(mesh) if mesh.triangles.len() < sizes.len() => {
+            format!(" (cut from {})", mesh.triangles.len())
+        }
+        _ => String::new(),
+    };
     format!(
-        ", bounds the field by {} facets of {least} to {most} {unit}, {median} in the median",
+        ", bounds the field by {} facets{given} of {least} to {most} {unit}, {median} in the median",
         sizes.len()
     )
 }

@@ -1,6 +1,6 @@
 //! Conductors whose surfaces bound the electric field without a mesh around them.
 
-use crate::wall::TriangleMesh;
+use crate::triangle_mesh::TriangleMesh;
 use serde::{Deserialize, Serialize};
 
 /// Given state of a conductor: the other of the two follows from the field.

@@ -1,8 +1,8 @@
 //! Grains that come while a run goes on.
 
 use crate::particles::Particles;
+use crate::triangle_mesh::TriangleMesh;
 use crate::volume::Volume;
-use crate::wall::TriangleMesh;
 use nalgebra::Vector3;
 use serde::{Deserialize, Serialize};
 

@@ -3,6 +3,7 @@
 mod before_surfaces;
 mod building;
 mod changing;
+mod of_conductors;
 
 use crate::choosing::choice::{Choice, Measured};
 use crate::choosing::over_mesh;
@@ -25,6 +26,7 @@ use nalgebra::Vector3;
 use std::sync::Arc;
 
 pub use changing::GivenField;
+pub use of_conductors::ConductorValues;
 
 /// Cost of the last evaluation.
 #[derive(Clone, Debug, Default, PartialEq)]

@@ -20,14 +20,14 @@ mod values;
 
 pub use choosing::candidates::Candidate;
 pub use choosing::choice::{Choice, Measured};
-pub use electric_field::{ElectricField, GivenField, Statistics};
+pub use electric_field::{ConductorValues, ElectricField, GivenField, Statistics};
 pub use error::FieldError;
 pub use levels::faces::BoundaryField;
 pub use levels::far;
 pub use methods::cutoff::Cutoff;
 pub use methods::direct::Direct;
 pub use methods::kolehmainen::Kolehmainen;
-pub use methods::method::{FieldMethod, TwoSplittings};
+pub use methods::method::{FieldMethod, TwoSplittings, UnitPotential};
 pub use methods::p3m_parameters::P3mParameters;
 pub use ranks::{Parcels, Ranks, ThreadRank};
 pub use sum::{Levels, OwnClouds, Part};

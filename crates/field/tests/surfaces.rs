@@ -38,6 +38,130 @@ fn field(domain: &Domain, settings: &FieldSettings, charges: &Charges) -> (Vec<V
     (values.e, stated, field.potentials_of_conductors())
 }
 
+/// Charges of the conductors [C] over the unit of the problem.
+fn charges_of_conductors(domain: &Domain, settings: &FieldSettings, charges: &Charges) -> Vec<f64> {
+    let Charges { position, charge, .. } = charges;
+    let mut field = ElectricField::new(domain, settings, position, charge).expect("a field");
+    let at_rest = vec![Vector3::zeros(); position.len()];
+    let values = field.values_of_conductors(position, charge, &at_rest).expect("finite values");
+    values.iter().map(|values| values.charge_c).collect()
+}
+
+#[test]
+fn conductors_have_the_charge_that_the_reference_has() {
+    let problem = surfaces::sphere_inside();
+    let of_sphere = settings(problem.surface.clone(), ConductorState::Potential(7.0));
+    let found = charges_of_conductors(&open_box(2.0), &of_sphere, &problem.charges)[0];
+    let expected = surfaces::total("sphere_inside", "charge of the wall");
+    // A cavity has minus the charge within it, and outside of it what its potential asks for: V/k R, R = 1.
+    let expected = expected + 7.0 / coulomb();
+    let of_charges: f64 = problem.charges.charge.iter().map(|charge| charge.abs()).sum();
+    assert!((found - expected).abs() < 2e-3 * of_charges, "{found} {expected} of {of_charges}");
+
+    let problem = surfaces::disc_potential();
+    let volts = coulomb() * surfaces::total("disc_potential", "potential of the disc (given)");
+    let of_disc = settings(problem.surface.clone(), ConductorState::Potential(volts));
+    let found = charges_of_conductors(&open_box(2.0), &of_disc, &problem.charges)[0];
+    let expected = surfaces::total("disc_potential", "charge of the disc");
+    let of_charges: f64 = problem.charges.charge.iter().map(|charge| charge.abs()).sum();
+    assert!((found - expected).abs() < 1e-2 * of_charges, "{found} {expected} of {of_charges}");
+}
+
+/// Two spheres of radius 1 and 0.5 about (0, 0, 0) and (0, 0, 2.5): with charges as in free space they
+/// induce each other, and potentials tell the charges by Maxwell's images.
+fn two_spheres() -> [TriangleMesh; 2] {
+    let unit = surfaces::sphere_inside().surface;
+    let small = |vertex: &Vector3<f64>| 0.5 * vertex + Vector3::z() * 2.5;
+    let other = TriangleMesh { vertices: unit.vertices.iter().map(small).collect(), ..unit.clone() };
+    [unit, other]
+}
+
+/// Charges of two spheres at potentials V and W over Coulomb's constant, by images of images
+/// (Maxwell, A Treatise on Electricity and Magnetism, §173).
+fn charges_of_two_spheres(potentials: [f64; 2]) -> [f64; 2] {
+    let (radii, centres) = ([1.0, 0.5], [0.0, 2.5]);
+    let mut total = [0.0; 2];
+    for (first, potential) in potentials.into_iter().enumerate() {
+        let (mut at, mut within, mut charge) = (centres[first], first, potential * radii[first]);
+        for _ in 0..60 {
+            total[within] += charge;
+            within = 1 - within;
+            let apart: f64 = at - centres[within];
+            charge *= -radii[within] / apart.abs();
+            at = centres[within] + radii[within] * radii[within] / apart;
+        }
+    }
+    total
+}
+
+#[test]
+fn two_spheres_have_maxwells_charges_and_a_charge_that_passes_makes_ramos_current() {
+    let volts = [3.0 * coulomb(), -2.0 * coulomb()];
+    let bodies = two_spheres();
+    let settings_at = |states: [ConductorState; 2]| {
+        let conductors = bodies.iter().zip(states).map(|(surface, state)| Conductor {
+            name: "sphere.stl".into(),
+            surface: surface.clone(),
+            state,
+        });
+        FieldSettings {
+            tuning: Tuning::Model,
+            method: Method::Direct,
+            conductors: conductors.collect(),
+            ..FieldSettings::default()
+        }
+    };
+    let position = [Vector3::new(0.3, -1.2, 0.9), Vector3::new(-0.4, 0.2, 3.4)];
+    let velocity = [Vector3::new(2.0, 3.0, -1.0), Vector3::new(-1.0, 0.5, 1.5)];
+    let charge = [1.5, -0.7];
+    let values = |settings: &FieldSettings, position: &[Vector3<f64>], charge: &[f64]| {
+        let mut field = ElectricField::new(&open_box(6.0), settings, position, charge).expect("a field");
+        let mut out = FieldValues::default();
+        field.evaluate(position, charge, Wanted::default(), &mut out).expect("finite values");
+        field.values_of_conductors(position, charge, &velocity).expect("finite values")
+    };
+    // No charges: images of images.
+    let at_volts = settings_at(volts.map(ConductorState::Potential));
+    let found = values(&at_volts, &position, &[0.0; 2]);
+    for (found, expected) in found.iter().zip(charges_of_two_spheres([3.0, -2.0])) {
+        assert!((found.charge_c / expected - 1.0).abs() < 5e-3, "{found:?} {expected}");
+        assert_eq!(found.current_a, 0.0);
+    }
+    // One sphere alone before charges: −q R/r, and its change with time.
+    let alone = FieldSettings { conductors: at_volts.conductors[..1].to_vec(), ..at_volts.clone() };
+    let alone = FieldSettings {
+        conductors: alone
+            .conductors
+            .iter()
+            .map(|one| Conductor { state: ConductorState::Potential(0.0), ..one.clone() })
+            .collect(),
+        ..alone
+    };
+    let found = values(&alone, &position, &charge)[0];
+    let (mut expected, mut current) = (0.0, 0.0);
+    for ((x, v), q) in position.iter().zip(&velocity).zip(&charge) {
+        expected -= q / x.norm();
+        current += q * x.dot(v) / x.norm().powi(3);
+    }
+    assert!((found.charge_c / expected - 1.0).abs() < 5e-3, "{found:?} {expected}");
+    assert!((found.current_a / current - 1.0).abs() < 1e-2, "{found:?} {current}");
+    // Floating spheres have the charge that is given, at the potential that this charge makes.
+    let given = charges_of_two_spheres([3.0, -2.0]);
+    let found = values(&settings_at(given.map(ConductorState::Charge)), &position, &[0.0; 2]);
+    for ((found, given), volts) in found.iter().zip(given).zip(volts) {
+        assert_eq!((found.charge_c, found.current_a), (given, 0.0));
+        assert!((found.potential_v / volts - 1.0).abs() < 5e-3, "{found:?} {volts}");
+    }
+    // The current is the change of the charge, with both spheres there and at potentials.
+    let step = 1e-4;
+    let moved = |by: f64| -> Vec<_> { position.iter().zip(&velocity).map(|(x, v)| x + v * by).collect() };
+    let [before, now, after] = [-step, 0.0, step].map(|by| values(&at_volts, &moved(by), &charge));
+    for k in 0..2 {
+        let change = (after[k].charge_c - before[k].charge_c) / (2.0 * step);
+        assert!((now[k].current_a / change - 1.0).abs() < 2e-2, "{:?} {change}", now[k]);
+    }
+}
+
 /// Asserts the error of E over its RMS, all charges together and the worst one, and the stated error.
 fn check(name: &str, found: (Vec<Vector3<f64>>, f64), charges: &Charges, most: [f64; 2]) {
     let (e, stated) = found;

@@ -3,6 +3,7 @@
 use anyhow::{Context, Result, bail};
 use std::path::Path;
 use std::process::{Command, Stdio};
+use std::time::{Duration, Instant};
 
 /// A `cargo` command in the repository's root.
 pub(crate) fn cargo(root: &Path, arguments: &[&str]) -> Command {
@@ -11,12 +12,19 @@ pub(crate) fn cargo(root: &Path, arguments: &[&str]) -> Command {
     command
 }
 
-/// Prints and runs a command; an exit code other than 0 is an error.
+/// Time from which on it is told how long a command took.
+const LONG: Duration = Duration::from_secs(10);
+
+/// Prints and runs a command, and says how long it took; an exit code other than 0 is an error.
 pub(crate) fn run(command: &mut Command) -> Result<()> {
     println!("$ {}", text(command));
+    let start = Instant::now();
     let status = command.status().with_context(|| format!("cannot start {}", text(command)))?;
     if !status.success() {
         bail!("{} failed ({status})", text(command));
+    }
+    if start.elapsed() > LONG {
+        println!("# {:.0} s: {}", start.elapsed().as_secs_f64(), text(command));
     }
     Ok(())
 }

@@ -10,6 +10,7 @@ use super::walls::faces;
 use crate::failure::Failure;
 use amberfield_core::WallCharging;
 use amberfield_dem::{Book, ChargedSpot, Energies, FeedAccount, Simulation, Tally};
+use amberfield_field::ConductorValues;
 use amberfield_scene::files::{ELECTRIC_FORCE, HISTORY, When, in_heading};
 use amberfield_scene::{
     ChargedSquare, HistoryFile, HistoryValue, PvdSeries, Scene, write_charge_vtu, write_particles_csv,
@@ -50,6 +51,8 @@ struct HistoryColumns {
     materials: Vec<String>,
     /// Names of the outlets, as they stand in columns.
     outlets: Vec<String>,
+    /// Names of the walls that are conductors, as they stand in columns.
+    conductors: Vec<String>,
     /// Names of the stages that are timed.
     stages: Vec<&'static str>,
 }
@@ -69,6 +72,7 @@ impl HistoryColumns {
             feeds: !simulation.feeds().is_empty(),
             materials: if simulation.books().is_some() { materials_of(scene) } else { Vec::new() },
             outlets: scene.outlets.iter().map(|outlet| in_heading(&outlet.name)).collect(),
+            conductors: if simulation.plan().has("field") { conductors_of(scene) } else { Vec::new() },
             stages: simulation.stage_seconds().into_iter().map(|(name, _)| name).collect(),
         }
     }
@@ -79,7 +83,9 @@ impl HistoryColumns {
             let of_stages = || self.stages.iter().map(|stage| name.replace("STAGE", stage)).collect();
             let of_materials = || self.materials.iter().map(|of| name.replace("NAME", of)).collect();
             let of_outlets = || self.outlets.iter().map(|of| name.replace("OUTLET", of)).collect();
+            let of_conductors = || self.conductors.iter().map(|of| name.replace("WALL", of)).collect();
             match name {
+                name if name.contains("WALL") => of_conductors(),
                 name if name.contains("OUTLET") => of_outlets(),
                 name if name.contains("STAGE") => of_stages(),
                 name if name.contains("NAME") => of_materials(),
@@ -103,6 +109,7 @@ impl HistoryColumns {
             When::Feeds => self.feeds,
             When::Books => !self.materials.is_empty(),
             When::Outlets => !self.outlets.is_empty(),
+            When::Conductors => !self.conductors.is_empty(),
             When::Components => false,
         }
     }
@@ -180,7 +187,7 @@ impl Record {
     /// Appends a row to the history, at most once for each step.
     pub(crate) fn row(
         &mut self,
-        simulation: &Simulation,
+        simulation: &mut Simulation,
         energies: &Energies,
         clock: &Clock,
     ) -> Result<(), Failure> {
@@ -215,6 +222,10 @@ impl Record {
                 feeds_of(&books, &simulation.feeds(), &mut row);
             }
             outlets_of(simulation.outlets(), &mut row);
+        }
+        if !self.columns.conductors.is_empty() {
+            let found = simulation.conductors().map_err(|error| Failure::while_running(&error))?;
+            conductors_in(&found, &mut row);
         }
         row.extend(self.columns.solver.then(|| HistoryValue::Count(simulation.solver_iterations())));
         row.push(HistoryValue::Number(clock.wall_s));
@@ -293,6 +304,26 @@ impl Record {
 /// Names of a scene's materials, without what would part columns.
 fn materials_of(scene: &Scene) -> Vec<String> {
     scene.materials.iter().map(|material| in_heading(&material.name)).collect()
+}
+
+/// Names of walls that are conductors of the field, with a number where one has come before.
+fn conductors_of(scene: &Scene) -> Vec<String> {
+    let conductors = scene.electric_field.iter().flat_map(|field| &field.field.conductors);
+    let mut names: Vec<String> = Vec::new();
+    for conductor in conductors {
+        let name = in_heading(&conductor.name);
+        let number = (2..).map(|number| format!("{name}_{number}"));
+        let free = std::iter::once(name.clone()).chain(number).find(|name| !names.contains(name));
+        names.extend(free);
+    }
+    names
+}
+
+/// Adds the states of conductors to a row of the history.
+fn conductors_in(conductors: &[ConductorValues], row: &mut Vec<HistoryValue>) {
+    row.extend(conductors.iter().map(|of| HistoryValue::Number(of.potential_v)));
+    row.extend(conductors.iter().map(|of| HistoryValue::Number(of.charge_c)));
+    row.extend(conductors.iter().map(|of| HistoryValue::Number(of.current_a)));
 }
 
 /// Adds the books of what is there and what left to a row of the history.

@@ -193,7 +193,8 @@ impl<'a> Session<'a> {
         if row || checkpoint {
             let energies = forecast_energies(&mut self.simulation)?;
             if row {
-                self.record.row(&self.simulation, &energies, &self.clock())?;
+                let clock = self.clock();
+                self.record.row(&mut self.simulation, &energies, &clock)?;
             }
             if let Err(failure) = self.health.check(&mut self.simulation, &energies) {
                 self.frame(observer)?;
@@ -221,7 +222,8 @@ impl<'a> Session<'a> {
     /// Appends a row to the history.
     fn row(&mut self) -> Result<(), Failure> {
         let energies = forecast_energies(&mut self.simulation)?;
-        self.record.row(&self.simulation, &energies, &self.clock())
+        let clock = self.clock();
+        self.record.row(&mut self.simulation, &energies, &clock)
     }
 
     /// Path of the checkpoint of the present step.

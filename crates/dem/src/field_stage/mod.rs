@@ -16,6 +16,7 @@
 
 mod answers;
 mod changing;
+mod conductors;
 mod forecast;
 mod impacts;
 mod interval;

@@ -9,7 +9,7 @@ use crate::contacts::walls::WallLoad;
 use crate::error::DemError;
 use crate::field_stage::{FieldStage, Intervals, Limited};
 use amberfield_core::{Particles, Placement, Plan, Vector3};
-use amberfield_field::ElectricField;
+use amberfield_field::{ConductorValues, ElectricField};
 
 impl Simulation {
     /// Exchange of grains with a gas that flows; `None` without one.
@@ -104,16 +104,24 @@ impl Simulation {
         Some(sorted.into_iter().map(|i| force[i]).collect())
     }
 
+    /// Potential, charge and image current of each conductor of the field; none without a field. The motion
+    /// does not change.
+    ///
+    /// # Errors
+    /// A field that fails.
+    pub fn conductors(&mut self) -> Result<Vec<ConductorValues>, DemError> {
+        self.collect_extras();
+        let Some(field) = &mut self.field else { return Ok(Vec::new()) };
+        field.conductors(&self.domain, &self.grains, &self.particles, &self.scratch.extras)
+    }
+
     /// Energies [J]; the motion does not change.
     ///
     /// # Errors
     /// A field that fails.
     pub fn energies(&mut self, electric: ElectricEnergy) -> Result<Energies, DemError> {
         if electric == ElectricEnergy::Evaluated || self.field.as_ref().is_some_and(FieldStage::changes) {
-            self.scratch.extras.clear();
-            if let Some(charging) = &self.charging {
-                charging.add_spots(&self.domain, &mut self.scratch.extras);
-            }
+            self.collect_extras();
         }
         let extras = &self.scratch.extras;
         let electric = match (&mut self.field, electric) {
@@ -135,6 +143,14 @@ impl Simulation {
             electric: electric.map(|electric| electric.energy),
             error: energy::ROUND_OFF * (contact.abs() + sizes) + of_field,
         })
+    }
+
+    /// Collects the charges of walls where they are now.
+    fn collect_extras(&mut self) {
+        self.scratch.extras.clear();
+        if let Some(charging) = &self.charging {
+            charging.add_spots(&self.domain, &mut self.scratch.extras);
+        }
     }
 
     /// Id and speed [m/s] of the fastest grain.

@@ -8,13 +8,13 @@ use crate::choosing::trials::OneProcess;
 use crate::choosing::tuner::Tuner;
 use crate::error::FieldError;
 use crate::geometry::images::{Geometry, images_per_charge};
-use crate::levels::surfaces::{Surfaces, split};
+use crate::levels::surfaces::Surfaces;
 use crate::methods::direct::Direct;
 use crate::methods::method::FieldMethod;
 use crate::methods::over_surfaces::OverSurfaces;
 use crate::methods::p3m::P3m;
 use crate::values::{FieldValues, Wanted};
-use amberfield_core::{Axis, Boundary, Domain, FieldSettings, Method, Side};
+use amberfield_core::{Axis, Boundary, Conductor, Domain, FieldSettings, Method, Side};
 use nalgebra::Vector3;
 
 /// Share of the tolerance that the sum over charges gets; facets have the rest.
@@ -76,7 +76,7 @@ impl Before {
                 )));
             }
         };
-        let method = OverSurfaces::new(method, self.surfaces, settings.tolerance);
+        let method = OverSurfaces::new(method, self.surfaces, settings);
         ElectricField::with_method(domain, settings, choice, Box::new(method))
     }
 }
@@ -123,7 +123,10 @@ impl ElectricField {
         positions: &[Vector3<f64>],
         charges: &[f64],
     ) -> Result<Option<Measured>, FieldError> {
-        let finer = FieldSettings { conductors: split(&self.settings.conductors), ..self.settings.clone() };
+        let split =
+            |conductor: &Conductor| Conductor { surface: conductor.surface.split(), ..conductor.clone() };
+        let conductors = self.settings.conductors.iter().map(split).collect();
+        let finer = FieldSettings { conductors, ..self.settings.clone() };
         let facets: usize = finer.conductors.iter().map(|finer| finer.surface.triangles.len()).sum();
         if facets > MOST_FOR_A_CHECK {
             tracing::warn!(

@@ -5,7 +5,7 @@ use crate::geometry::inputs::check_result;
 use crate::levels::far::FarSolver;
 use crate::methods::p3m_parameters::P3mParameters;
 use crate::sum::{Levels, Sum};
-use crate::values::{FieldValues, Wanted};
+use crate::values::{FieldAt, FieldValues, Wanted};
 use nalgebra::Vector3;
 use std::fmt;
 
@@ -20,6 +20,15 @@ pub struct TwoSplittings {
     pub jumps: Vec<Vector3<f64>>,
     /// Scale of errors: the larger of E_rms and q_rms n^{2/3}/(4πε) [V/m].
     pub scale: f64,
+}
+
+/// Potential where one conductor has 1 V, all others and the electrodes 0.
+#[derive(Clone, Debug, PartialEq)]
+pub struct UnitPotential {
+    /// Potential for 1 V, and E [1/m], at the places that were asked for.
+    pub at: Vec<FieldAt>,
+    /// Charge [C] that the conductors' own potentials and the given field make on this conductor.
+    pub of_given: f64,
 }
 
 /// A way to compute the field of charges and their images. Potentials and normal fields of the faces and an
@@ -93,6 +102,20 @@ pub trait FieldMethod: fmt::Debug + Send + Sync {
     /// Potential of each conductor with a surface of triangles [V], as the last evaluation left it.
     fn potentials_of_conductors(&self) -> Vec<f64> {
         Vec::new()
+    }
+
+    /// Potential of one conductor at 1 V, all others and the electrodes at 0, at places [m], and the charge that
+    /// the conductors' potentials of the last evaluation and what was given by [`Self::give_potentials`] make
+    /// on it.
+    ///
+    /// # Errors
+    /// The errors of [`Self::levels`], and methods without conductors.
+    fn unit_potential(
+        &mut self,
+        conductor: usize,
+        _positions: &[Vector3<f64>],
+    ) -> Result<UnitPotential, FieldError> {
+        Err(FieldError::Settings(format!("there is no conductor {conductor}")))
     }
 
     /// Tells surfaces the potential [V] of electrodes and of the external field at any place [m].

@@ -3,10 +3,11 @@
 
 use crate::error::FieldError;
 use crate::levels::surfaces::Surfaces;
-use crate::methods::method::FieldMethod;
+use crate::methods::method::{FieldMethod, UnitPotential};
 use crate::numerics::stopwatch::Stopwatch;
 use crate::sum::{Levels, OwnClouds, Part, Sum};
 use crate::values::{FieldAt, Wanted};
+use amberfield_core::FieldSettings;
 use nalgebra::Vector3;
 
 /// Looks at the equation in one evaluation, at most.
@@ -40,17 +41,17 @@ struct Parts {
 
 impl OverSurfaces {
     /// Puts surfaces before a method, which has room for images beyond them.
-    pub(crate) fn new(method: Box<dyn FieldMethod>, surfaces: Surfaces, tolerance: f64) -> Self {
+    pub(crate) fn new(method: Box<dyn FieldMethod>, surfaces: Surfaces, settings: &FieldSettings) -> Self {
         let given = vec![0.0; surfaces.centres().len()];
         Self {
             method,
             given,
             surfaces,
-            tolerance,
+            tolerance: settings.tolerance,
             positions: Vec::new(),
             charges: Vec::new(),
             parts: Parts::default(),
-            coulomb: 0.0,
+            coulomb: settings.permittivity.coulomb(),
             stopwatch: Stopwatch::default(),
         }
     }
@@ -78,8 +79,7 @@ impl OverSurfaces {
         let levels = self.method.levels(time_s, &self.positions, &self.charges, wanted)?;
         let sum = Sum::of_charges(levels, &self.positions);
         let (grains, facets) = (positions.len(), self.given.len());
-        self.coulomb = levels.coulomb;
-        let per_volt = 1.0 / levels.coulomb;
+        let per_volt = 1.0 / self.coulomb;
         let potential: Vec<f64> = (0..facets)
             .map(|facet| per_volt * (sum.at(grains + facet).potential + self.given[facet]))
             .collect();
@@ -143,6 +143,26 @@ impl FieldMethod for OverSurfaces {
 
     fn potentials_of_conductors(&self) -> Vec<f64> {
         self.surfaces.potentials().iter().map(|potential| self.coulomb * potential).collect()
+    }
+
+    fn unit_potential(
+        &mut self,
+        conductor: usize,
+        positions: &[Vector3<f64>],
+    ) -> Result<UnitPotential, FieldError> {
+        let volts = self.potentials_of_conductors();
+        let nothing = vec![0.0; self.given.len()];
+        let given = std::mem::replace(&mut self.given, nothing);
+        self.surfaces.hold(conductor, self.coulomb);
+        let uncharged = vec![0.0; positions.len()];
+        let wanted = Wanted { potential: true, ..Wanted::default() };
+        let at = self.levels(0.0, positions, &uncharged, wanted).map(|levels| {
+            let sum = Sum::of_charges(levels, positions);
+            (0..positions.len()).map(|place| sum.at(place)).collect()
+        });
+        self.surfaces.release();
+        self.given = given;
+        Ok(UnitPotential { at: at?, of_given: self.surfaces.charge_by(&volts, &self.given) })
     }
 
     fn give_potentials(&mut self, given: &dyn Fn(&Vector3<f64>) -> f64) {

@@ -40,6 +40,8 @@ pub enum When {
     Books,
     /// Outlet: a column for each.
     Outlets,
+    /// Walls that are conductors of the field: a column for each.
+    Conductors,
     /// Option `--components`.
     Components,
 }
@@ -61,12 +63,13 @@ impl When {
             Self::Feeds => "`[[feeds]]`",
             Self::Books => "`[[feeds]]`, `[[outlets]]` or `on_exit = \"delete\"`",
             Self::Outlets => "`[[outlets]]`",
+            Self::Conductors => "a charge, and a wall with `field`",
             Self::Components => "`--components`",
         }
     }
 }
 
-/// Name of a material or an outlet as a part of a column's name, without what would part columns.
+/// Name of a material, an outlet or a wall as a part of a column's name, without what would part columns.
 #[must_use]
 pub fn in_heading(name: &str) -> String {
     name.replace([',', '"', '\n', '\r'], "_")

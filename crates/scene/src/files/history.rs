@@ -87,6 +87,19 @@ pub static HISTORY: FileTable = FileTable::csv(
             .when(When::Outlets),
         Column::new(&["outlet_kg_OUTLET"], "kg", "Their mass.").when(When::Outlets),
         Column::new(&["outlet_C_OUTLET"], "C", "Charge that they took along.").when(When::Outlets),
+        Column::new(&["conductor_V_WALL"], "V", "Potential of a wall with `field`.").when(When::Conductors),
+        Column::new(
+            &["conductor_C_WALL"],
+            "C",
+            "Its charge, induced by the grains and by all potentials; `wall_charge_C` has what contacts took.",
+        )
+        .when(When::Conductors),
+        Column::new(
+            &["conductor_A_WALL"],
+            "A",
+            "Image current onto it by the motion of the grains (Shockley and Ramo); 0 where it floats.",
+        )
+        .when(When::Conductors),
         Column::new(&["solver_iterations"], "", "Iterations of the field solver's last solve.")
             .when(When::Solver),
         Column::new(&["wall_s"], "s", "Wall-clock time since the start of the run, earlier parts included."),

@@ -2,7 +2,7 @@
 
 use super::description::{Purpose, Scene};
 use super::unusual::unusual_values;
-use super::wall_field::{facets_that_misfit, is_conducting_face, leaves};
+use super::wall_field::{facets_that_misfit, fit_facets, is_conducting_face, leaves};
 use crate::SceneError;
 use crate::error::{Problems, shorten};
 use crate::table::SceneTable;
@@ -313,10 +313,10 @@ fn warn(scene: &mut Scene) {
     }
     let radii = [&scene.particles.radius, &scene.feeds.grains.radius].into_iter().flatten();
     let smallest = radii.copied().filter(|radius| *radius > 0.0).min_by(f64::total_cmp);
-    if let (Some(settings), Some(radius)) = (&scene.electric_field, smallest) {
-        let misfits =
-            settings.field.conductors.iter().flat_map(|conductor| facets_that_misfit(conductor, radius));
-        scene.warnings.extend(misfits);
+    if let (Some(settings), Some(radius)) = (&mut scene.electric_field, smallest) {
+        let conductors = &mut settings.field.conductors;
+        fit_facets(conductors, radius);
+        scene.warnings.extend(conductors.iter().flat_map(|one| facets_that_misfit(one, radius)));
     }
 }
 

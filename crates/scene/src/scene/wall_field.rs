@@ -9,8 +9,14 @@ use amberfield_core::{
     WallCharging, WallShape,
 };
 
-/// Facets that fit grains, over the radius of the smallest one.
-const FITTING: [f64; 2] = [0.5, 5.0];
+/// Facets that fit grains, over the radius of the smallest one. Longer edges are cut.
+const FITTING: [f64; 2] = [0.5, 6.0];
+/// Most that a surface of cut facets bulges beyond those which grains touch, over that radius.
+const BULGE: f64 = 0.25;
+/// Facets in all up to which edges are cut: up to here their error is measured.
+const MOST_FACETS: usize = 3000;
+/// Step of longer and longer edges until facets are few enough.
+const LONGER: f64 = 1.2;
 
 /// Sections that decide whether a wall can bound the field.
 #[derive(Clone, Copy)]
@@ -174,6 +180,32 @@ fn is_on_conductor(domain: &Domain, place: &Vector3<f64>, out: &Vector3<f64>) ->
     domain.face_under(place, out).is_some_and(Boundary::is_conductor)
 }
 
+/// Cuts long edges of facets, for grains of which the smallest has a radius [m]: to the length that fits them,
+/// or as far as the number of facets allows. Grains touch the wall's own facets as before.
+pub(super) fn fit_facets(conductors: &mut [Conductor], radius: f64) {
+    let given: usize = conductors.iter().map(|conductor| conductor.surface.triangles.len()).sum();
+    let most = MOST_FACETS.max(given);
+    let mut longest = FITTING[1] * radius;
+    let cut = |longest: f64| {
+        let mut left = most;
+        let of = |conductor: &Conductor| {
+            let finer = conductor.surface.with_edges_cut(longest, BULGE * radius, left)?;
+            left -= finer.triangles.len();
+            Some(finer)
+        };
+        conductors.iter().map(of).collect::<Option<Vec<_>>>()
+    };
+    let finer = loop {
+        if let Some(finer) = cut(longest) {
+            break finer;
+        }
+        longest *= LONGER;
+    };
+    for (conductor, finer) in conductors.iter_mut().zip(finer) {
+        conductor.surface = finer;
+    }
+}
+
 /// Warnings about facets that do not fit grains of which the smallest has a radius [m].
 pub(super) fn facets_that_misfit(conductor: &Conductor, radius: f64) -> Vec<String> {
     let sizes: Vec<f64> = conductor.surface.sizes().map(|size| size / radius).collect();
@@ -186,8 +218,9 @@ pub(super) fn facets_that_misfit(conductor: &Conductor, radius: f64) -> Vec<Stri
         let largest = sizes.iter().copied().fold(0.0, f64::max);
         found.push(format!(
             "{name}: {large} of the {all} facets that bound the field are larger than {most} radii of the \
-             smallest grain, up to {largest:.1}: near them the field is less exact where the surface bends \
-             or ends; mesh it finer where grains come near"
+             smallest grain, up to {largest:.1}, for facets are cut to {MOST_FACETS} in all: near them the \
+             field is less exact where the surface bends or ends; mesh it finer where grains come near, or \
+             leave out what is far from them"
         ));
     }
     if small > 0 {

@@ -1,7 +1,7 @@
 //! Key `field` of walls: its forms, and what it does not go with.
 
 use crate::common::{Folder, PLATE, SCENE};
-use amberfield_core::ConductorState;
+use amberfield_core::{ConductorState, WallShape};
 use amberfield_scene::Scene;
 
 /// Reads the good scene with these values of keys below its STL wall.
@@ -195,40 +195,34 @@ fn what_goes_with_a_field_of_a_wall_is_taken() {
     assert_eq!(conductors(&read(&outside)).len(), 1, "beyond an open face");
 }
 
-#[test]
-fn facets_that_do_not_fit_the_grains_are_named() {
-    let folder = Folder::good();
-    // Facets of 8, 2 and 0.2 radii of the smallest grain, in mm.
-    let facet = |edge: f64| {
-        format!(
-            "facet normal 0 0 1\nouter loop\nvertex 1 1 1\nvertex {} 1 1\nvertex 1 {} 1\nendloop\nendfacet\n",
-            1.0 + edge,
-            1.0 + edge
-        )
+/// STL of right triangles in z = 1 mm with legs of these lengths [mm].
+fn triangles(legs: &[f64]) -> String {
+    let facet = |leg: &f64| {
+        let to = 1.0 + leg;
+        let corners = format!("vertex 1 1 1\nvertex {to} 1 1\nvertex 1 {to} 1\n");
+        format!("facet normal 0 0 1\nouter loop\n{corners}endloop\nendfacet\n")
     };
-    let warnings = |edges: &[f64]| {
-        let facets: String = edges.iter().map(|edge| facet(*edge)).collect();
-        folder.write("plate.stl", format!("solid\n{facets}endsolid\n"));
-        folder.read(&["walls.1.field=grounded"]).unwrap().warnings
-    };
-    let found = warnings(&[0.8, 0.2, 0.02]);
-    assert_eq!(found.len(), 2, "{found:?}");
-    assert!(found[0].contains("1 of the 3 facets") && found[0].contains("mesh it finer"), "{found:?}");
-    assert!(found[1].contains("1 of the 3 facets") && found[1].contains("mesh it coarser"), "{found:?}");
-    assert_eq!(warnings(&[0.2, 0.3]), Vec::<String>::new());
+    format!("solid\n{}endsolid\n", legs.iter().map(facet).collect::<String>())
 }
 
 #[test]
-fn a_wall_without_a_field_beside_one_with_it_is_told_what_counts_twice() {
+fn facets_are_cut_for_the_field_and_those_that_do_not_fit_the_grains_are_named() {
     let folder = Folder::good();
-    folder.write("other.stl", PLATE.replace("0 1\n", "0 5\n").replace("20 1\n", "20 5\n"));
-    let other = "[[walls]]\nstl = \"other.stl\"\nscale = 1e-3\nmaterial = \"steel\"\n[[materials]]";
-    folder.write("scene.toml", SCENE.replacen("[[materials]]", other, 1));
-    let scene = folder.read(&["walls.1.field=grounded"]).unwrap();
-    let told: Vec<_> = scene.warnings.iter().filter(|text| text.contains("counts twice")).collect();
-    assert!(told.len() == 1 && told[0].contains("other.stl") && told[0].contains("field = \"grounded\""));
-    assert!(scene.conductor(1).is_some() && scene.conductor(2).is_none());
-    let second = folder.read(&["walls.2.field={ potential_V = 2.0 }"]).unwrap();
-    assert!(second.conductor(1).is_none());
-    assert_eq!(second.conductor(2).unwrap().state, ConductorState::Potential(2.0));
+    let read = |legs: &[f64]| {
+        folder.write("plate.stl", triangles(legs));
+        folder.read(&["walls.1.field=grounded"]).unwrap()
+    };
+    // Legs of 8, 2 and 0.2 radii of the smallest grain.
+    let scene = read(&[0.8, 0.2, 0.02]);
+    assert_eq!(scene.warnings.len(), 1, "{:?}", scene.warnings);
+    let small = &scene.warnings[0];
+    assert!(small.contains("1 of the 4 facets") && small.contains("mesh it coarser"), "{small}");
+    assert_eq!(scene.conductor(1).unwrap().surface.triangles.len(), 4, "the large one is cut in two");
+    let WallShape::Mesh(touched) = &scene.walls[1].shape else { panic!("a mesh") };
+    assert_eq!(touched.triangles.len(), 3, "grains touch the facets of the file");
+    // Legs of 400 radii: 3000 facets have 10 radii.
+    let warnings = read(&[40.0]).warnings;
+    let large = warnings.iter().find(|warning| warning.contains("mesh it finer")).expect("a warning");
+    assert!(large.contains("larger than 6 radii") && large.contains("cut to 3000 in all"), "{large}");
+    assert_eq!(read(&[0.2, 0.3]).warnings, Vec::<String>::new());
 }

@@ -1,11 +1,8 @@
 //! Boundary elements: the facets of the conductors' surfaces, each with an even density.
 
-use amberfield_core::{Conductor, TriangleMesh};
+use amberfield_core::{Conductor, SMOOTH_ANGLE, TriangleMesh};
 use nalgebra::{Matrix3, Vector3};
-use std::f64::consts::FRAC_PI_2;
 
-/// Angle between two facets up to which their surface is smooth [rad].
-pub(super) const SMOOTH: f64 = FRAC_PI_2 * 40.0 / 90.0;
 /// Weight of the normal direction in the fit of a slope, which has none along it.
 const ACROSS: f64 = 1.0;
 /// Elements around another one from which a slope can be told.
@@ -79,7 +76,8 @@ impl Elements {
                 let here: &Element = &all[element as usize];
                 let share = triangle.iter().flat_map(|&vertex| &at_vertex[vertex as usize]).copied();
                 let is_smooth = |other: &u32| {
-                    *other != element && here.normal.dot(&all[*other as usize].normal).abs() > SMOOTH.cos()
+                    *other != element
+                        && here.normal.dot(&all[*other as usize].normal).abs() > SMOOTH_ANGLE.cos()
                 };
                 let mut found: Vec<u32> = share.filter(is_smooth).collect();
                 found.sort_unstable();

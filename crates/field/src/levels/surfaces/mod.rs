@@ -16,9 +16,7 @@ mod elements;
 mod images;
 mod matrix;
 mod points;
-mod split;
-
-pub(crate) use split::split;
+mod unit;
 
 use crate::error::FieldError;
 use crate::levels::walls::{Buckets, FacetWalls, Facets};
@@ -60,6 +58,8 @@ pub(crate) struct Surfaces {
     floating: Floating,
     /// Potential of each conductor over Coulomb's constant [C/m].
     potentials: Vec<f64>,
+    /// These potentials while one conductor alone has another one.
+    held: Option<Vec<f64>>,
     /// Density whose points are in use, and what the equation makes of it [C/m²].
     in_use: Vec<f64>,
     corrected: Vec<f64>,
@@ -94,6 +94,7 @@ impl Surfaces {
             buckets: points::buckets_of(&elements),
             potentials: conductors.iter().map(potential).collect(),
             conductors: conductors.to_vec(),
+            held: None,
             domain: domain.clone(),
             elements,
             matrix,
@@ -130,8 +131,8 @@ impl Surfaces {
         self.points.place(&self.elements, &self.buckets, grains);
         self.in_use.clear();
         self.in_use.resize(self.elements.len(), 0.0);
-        for &conductor in &self.floating.conductors {
-            self.potentials[conductor] = 0.0;
+        if self.held.is_none() {
+            self.floating.conductors.iter().for_each(|&conductor| self.potentials[conductor] = 0.0);
         }
         self.points.charge(&self.elements, &self.in_use);
     }
@@ -187,7 +188,7 @@ impl Surfaces {
     /// Adds to a change of the density what gives floating conductors their charge.
     fn float(&mut self, change: &mut [f64]) {
         let Floating { conductors, unit, inverse } = &self.floating;
-        if conductors.is_empty() {
+        if conductors.is_empty() || self.held.is_some() {
             return;
         }
         let mut lacking = DVector::from_fn(conductors.len(), |row, _| {
