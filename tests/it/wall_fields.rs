@@ -199,17 +199,17 @@ fn explain_and_log_name_surfaces_and_facets_that_do_not_fit() {
     for part in ["does not know this grounded surface", "no wall has a field"] {
         assert!(none.contains(part), "{part}: {none}");
     }
-    // Facets of 6.7 radii are cut, those of 27 as far as 3000 in all allow.
+    // Facets of 6.7 radii are divided, those of 27 as far as 3000 in all allow.
     bench.write("grains.csv", FALLING.replace(",1e-4,4e-13", ",4e-5,4e-13"));
     let cut = bench.run(&["explain", "scene.toml"]).stdout;
-    assert!(cut.contains("by 1024 facets (cut from 512) of 4.7") && !cut.contains("warning"), "{cut}");
+    assert!(cut.contains("facets (divided from 512)") && !cut.contains("warning"), "{cut}");
     bench.write("grains.csv", FALLING.replace(",1e-4,4e-13", ",1e-5,4e-13"));
     let coarse = bench.run(&["explain", "scene.toml"]).stdout;
-    assert!(coarse.contains("(cut from 512)") && coarse.contains("cut to 3000 in all"), "{coarse}");
+    assert!(coarse.contains("(divided from 512)") && coarse.contains("divided to 3000 in all"), "{coarse}");
     let answer = bench.run(&["run", "scene.toml", "--out", "out", "--steps", "1"]);
     assert_eq!(answer.code, Some(0), "{}", answer.stderr);
     let log = bench.read("out/log.jsonl");
-    assert!(log.contains("mesh it finer") && log.contains("facets (cut from 512)"), "{log}");
+    assert!(log.contains("mesh it finer") && log.contains("facets (divided from 512)"), "{log}");
 }
 
 #[test]

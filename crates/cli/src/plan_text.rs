@@ -59,8 +59,8 @@ fn facets(scene: &Scene, wall: usize, conductor: &Conductor) -> String {
     });
     let unit = if smallest.is_some() { "radii of the smallest grain" } else { "m" };
     let given = match &scene.walls[wall].shape {
-        WallShape::Mesh(mesh) if mesh.triangles.len() < sizes.len() => {
-            format!(" (cut from {})", mesh.triangles.len())
+        WallShape::Mesh(mesh) if mesh.triangles.len() != sizes.len() => {
+            format!(" (divided from {})", mesh.triangles.len())
         }
         _ => String::new(),
     };

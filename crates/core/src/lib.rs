@@ -50,7 +50,7 @@ pub use permittivity::Permittivity;
 pub use plan::{Plan, PlanEntry};
 pub use rolling_model::RollingModel;
 pub use time_settings::{OnExit, Skin, Step, TimeSettings};
-pub use triangle_mesh::{SMOOTH_ANGLE, TriangleMesh};
+pub use triangle_mesh::{SMOOTH_ANGLE, SmoothPatch, TriangleMesh};
 pub use volume::Volume;
 pub use wall::{Wall, WallCharging, WallShape};
 pub use wall_motion::{MotionKind, MotionRow, Placement, WallMotion};

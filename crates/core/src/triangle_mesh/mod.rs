@@ -1,9 +1,9 @@
 //! Surfaces of triangles, and finer ones with the same shape.
 
-mod finer;
 mod smooth;
+mod split;
 
-pub use smooth::SMOOTH_ANGLE;
+pub use smooth::{SMOOTH_ANGLE, SmoothPatch};
 
 use nalgebra::Vector3;
 use serde::{Deserialize, Serialize};

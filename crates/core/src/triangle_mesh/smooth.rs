@@ -1,7 +1,8 @@
 //! The smooth surface whose chords the triangles of a mesh are.
 //!
-//! The middle of an edge from p to p' is that of the cubic curve through both with their normals n and n',
-//! ½(p + p') − [n n·(p' − p) + n' n'·(p − p')]/8 (Vlachos et al., Curved PN triangles, I3D 2001).
+//! Each triangle is a cubic Bézier patch through its corners, whose edges leave each corner in the plane
+//! across the surface's normal there (Vlachos et al., Curved PN triangles, I3D 2001), and along the crease
+//! where two surfaces meet.
 
 use super::TriangleMesh;
 use nalgebra::Vector3;
@@ -11,57 +12,133 @@ use std::f64::consts::FRAC_PI_2;
 /// Angle between two triangles up to which their surface is smooth [rad]: 40 degrees.
 pub const SMOOTH_ANGLE: f64 = FRAC_PI_2 * 40.0 / 90.0;
 
-/// A triangle of a smooth surface.
-#[derive(Clone, Copy, Debug)]
-pub(super) struct Patch {
+/// Sine of the angle between two normals from which on they tell the direction of a crease.
+const LEAST_CREASE: f64 = 0.1;
+
+/// A triangle of a smooth surface: a cubic patch through its corners.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct SmoothPatch {
     /// Vertices.
-    pub(super) corners: [u32; 3],
-    /// Unit normal of the smooth surface at each corner, all on one side.
-    pub(super) normals: [Vector3<f64>; 3],
-    /// Whether the surface goes on smoothly beyond the edge from each corner to the next one.
-    pub(super) is_smooth: [bool; 3],
+    pub corners: [u32; 3],
+    /// Control points of the edge from each corner to the next one, a third and two thirds along it [m].
+    controls: [[Vector3<f64>; 2]; 3],
+}
+
+impl SmoothPatch {
+    /// Ends of the edge from corner k to the next one, the lower vertex first.
+    #[must_use]
+    pub fn edge(&self, k: usize) -> [u32; 2] {
+        edge([self.corners[k], self.corners[(k + 1) % 3]])
+    }
+
+    /// Place on edge k of the patch [m], from the lower vertex (0) to the higher one (1).
+    #[must_use]
+    pub fn on_edge(&self, mesh: &TriangleMesh, k: usize, along: f64) -> Vector3<f64> {
+        let next = (k + 1) % 3;
+        let is_forwards = self.corners[k] < self.corners[next];
+        let mut shares = [0.0; 3];
+        shares[next] = if is_forwards { along } else { 1.0 - along };
+        shares[k] = 1.0 - shares[next];
+        self.at(mesh, shares)
+    }
+
+    /// Place on the patch [m] at barycentric coordinates, one for each corner.
+    #[must_use]
+    pub fn at(&self, mesh: &TriangleMesh, shares: [f64; 3]) -> Vector3<f64> {
+        let corners = self.corners.map(|vertex| mesh.vertices[vertex as usize]);
+        let control = |i: usize, j: usize| {
+            if (i + 1) % 3 == j { self.controls[i][0] } else { self.controls[j][1] }
+        };
+        let mut place = Vector3::zeros();
+        let mut mean_of_controls = Vector3::zeros();
+        for i in 0..3 {
+            place += corners[i] * shares[i].powi(3);
+            for j in [(i + 1) % 3, (i + 2) % 3] {
+                let control = control(i, j);
+                place += control * (3.0 * shares[i] * shares[i] * shares[j]);
+                mean_of_controls += control / 6.0;
+            }
+        }
+        let centre = corners.iter().sum::<Vector3<f64>>() / 3.0;
+        let middle = mean_of_controls + 0.5 * (mean_of_controls - centre);
+        place + middle * (6.0 * shares[0] * shares[1] * shares[2])
+    }
 }
 
 /// An edge, the lower vertex first.
-pub(super) fn edge([p, q]: [u32; 2]) -> [u32; 2] {
+fn edge([p, q]: [u32; 2]) -> [u32; 2] {
     [p.min(q), p.max(q)]
 }
 
-/// Middle of an edge of the smooth surface: place [m] and unit normal.
-pub(super) fn middle(ends: [&Vector3<f64>; 2], normals: [&Vector3<f64>; 2]) -> [Vector3<f64>; 2] {
-    let ([p, q], [n, m]) = (ends, normals);
-    let along = q - p;
-    let bulge = (n * n.dot(&along) - m * m.dot(&along)) / 8.0;
-    // The sum of both normals, mirrored in the plane across the edge, for normals that turn at an even rate.
-    let sum = n + m;
-    let turned = sum - along * (2.0 * along.dot(&sum) / along.norm_squared().max(f64::MIN_POSITIVE));
-    [0.5 * (p + q) - bulge, (sum + turned).normalize()]
+impl TriangleMesh {
+    /// Patches of the smooth surface whose chords the triangles are, without triangles that have no area. An
+    /// edge is smooth where two triangles meet at less than [`SMOOTH_ANGLE`] and the surface bulges by no more
+    /// than `most` [m] beyond them.
+    #[must_use]
+    pub fn smooth_patches(&self, most: f64) -> Vec<SmoothPatch> {
+        let faces: Vec<Face> =
+            self.triangles.iter().filter_map(|&corners| Face::new(self, corners)).collect();
+        let mut at_edge: HashMap<[u32; 2], Vec<usize>> = HashMap::new();
+        let mut at_vertex = vec![Vec::new(); self.vertices.len()];
+        for (number, face) in faces.iter().enumerate() {
+            for k in 0..3 {
+                at_edge.entry(face.edge(k)).or_default().push(number);
+                at_vertex[face.corners[k] as usize].push(number);
+            }
+        }
+        // The face beyond an edge, where the surface is smooth there.
+        let beyond = |number: usize, k: usize| {
+            let [a, b] = *at_edge[&faces[number].edge(k)].as_slice() else { return None };
+            let other = if a == number { b } else { a };
+            faces[number].goes_on(&faces[other], k, most).then_some(other)
+        };
+        let normals: Vec<[Vector3<f64>; 3]> = (0..faces.len())
+            .map(|number| [0, 1, 2].map(|k| normal(&faces, &at_vertex, number, k, beyond)))
+            .collect();
+        // Control points of edge k of a face.
+        let controls = |number: usize, k: usize| {
+            let ends = [k, (k + 1) % 3].map(|k| faces[number].corners[k]);
+            let [p, q] = ends.map(|vertex| self.vertices[vertex as usize]);
+            let straight = [p + (q - p) / 3.0, q + (p - q) / 3.0];
+            let own = [normals[number][k], normals[number][(k + 1) % 3]];
+            let bent = match *at_edge[&faces[number].edge(k)].as_slice() {
+                [_] => in_planes([p, q], own),
+                [_, _] if beyond(number, k).is_some() => in_planes([p, q], own),
+                [a, b] => {
+                    let other = if a == number { b } else { a };
+                    along_crease([p, q], own, ends.map(|vertex| faces[other].at(vertex, &normals[other])))
+                }
+                _ => straight,
+            };
+            let bulge = 3.0 / 8.0 * ((bent[0] - straight[0]) + (bent[1] - straight[1])).norm();
+            if bulge <= most { bent } else { straight }
+        };
+        let of_face = |(number, face): (usize, &Face)| SmoothPatch {
+            corners: face.corners,
+            controls: [0, 1, 2].map(|k| controls(number, k)),
+        };
+        faces.iter().enumerate().map(of_face).collect()
+    }
 }
 
-/// Patches of a mesh, without triangles that have no area. An edge is smooth where two triangles meet at less
-/// than [`SMOOTH_ANGLE`] and the surface bulges by no more than `most` [m] beyond them.
-pub(super) fn patches(mesh: &TriangleMesh, most: f64) -> Vec<Patch> {
-    let faces: Vec<Face> = mesh.triangles.iter().filter_map(|&corners| Face::new(mesh, corners)).collect();
-    let mut at_edge: HashMap<[u32; 2], Vec<usize>> = HashMap::new();
-    let mut at_vertex = vec![Vec::new(); mesh.vertices.len()];
-    for (number, face) in faces.iter().enumerate() {
-        for k in 0..3 {
-            at_edge.entry(face.edge(k)).or_default().push(number);
-            at_vertex[face.corners[k] as usize].push(number);
-        }
-    }
-    // The face beyond an edge, where the surface is smooth there.
-    let beyond = |number: usize, k: usize| {
-        let [a, b] = *at_edge[&faces[number].edge(k)].as_slice() else { return None };
-        let other = if a == number { b } else { a };
-        faces[number].goes_on(&faces[other], k, most).then_some(other)
+/// Control points of an edge that leaves its ends in the planes across the surface's normals.
+fn in_planes([p, q]: [Vector3<f64>; 2], [n, m]: [Vector3<f64>; 2]) -> [Vector3<f64>; 2] {
+    let along = q - p;
+    [p + (along - n * n.dot(&along)) / 3.0, q - (along - m * m.dot(&along)) / 3.0]
+}
+
+/// Control points of an edge in which two surfaces meet: it leaves its ends in the planes of both.
+fn along_crease(
+    [p, q]: [Vector3<f64>; 2],
+    own: [Vector3<f64>; 2],
+    other: [Vector3<f64>; 2],
+) -> [Vector3<f64>; 2] {
+    let along = q - p;
+    let direction = |k: usize| {
+        let common = own[k].cross(&other[k]);
+        common.try_normalize(LEAST_CREASE).map_or(along, |common| common * common.dot(&along))
     };
-    let of_face = |(number, face): (usize, &Face)| Patch {
-        corners: face.corners,
-        normals: [0, 1, 2].map(|k| normal(&faces, &at_vertex, number, k, beyond)),
-        is_smooth: [0, 1, 2].map(|k| beyond(number, k).is_some()),
-    };
-    faces.iter().enumerate().map(of_face).collect()
+    [p + direction(0) / 3.0, q - direction(1) / 3.0]
 }
 
 /// A triangle with an area.
@@ -88,6 +165,11 @@ impl Face {
 
     fn edge(&self, k: usize) -> [u32; 2] {
         edge([self.corners[k], self.corners[(k + 1) % 3]])
+    }
+
+    /// Normal at a vertex, of those at the corners.
+    fn at(&self, vertex: u32, normals: &[Vector3<f64>; 3]) -> Vector3<f64> {
+        (0..3).find(|&k| self.corners[k] == vertex).map_or(self.normal, |k| normals[k])
     }
 
     /// Whether the surface is smooth at edge k, beyond which another face lies.

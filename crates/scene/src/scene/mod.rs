@@ -17,6 +17,7 @@ mod pairs;
 mod particles;
 mod physics;
 mod read;
+mod remesh;
 mod time;
 mod time_table;
 mod together;

@@ -1,6 +1,7 @@
 //! Key `field` of `[[walls]]`: surfaces that are conductors of the field.
 
 use super::description::ElectricFieldSettings;
+use super::remesh::remeshed;
 use crate::SceneError;
 use crate::scene::OpenFoamSettings;
 use crate::table::SceneTable;
@@ -9,14 +10,14 @@ use amberfield_core::{
     WallCharging, WallShape,
 };
 
-/// Facets that fit grains, over the radius of the smallest one. Longer edges are cut.
+/// Sizes of facets that fit grains, over the radius of the smallest one. Larger ones are divided.
 const FITTING: [f64; 2] = [0.5, 6.0];
-/// Most that a surface of cut facets bulges beyond those which grains touch, over that radius.
+/// Most that a surface of divided facets bulges beyond those which grains touch, over that radius.
 const BULGE: f64 = 0.25;
-/// Facets in all up to which edges are cut: up to here their error is measured.
+/// Facets in all up to which they are divided: up to here their error is measured.
 const MOST_FACETS: usize = 3000;
-/// Step of longer and longer edges until facets are few enough.
-const LONGER: f64 = 1.2;
+/// Step of larger and larger sizes until facets are few enough.
+const LARGER: f64 = 1.2;
 
 /// Sections that decide whether a wall can bound the field.
 #[derive(Clone, Copy)]
@@ -180,26 +181,25 @@ fn is_on_conductor(domain: &Domain, place: &Vector3<f64>, out: &Vector3<f64>) ->
     domain.face_under(place, out).is_some_and(Boundary::is_conductor)
 }
 
-/// Cuts long edges of facets, for grains of which the smallest has a radius [m]: to the length that fits them,
-/// or as far as the number of facets allows. Grains touch the wall's own facets as before.
+/// Divides large facets, for grains of which the smallest has a radius [m]: to the size that fits them, or as far as the number of facets allows. Grains touch the wall's own facets as before.
 pub(super) fn fit_facets(conductors: &mut [Conductor], radius: f64) {
     let given: usize = conductors.iter().map(|conductor| conductor.surface.triangles.len()).sum();
     let most = MOST_FACETS.max(given);
-    let mut longest = FITTING[1] * radius;
-    let cut = |longest: f64| {
+    let mut size = FITTING[1] * radius;
+    let divided = |size: f64| {
         let mut left = most;
         let of = |conductor: &Conductor| {
-            let finer = conductor.surface.with_edges_cut(longest, BULGE * radius, left)?;
+            let finer = remeshed(&conductor.surface, size, BULGE * radius, left)?;
             left -= finer.triangles.len();
             Some(finer)
         };
         conductors.iter().map(of).collect::<Option<Vec<_>>>()
     };
     let finer = loop {
-        if let Some(finer) = cut(longest) {
+        if let Some(finer) = divided(size) {
             break finer;
         }
-        longest *= LONGER;
+        size *= LARGER;
     };
     for (conductor, finer) in conductors.iter_mut().zip(finer) {
         conductor.surface = finer;
@@ -218,7 +218,7 @@ pub(super) fn facets_that_misfit(conductor: &Conductor, radius: f64) -> Vec<Stri
         let largest = sizes.iter().copied().fold(0.0, f64::max);
         found.push(format!(
             "{name}: {large} of the {all} facets that bound the field are larger than {most} radii of the \
-             smallest grain, up to {largest:.1}, for facets are cut to {MOST_FACETS} in all: near them the \
+             smallest grain, up to {largest:.1}, for facets are divided to {MOST_FACETS} in all: near them the \
              field is less exact where the surface bends or ends; mesh it finer where grains come near, or \
              leave out what is far from them"
         ));
