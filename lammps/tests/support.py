@@ -15,7 +15,9 @@ AMBERFIELD = os.environ["AMBERFIELD"]
 BIN = Path(sys.executable).parent
 HERE = Path(__file__).parent
 EXAMPLES = HERE.parent / "examples"
-SECONDS = 300
+# Longest time of a run, and numbers of ranks of the longest ones: 3 and 4 take long on two cores.
+SECONDS = float(os.environ.get("AMBERFIELD_SECONDS", "300"))
+RANKS = [int(ranks) for ranks in os.environ.get("AMBERFIELD_RANKS", "1,2").split(",")]
 
 # Reads commands and a list of what is wanted, runs LAMMPS, and writes what it found as JSON on rank 0. MPI is
 # finalized: mpiexec kills the others when a rank ends without.

@@ -3,7 +3,7 @@
 
 import numpy as np
 import pytest
-from support import data_file, run, start
+from support import RANKS, data_file, run, start
 
 PERMITTIVITY = 8.8541878128e-12
 CUTOFF = 5e-7
@@ -254,7 +254,7 @@ def bed(folder, ranks, boundary, steps, field="", more="", side=8, speed=0.1, st
     return run(folder, parts, ranks=ranks, globals=books, arrays=arrays)["end"]
 
 
-@pytest.mark.parametrize("ranks", [1, 2])
+@pytest.mark.parametrize("ranks", RANKS)
 @pytest.mark.parametrize("boundary", ["p p p", "p p f"])
 def test_charge_is_conserved_over_a_hundred_thousand_steps(tmp_path, ranks, boundary):
     wall, more = (WALLS, KINDS) if boundary == "p p f" else ("", "")
