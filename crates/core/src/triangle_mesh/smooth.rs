@@ -95,6 +95,12 @@ impl TriangleMesh {
         let normals: Vec<[Vector3<f64>; 3]> = (0..faces.len())
             .map(|number| [0, 1, 2].map(|k| normal(&faces, &at_vertex, number, k, beyond)))
             .collect();
+        // Neighbours of a vertex along the rim.
+        let mut on_rim: HashMap<u32, Vec<u32>> = HashMap::new();
+        for (&[p, q], _) in at_edge.iter().filter(|(_, faces)| faces.len() == 1) {
+            on_rim.entry(p).or_default().push(q);
+            on_rim.entry(q).or_default().push(p);
+        }
         // Control points of edge k of a face.
         let controls = |number: usize, k: usize| {
             let ends = [k, (k + 1) % 3].map(|k| faces[number].corners[k]);
@@ -102,7 +108,13 @@ impl TriangleMesh {
             let straight = [p + (q - p) / 3.0, q + (p - q) / 3.0];
             let own = [normals[number][k], normals[number][(k + 1) % 3]];
             let bent = match *at_edge[&faces[number].edge(k)].as_slice() {
-                [_] => in_planes([p, q], own),
+                [_] => {
+                    let beyond = |at: usize| match on_rim[&ends[at]].as_slice() {
+                        &[a, b] => Some(self.vertices[if a == ends[1 - at] { b } else { a } as usize]),
+                        _ => None,
+                    };
+                    along_rim([p, q], [beyond(0), beyond(1)])
+                }
                 [_, _] if beyond(number, k).is_some() => in_planes([p, q], own),
                 [a, b] => {
                     let other = if a == number { b } else { a };
@@ -125,6 +137,22 @@ impl TriangleMesh {
 fn in_planes([p, q]: [Vector3<f64>; 2], [n, m]: [Vector3<f64>; 2]) -> [Vector3<f64>; 2] {
     let along = q - p;
     [p + (along - n * n.dot(&along)) / 3.0, q - (along - m * m.dot(&along)) / 3.0]
+}
+
+/// Control points of an edge of a rim between the corners beyond its ends: it leaves each end as the chord
+/// through both its neighbours does, where the rim does not turn there by more than [`SMOOTH_ANGLE`].
+fn along_rim([p, q]: [Vector3<f64>; 2], beyond: [Option<Vector3<f64>>; 2]) -> [Vector3<f64>; 2] {
+    let along = q - p;
+    let direction = |place: Vector3<f64>, beyond: Option<Vector3<f64>>, to: Vector3<f64>| {
+        let chord = beyond.map(|beyond| (to - place, place - beyond));
+        let smooth = chord.filter(|(next, last)| next.angle(last) < SMOOTH_ANGLE);
+        smooth.map_or(along, |(next, last)| {
+            // The tangent of the circle through the three corners.
+            let mean = (next / next.norm_squared() + last / last.norm_squared()).normalize();
+            mean * mean.dot(&along)
+        })
+    };
+    [p + direction(p, beyond[0], q) / 3.0, q - direction(q, beyond[1], p) / 3.0]
 }
 
 /// Control points of an edge in which two surfaces meet: it leaves its ends in the planes of both.

@@ -315,7 +315,7 @@ fn warn(scene: &mut Scene) {
     let smallest = radii.copied().filter(|radius| *radius > 0.0).min_by(f64::total_cmp);
     if let (Some(settings), Some(radius)) = (&mut scene.electric_field, smallest) {
         let conductors = &mut settings.field.conductors;
-        fit_facets(conductors, radius);
+        fit_facets(conductors, radius, scene.domain.as_ref());
         scene.warnings.extend(conductors.iter().flat_map(|one| facets_that_misfit(one, radius)));
     }
 }

@@ -181,20 +181,29 @@ fn is_on_conductor(domain: &Domain, place: &Vector3<f64>, out: &Vector3<f64>) ->
     domain.face_under(place, out).is_some_and(Boundary::is_conductor)
 }
 
-/// Divides large facets, for grains of which the smallest has a radius [m]: to the size that fits them, or as far as the number of facets allows. Grains touch the wall's own facets as before.
-pub(super) fn fit_facets(conductors: &mut [Conductor], radius: f64) {
+/// Divides large facets, for grains of which the smallest has a radius [m]: to the size that fits them, or as
+/// far as the number of facets allows. Grains touch the wall's own facets as before.
+pub(super) fn fit_facets(conductors: &mut [Conductor], radius: f64, domain: Option<&Domain>) {
     let given: usize = conductors.iter().map(|conductor| conductor.surface.triangles.len()).sum();
     let most = MOST_FACETS.max(given);
-    let mut size = FITTING[1] * radius;
+    let is_beyond = |surface: &TriangleMesh| {
+        let is_closed = |boundary| boundary != Boundary::Open;
+        let bounds = surface.bounds();
+        bounds.zip(domain).and_then(|(bounds, domain)| domain.farthest_beyond(&bounds, is_closed)).is_some()
+    };
     let divided = |size: f64| {
         let mut left = most;
         let of = |conductor: &Conductor| {
-            let finer = remeshed(&conductor.surface, size, BULGE * radius, left)?;
-            left -= finer.triangles.len();
+            let surface = &conductor.surface;
+            let bulging = remeshed(surface, size, BULGE * radius, left)?;
+            // What touches a face that is not open must not bulge through it.
+            let finer = if is_beyond(&bulging) { remeshed(surface, size, 0.0, left)? } else { bulging };
+            left = left.checked_sub(finer.triangles.len())?;
             Some(finer)
         };
         conductors.iter().map(of).collect::<Option<Vec<_>>>()
     };
+    let mut size = FITTING[1] * radius;
     let finer = loop {
         if let Some(finer) = divided(size) {
             break finer;
