@@ -99,7 +99,7 @@ fn check(bench: &Workbench, folder: &str) -> BTreeSet<&'static str> {
         // The scene has everything on, so that nothing of the table may be missing either.
         for name in file
             .names(|_| true)
-            .filter(|name| ["STAGE", "NAME", "OUTLET"].iter().all(|word| !name.contains(word)))
+            .filter(|name| ["STAGE", "NAME", "OUTLET", "WALL"].iter().all(|word| !name.contains(word)))
         {
             let is_of_others =
                 ["solver_iterations", "energies_at_end", "field", "field_intervals", "limited", "books"];

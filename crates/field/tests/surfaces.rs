@@ -41,7 +41,7 @@ fn field(domain: &Domain, settings: &FieldSettings, charges: &Charges) -> (Vec<V
 /// Charges of the conductors [C] over the unit of the problem.
 fn charges_of_conductors(domain: &Domain, settings: &FieldSettings, charges: &Charges) -> Vec<f64> {
     let Charges { position, charge, .. } = charges;
-    let mut field = ElectricField::new(domain, settings, position, charge).expect("a field");
+    let mut field = ElectricField::with_choice(domain, settings, &Choice::Direct).expect("a field");
     let at_rest = vec![Vector3::zeros(); position.len()];
     let values = field.values_of_conductors(position, charge, &at_rest).expect("finite values");
     values.iter().map(|values| values.charge_c).collect()
@@ -104,18 +104,14 @@ fn two_spheres_have_maxwells_charges_and_a_charge_that_passes_makes_ramos_curren
             surface: surface.clone(),
             state,
         });
-        FieldSettings {
-            tuning: Tuning::Model,
-            method: Method::Direct,
-            conductors: conductors.collect(),
-            ..FieldSettings::default()
-        }
+        FieldSettings { method: Method::Direct, conductors: conductors.collect(), ..FieldSettings::default() }
     };
     let position = [Vector3::new(0.3, -1.2, 0.9), Vector3::new(-0.4, 0.2, 3.4)];
     let velocity = [Vector3::new(2.0, 3.0, -1.0), Vector3::new(-1.0, 0.5, 1.5)];
     let charge = [1.5, -0.7];
     let values = |settings: &FieldSettings, position: &[Vector3<f64>], charge: &[f64]| {
-        let mut field = ElectricField::new(&open_box(6.0), settings, position, charge).expect("a field");
+        let mut field =
+            ElectricField::with_choice(&open_box(6.0), settings, &Choice::Direct).expect("a field");
         let mut out = FieldValues::default();
         field.evaluate(position, charge, Wanted::default(), &mut out).expect("finite values");
         field.values_of_conductors(position, charge, &velocity).expect("finite values")

@@ -18,13 +18,9 @@ pub(crate) fn run(root: &Path) -> Result<()> {
     let profile = Profile::Dev;
     let solver = openfoam::build(root, profile, profile.solver_folder(), &[])?.join(PROGRAM);
     images::build(root, profile)?;
-    beside_each_other(
-        || lammps::test(root, profile, Some(&solver)),
-        || {
-            python::test(root, profile)?;
-            execute(&mut cargo(root, &["test", "--workspace", "--doc"]))
-        },
-    )?;
+    python::test(root, profile)?;
+    lammps::test(root, profile, Some(&solver))?;
+    execute(&mut cargo(root, &["test", "--workspace", "--doc"]))?;
 
     let mut tests = if works(&mut cargo(root, &["nextest", "--version"])) {
         cargo(root, &["nextest", "run", "--workspace", "--no-fail-fast"])
@@ -35,29 +31,18 @@ pub(crate) fn run(root: &Path) -> Result<()> {
     execute(tests.env("AMBERFIELD_SOLVER", solver))
 }
 
-/// Runs two series of steps at the same time: neither uses two processors for long.
-fn beside_each_other(
-    one: impl FnOnce() -> Result<()> + Send,
-    other: impl FnOnce() -> Result<()>,
-) -> Result<()> {
-    std::thread::scope(|scope| {
-        let one = scope.spawn(one);
-        let other = other();
-        one.join().expect("steps do not panic")?;
-        other
-    })
-}
-
 /// Installs packages, starts an engine and makes the images' base while the workspace is compiled: the one
 /// waits for disks and servers, the other for processors.
 fn provide_and_compile(root: &Path) -> Result<()> {
-    beside_each_other(
-        || {
+    std::thread::scope(|scope| {
+        let provided = scope.spawn(|| {
             openfoam::provide(root)?;
             python::provide(root)?;
             lammps::provide(root)?;
             images::provide(root)
-        },
-        || execute(&mut cargo(root, &["build", "--workspace", "--all-targets"])),
-    )
+        });
+        let compiled = execute(&mut cargo(root, &["build", "--workspace", "--all-targets"]));
+        provided.join().expect("what provides does not panic")?;
+        compiled
+    })
 }

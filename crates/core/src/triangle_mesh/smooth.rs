@@ -71,9 +71,10 @@ fn edge([p, q]: [u32; 2]) -> [u32; 2] {
 }
 
 impl TriangleMesh {
-    /// Patches of the smooth surface whose chords the triangles are, without triangles that have no area. An
-    /// edge is smooth where two triangles meet at less than [`SMOOTH_ANGLE`] and the surface bulges by no more
-    /// than `most` [m] beyond them.
+    /// Patches of the smooth surface whose chords the triangles are, without triangles that have no area.
+    ///
+    /// An edge is smooth where two triangles meet at less than [`SMOOTH_ANGLE`] and the surface bulges by
+    /// `most` [m] beyond them at most.
     #[must_use]
     pub fn smooth_patches(&self, most: f64) -> Vec<SmoothPatch> {
         let faces: Vec<Face> =

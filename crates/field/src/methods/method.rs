@@ -104,9 +104,9 @@ pub trait FieldMethod: fmt::Debug + Send + Sync {
         Vec::new()
     }
 
-    /// Potential of one conductor at 1 V, all others and the electrodes at 0, at places [m], and the charge that
-    /// the conductors' potentials of the last evaluation and what was given by [`Self::give_potentials`] make
-    /// on it.
+    /// Potential of one conductor at 1 V, all others and the electrodes at 0, at places [m], and the charge
+    /// that the conductors' potentials of the last evaluation and what was given by
+    /// [`Self::give_potentials`] make on it.
     ///
     /// # Errors
     /// The errors of [`Self::levels`], and methods without conductors.

@@ -91,7 +91,7 @@ pub static HISTORY: FileTable = FileTable::csv(
         Column::new(
             &["conductor_C_WALL"],
             "C",
-            "Its charge, induced by the grains and by all potentials; `wall_charge_C` has what contacts took.",
+            "Its charge, induced by grains and potentials; `wall_charge_C` has what contacts took.",
         )
         .when(When::Conductors),
         Column::new(

@@ -14,17 +14,18 @@ const WHOLE: f64 = 1.35;
 const PIECE: f64 = 0.75;
 /// Smallest angle that new triangles shall have [degrees].
 const LEAST_ANGLE: f64 = 20.0;
-/// Area over that of the equilateral triangle of the largest size, above which a new triangle is divided where
-/// edges allow it: beside them some stay that are larger.
+/// Area over that of the equilateral triangle of the largest size, above which a new triangle is divided
+/// where edges allow it: beside them some stay that are larger.
 const FILLED: f64 = 0.5;
 /// Relative error of the area of a plane part, above which its triangles are no division of it.
 const SAME_AREA: f64 = 1e-6;
 /// Most new corners within a plane part, over the number that its area asks for.
 const ROOM: f64 = 20.0;
 
-/// Mesh of triangles of about this size [m] at most over a mesh. Plane parts whose triangles have it are kept;
-/// others are divided anew, with their edges cut evenly, so that parts still share them. New corners lie on
-/// the smooth surface where it bulges by `bulge` [m] at most beyond the triangles, and on these elsewhere.
+/// Mesh of triangles of about this size [m] at most over a mesh. Plane parts whose triangles have it are
+/// kept; others are divided anew, with their edges cut evenly, so that parts still share them. New corners
+/// lie on the smooth surface where it bulges by `bulge` [m] at most beyond the triangles, and on these
+/// elsewhere.
 /// `None` where it takes more than `most` triangles.
 pub(super) fn remeshed(mesh: &TriangleMesh, size: f64, bulge: f64, most: usize) -> Option<TriangleMesh> {
     let mut finer = Remesh::new(mesh, size, bulge);

@@ -10,8 +10,10 @@ use amberfield_core::{
     WallCharging, WallShape,
 };
 
-/// Sizes of facets that fit grains, over the radius of the smallest one. Larger ones are divided.
-const FITTING: [f64; 2] = [0.5, 6.0];
+/// Sizes of facets that fit grains, over the radius of the smallest one.
+const FITTING: [f64; 2] = [0.5, 7.0];
+/// Size above which facets are divided, over that radius; beside edges some stay that are larger.
+const DIVIDED: f64 = 5.5;
 /// Most that a surface of divided facets bulges beyond those which grains touch, over that radius.
 const BULGE: f64 = 0.25;
 /// Facets in all up to which they are divided: up to here their error is measured.
@@ -203,7 +205,7 @@ pub(super) fn fit_facets(conductors: &mut [Conductor], radius: f64, domain: Opti
         };
         conductors.iter().map(of).collect::<Option<Vec<_>>>()
     };
-    let mut size = FITTING[1] * radius;
+    let mut size = DIVIDED * radius;
     let finer = loop {
         if let Some(finer) = divided(size) {
             break finer;
@@ -227,9 +229,9 @@ pub(super) fn facets_that_misfit(conductor: &Conductor, radius: f64) -> Vec<Stri
         let largest = sizes.iter().copied().fold(0.0, f64::max);
         found.push(format!(
             "{name}: {large} of the {all} facets that bound the field are larger than {most} radii of the \
-             smallest grain, up to {largest:.1}, for facets are divided to {MOST_FACETS} in all: near them the \
-             field is less exact where the surface bends or ends; mesh it finer where grains come near, or \
-             leave out what is far from them"
+             smallest grain, up to {largest:.1}, for facets are divided to {MOST_FACETS} in all: near them \
+             the field is less exact where the surface bends or ends; mesh it finer where grains come near, \
+             or leave out what is far from them"
         ));
     }
     if small > 0 {

@@ -58,7 +58,7 @@ pub(crate) struct Surfaces {
     floating: Floating,
     /// Potential of each conductor over Coulomb's constant [C/m].
     potentials: Vec<f64>,
-    /// These potentials while one conductor alone has another one.
+    /// Potentials of before, while one conductor alone has one.
     held: Option<Vec<f64>>,
     /// Density whose points are in use, and what the equation makes of it [C/m²].
     in_use: Vec<f64>,

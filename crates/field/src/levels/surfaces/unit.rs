@@ -1,9 +1,9 @@
 //! One conductor alone at a potential, from which its charge follows for any charges before it.
 //!
 //! With u_b the potential where conductor b has 1 V and all others and the electrodes 0, and σ_b the density
-//! that makes it, Green's reciprocity gives the charge of b, before charges q_i at x_i, with conductors at V_c
-//! and the potential φ_given of electrodes and of the external field (Jackson, Classical Electrodynamics,
-//! 3rd ed., problem 1.12):
+//! that makes it, Green's reciprocity gives the charge of b, before charges q_i at x_i, with conductors at
+//! V_c and the potential φ_given of electrodes and of the external field (Jackson, Classical
+//! Electrodynamics, 3rd ed., problem 1.12):
 //!
 //! Q_b = ∫ σ_b (V − φ_given) dA − Σ_i q_i u_b(x_i)   [C], with σ_b in C/m² for 1 V.
 
