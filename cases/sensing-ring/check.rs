@@ -28,7 +28,7 @@ fn bessel_i0(x: f64) -> f64 {
 ///
 /// Q = −(2q/π) ∫ sin(kb) cos(kx)/(k I₀(kR)) dk,  I = dQ/dt = (2qv/π) ∫ sin(kb) sin(kx)/I₀(kR) dk
 ///
-/// from 0 to ∞, with b half the ring's length (Smythe, Static and Dynamic Electricity, 3rd ed., §5.351).
+/// from 0 to ∞, with b half the ring's length (Smythe, Static and Dynamic Electricity, 3rd ed., chapter 5).
 fn exact(x: f64) -> [f64; 2] {
     let (b, x) = (HALF_RING_M / PIPE_M, x / PIPE_M);
     let (cells, end) = (4000, 40.0);

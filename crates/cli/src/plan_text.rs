@@ -1,6 +1,6 @@
 //! Text of a plan, and of what a run has and costs.
 
-use amberfield_core::{Conductor, Plan, WallShape};
+use amberfield_core::{Conductor, Plan, Wall, WallShape};
 use amberfield_dem::Outlook;
 use amberfield_scene::Scene;
 
@@ -33,8 +33,8 @@ pub(crate) fn walls(scene: &Scene) -> Vec<String> {
             |[low, high]| format!("{:?} to {:?} m", low.as_slice(), high.as_slice()),
         ),
     };
-    let bounds = |wall: usize| {
-        scene.conductor(wall).map(|conductor| facets(scene, wall, conductor)).unwrap_or_default()
+    let bounds = |number: usize, wall: &Wall| {
+        scene.conductor(number).map(|conductor| facets(scene, wall, conductor)).unwrap_or_default()
     };
     scene
         .walls
@@ -42,23 +42,22 @@ pub(crate) fn walls(scene: &Scene) -> Vec<String> {
         .enumerate()
         .map(|(number, wall)| {
             let moves = if wall.motion.is_empty() { "" } else { ", moves" };
-            format!("{}: {}{moves}{}", wall.name, place(&wall.shape), bounds(number))
+            format!("{}: {}{moves}{}", wall.name, place(&wall.shape), bounds(number, wall))
         })
         .collect()
 }
 
 /// Facets of a conductor, over the radius of the smallest grain where grains have one.
-fn facets(scene: &Scene, wall: usize, conductor: &Conductor) -> String {
+fn facets(scene: &Scene, wall: &Wall, conductor: &Conductor) -> String {
     let mut sizes: Vec<f64> = conductor.surface.sizes().collect();
     sizes.sort_by(f64::total_cmp);
-    let radii = [&scene.particles.radius, &scene.feeds.grains.radius].into_iter().flatten();
-    let smallest = radii.copied().filter(|radius| *radius > 0.0).min_by(f64::total_cmp);
+    let smallest = scene.smallest_radius();
     let [least, median, most] = [0, sizes.len() / 2, sizes.len() - 1].map(|at| match smallest {
         Some(radius) => format!("{:.2}", sizes[at] / radius),
         None => format!("{:.3e}", sizes[at]),
     });
     let unit = if smallest.is_some() { "radii of the smallest grain" } else { "m" };
-    let given = match &scene.walls[wall].shape {
+    let given = match &wall.shape {
         WallShape::Mesh(mesh) if mesh.triangles.len() != sizes.len() => {
             format!(" (divided from {})", mesh.triangles.len())
         }

@@ -95,8 +95,7 @@ impl ElectricField {
         wanted: Wanted,
         out: &mut FieldValues,
     ) -> Result<(), FieldError> {
-        let given = |place: &Vector3<f64>| (self.external.at(place) + self.faces.at(place)).potential;
-        self.method.give_potentials(&given);
+        self.give_potentials();
         let levels = self.method.levels(time_s, positions, charges, wanted)?;
         self.stopwatch.restart();
         let faces = Part::new(self.faces.evaluate(positions));
@@ -104,6 +103,12 @@ impl ElectricField {
         Sum { levels, faces, external: self.external, positions }.write(wanted, out);
         self.stopwatch.lap("sum");
         self.method.agreed(check_result(&out.e))
+    }
+
+    /// Tells the method the potential of electrodes and of the external field.
+    fn give_potentials(&mut self) {
+        let given = |place: &Vector3<f64>| (self.external.at(place) + self.faces.at(place)).potential;
+        self.method.give_potentials(&given);
     }
 
     /// Measures the error of E on a sample by a second, more exact splitting; `None` for methods that make no

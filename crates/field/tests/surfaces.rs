@@ -98,8 +98,8 @@ fn charges_of_two_spheres(potentials: [f64; 2]) -> [f64; 2] {
 fn two_spheres_have_maxwells_charges_and_a_charge_that_passes_makes_ramos_current() {
     let volts = [3.0 * coulomb(), -2.0 * coulomb()];
     let bodies = two_spheres();
-    let settings_at = |states: [ConductorState; 2]| {
-        let conductors = bodies.iter().zip(states).map(|(surface, state)| Conductor {
+    let settings_at = |states: &[ConductorState]| {
+        let conductors = bodies.iter().zip(states).map(|(surface, &state)| Conductor {
             name: "sphere.stl".into(),
             surface: surface.clone(),
             state,
@@ -117,22 +117,14 @@ fn two_spheres_have_maxwells_charges_and_a_charge_that_passes_makes_ramos_curren
         field.values_of_conductors(position, charge, &velocity).expect("finite values")
     };
     // No charges: images of images.
-    let at_volts = settings_at(volts.map(ConductorState::Potential));
+    let at_volts = settings_at(&volts.map(ConductorState::Potential));
     let found = values(&at_volts, &position, &[0.0; 2]);
     for (found, expected) in found.iter().zip(charges_of_two_spheres([3.0, -2.0])) {
         assert!((found.charge_c / expected - 1.0).abs() < 5e-3, "{found:?} {expected}");
         assert_eq!(found.current_a, 0.0);
     }
     // One sphere alone before charges: −q R/r, and its change with time.
-    let alone = FieldSettings { conductors: at_volts.conductors[..1].to_vec(), ..at_volts.clone() };
-    let alone = FieldSettings {
-        conductors: alone
-            .conductors
-            .iter()
-            .map(|one| Conductor { state: ConductorState::Potential(0.0), ..one.clone() })
-            .collect(),
-        ..alone
-    };
+    let alone = settings_at(&[ConductorState::Potential(0.0)]);
     let found = values(&alone, &position, &charge)[0];
     let (mut expected, mut current) = (0.0, 0.0);
     for ((x, v), q) in position.iter().zip(&velocity).zip(&charge) {
@@ -143,7 +135,7 @@ fn two_spheres_have_maxwells_charges_and_a_charge_that_passes_makes_ramos_curren
     assert!((found.current_a / current - 1.0).abs() < 1e-2, "{found:?} {current}");
     // Floating spheres have the charge that is given, at the potential that this charge makes.
     let given = charges_of_two_spheres([3.0, -2.0]);
-    let found = values(&settings_at(given.map(ConductorState::Charge)), &position, &[0.0; 2]);
+    let found = values(&settings_at(&given.map(ConductorState::Charge)), &position, &[0.0; 2]);
     for ((found, given), volts) in found.iter().zip(given).zip(volts) {
         assert_eq!((found.charge_c, found.current_a), (given, 0.0));
         assert!((found.potential_v / volts - 1.0).abs() < 5e-3, "{found:?} {volts}");

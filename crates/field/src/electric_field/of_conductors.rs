@@ -33,8 +33,7 @@ impl ElectricField {
         charges: &[f64],
         velocities: &[Vector3<f64>],
     ) -> Result<Vec<ConductorValues>, FieldError> {
-        let given = |place: &Vector3<f64>| (self.external.at(place) + self.faces.at(place)).potential;
-        self.method.give_potentials(&given);
+        self.give_potentials();
         let potentials = self.method.potentials_of_conductors();
         let mut found = Vec::with_capacity(potentials.len());
         for (number, potential_v) in potentials.into_iter().enumerate() {

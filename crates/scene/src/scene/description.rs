@@ -101,6 +101,13 @@ impl Scene {
         &self.physics
     }
 
+    /// Radius of the smallest grain, fed ones included [m]; `None` where none has one.
+    #[must_use]
+    pub fn smallest_radius(&self) -> Option<f64> {
+        let radii = [&self.particles.radius, &self.feeds.grains.radius].into_iter().flatten();
+        radii.copied().filter(|radius| *radius > 0.0).min_by(f64::total_cmp)
+    }
+
     /// Conductor that a wall is to the field; `None` where it does not bound it, or is a solver's patch.
     #[must_use]
     pub fn conductor(&self, wall: usize) -> Option<&Conductor> {

@@ -311,8 +311,7 @@ fn warn(scene: &mut Scene) {
             unknown_grounded_walls(scene).map(|wall| unknown_grounded(&wall.name, beside)).collect();
         scene.warnings.extend(unknown);
     }
-    let radii = [&scene.particles.radius, &scene.feeds.grains.radius].into_iter().flatten();
-    let smallest = radii.copied().filter(|radius| *radius > 0.0).min_by(f64::total_cmp);
+    let smallest = scene.smallest_radius();
     if let (Some(settings), Some(radius)) = (&mut scene.electric_field, smallest) {
         let conductors = &mut settings.field.conductors;
         fit_facets(conductors, radius, scene.domain.as_ref());

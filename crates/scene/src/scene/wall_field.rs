@@ -206,6 +206,12 @@ pub(super) fn fit_facets(conductors: &mut [Conductor], radius: f64, domain: Opti
         conductors.iter().map(of).collect::<Option<Vec<_>>>()
     };
     let mut size = DIVIDED * radius;
+    // Sizes of which even twice the triangles would not cover the surfaces need no trial.
+    let squares: f64 =
+        conductors.iter().flat_map(|conductor| conductor.surface.sizes()).map(|size| size * size).sum();
+    while squares > 2.0 * most as f64 * size * size {
+        size *= LARGER;
+    }
     let finer = loop {
         if let Some(finer) = divided(size) {
             break finer;
